@@ -1,0 +1,2 @@
+//! stead
+pub mod robot;
