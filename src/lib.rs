@@ -1,2 +1,6 @@
 //! stead
+pub mod cutting;
+pub mod input;
 pub mod robot;
+pub mod stiffness;
+pub mod task;

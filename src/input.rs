@@ -1,0 +1,93 @@
+//! The one error for anything that a user's file can get wrong.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What is wrong in a file, where, what was found and what is allowed.
+///
+/// Printed as `FILE:LINE: FIELD: PROBLEM, found VALUE; allowed: ALLOWED`, leaving out what is not known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputError {
+    /// The file as the user named it.
+    pub file: PathBuf,
+    /// Line in the file, from 1.
+    pub line: Option<usize>,
+    /// Field: dotted key of a TOML file, or column of a CSV file.
+    pub field: Option<String>,
+    /// What is wrong, as a sentence without its full stop.
+    pub problem: String,
+    /// The value found, as written.
+    pub found: Option<String>,
+    /// What would have been accepted.
+    pub allowed: Option<String>,
+}
+
+impl InputError {
+    /// A problem with a file as a whole.
+    pub fn new(file: &Path, problem: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), line: None, field: None, problem: problem.into(), found: None, allowed: None }
+    }
+
+    /// Adds the line, from 1.
+    pub fn at_line(mut self, line: usize) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    /// Adds the field.
+    pub fn in_field(mut self, field: impl Into<String>) -> Self {
+        self.field = Some(field.into());
+        self
+    }
+
+    /// Adds the value found.
+    pub fn found(mut self, value: impl Into<String>) -> Self {
+        self.found = Some(value.into());
+        self
+    }
+
+    /// Adds what would have been accepted.
+    pub fn allowed(mut self, allowed: impl Into<String>) -> Self {
+        self.allowed = Some(allowed.into());
+        self
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": ")?;
+        if let Some(field) = &self.field {
+            write!(f, "{field}: ")?;
+        }
+        write!(f, "{}", self.problem)?;
+        if let Some(found) = &self.found {
+            write!(f, ", found {found}")?;
+        }
+        if let Some(allowed) = &self.allowed {
+            write!(f, "; allowed: {allowed}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for InputError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prints_what_is_known_and_nothing_else() {
+        let bare = InputError::new(Path::new("a.toml"), "cannot be read");
+        assert_eq!(bare.to_string(), "a.toml: cannot be read");
+        let full = bare.at_line(3).in_field("cell.x_mm").found("[1, 0]").allowed("lower bound below upper bound");
+        assert_eq!(
+            full.to_string(),
+            "a.toml:3: cell.x_mm: cannot be read, found [1, 0]; allowed: lower bound below upper bound"
+        );
+    }
+}
