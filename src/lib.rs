@@ -1,6 +1,7 @@
 //! stead
 pub mod cutting;
 pub mod input;
+pub mod placement;
 pub mod robot;
 pub mod stiffness;
 pub mod task;

@@ -1,0 +1,34 @@
+//! The main job: where to put the workpiece.
+pub mod criterion;
+pub mod outcome;
+pub mod problem;
+pub mod settings;
+
+#[cfg(test)]
+pub(crate) mod testing {
+    //! The problem of Caro 2013 for the tests of this room.
+    use super::problem::*;
+    use crate::robot::testing::{kr270, spindle};
+    use crate::task::{Task, read_csv};
+    use std::f64::consts::PI;
+    use std::path::Path;
+
+    /// The five-segment task in the paper's cell, with no joint speeds.
+    pub fn five_segments() -> Problem {
+        let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tasks/five-segments.csv"));
+        let imported = read_csv(file).unwrap();
+        let interval = |min, max| Interval { min, max };
+        Problem {
+            robot: kr270(),
+            spindle: spindle(),
+            task: Task::new(imported.path, imported.wrenches.unwrap()).unwrap(),
+            cell: Cell {
+                position: [interval(-0.3, 0.3), interval(-2.24, -1.64), interval(-0.602, -0.214)],
+                yaw: interval(-PI, PI),
+            },
+            constraints: Constraints { min_inverse_condition: 0.2, characteristic_length: 0.682, max_deflection: None },
+            criterion: Criterion::default(),
+            redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! How hard to search.
+
+/// How the posture scheme of a candidate placement is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PostureSearch {
+    /// Exactly: the best posture of each segment, for every candidate.
+    Exact,
+    /// In the genome, one posture number per segment, as Caro 2013 did.
+    Genetic,
+}
+
+/// Settings of the genetic search and of the refinement after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchSettings {
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Individuals in a generation, at least 4.
+    pub population: usize,
+    /// Generations after the random start.
+    pub generations: usize,
+    /// How posture schemes are found.
+    pub postures: PostureSearch,
+    /// Distinct basins of each search that are refined, at least 1.
+    pub basins: usize,
+}
+
+impl Default for SearchSettings {
+    /// The published population and generations (Caro 2013, section V).
+    fn default() -> Self {
+        Self { seed: 1, population: 120, generations: 51, postures: PostureSearch::Exact, basins: 4 }
+    }
+}
+
+/// Limits of the joint moves between segments, for joints whose row of the robot file does not state them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TransferSettings {
+    /// Time from rest to full speed at full acceleration; the acceleration limit is speed over this. s
+    pub acceleration_time: f64,
+    /// Time from no to full acceleration at full jerk; the jerk limit is acceleration over this. s
+    pub jerk_time: f64,
+}
+
+impl Default for TransferSettings {
+    /// An assumption: manufacturers publish speeds, not accelerations.
+    fn default() -> Self {
+        Self { acceleration_time: 0.4, jerk_time: 0.1 }
+    }
+}
