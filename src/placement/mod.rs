@@ -1,5 +1,6 @@
 //! The main job: where to put the workpiece.
 pub mod criterion;
+pub mod kernel;
 pub mod outcome;
 pub mod problem;
 pub mod settings;

@@ -1,0 +1,237 @@
+//! The batch evaluator: one path point, all grid values of beta, all posture classes.
+//!
+//! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
+//! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
+//! quantities, one state at a time and by way of the Jacobian, come from [`super::criterion::state`]; the tests hold the
+//! two against each other.
+//!
+//! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the frame
+//! turned with joint 1, where the arm is a plane mechanism; angles are only computed where limits or the planner need them;
+//! and what the first three joints rule out never reaches the wrist.
+
+pub mod lanes;
+mod states;
+mod wrist;
+
+pub use states::{States, StatesView};
+
+use super::problem::{Problem, base_from_workpiece};
+use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
+use lanes::{Lanes, Mask, WIDTH};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// What does not change from one placement to the next.
+#[derive(Debug, Clone)]
+pub struct Kernel<'a> {
+    problem: &'a Problem,
+    count: usize,
+    cosine: Vec<f64>,
+    sine: Vec<f64>,
+    limits: [Limit; 6],
+    compliances: [f64; 6],
+    forearm_sin_cos: (f64, f64),
+}
+
+/// Scratch space of one thread.
+#[derive(Debug, Clone)]
+pub struct Scratch {
+    columns: [Vec<f64>; wrist::COLUMNS],
+    survivors: Vec<u32>,
+}
+
+/// One joint's limits, ready for lanes.
+#[derive(Debug, Clone, Copy)]
+struct Limit {
+    min: f64,
+    max: f64,
+    has_turns: bool,
+}
+
+impl Limit {
+    /// The angle as the planner sees it (the real one, or any one where the joint has several), and where it is allowed.
+    #[inline(always)]
+    fn canonical(self, angle: Lanes) -> (Lanes, Mask) {
+        if self.has_turns {
+            return (angle, Mask::splat(true));
+        }
+        let turns = ((Lanes::splat(self.min) - angle) * (1.0 / TAU)).ceil();
+        let real = angle + turns * TAU;
+        (real, real.at_most(Lanes::splat(self.max)))
+    }
+}
+
+/// A direction or vector of the flange as it turns with beta, in the root frame: `a + b cos(beta) + c sin(beta)`.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    c: Vector3<f64>,
+}
+
+impl Turning {
+    /// A vector given in the tool frame, on point axes given as columns in the root frame (Caro 2013, eq. 7 and 10).
+    fn new(axes: &nalgebra::Matrix3<f64>, v: &Vector3<f64>) -> Self {
+        let (x, y, z) = (axes.column(0), axes.column(1), axes.column(2));
+        Self { a: -z * v.z, b: x * v.x - y * v.y, c: x * v.y + y * v.x }
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize, cosine: Lanes, sine: Lanes) -> Lanes {
+        cosine * self.b[k] + sine * self.c[k] + self.a[k]
+    }
+}
+
+/// One path point at one placement, in the root frame of the arm.
+#[derive(Debug, Clone, Copy)]
+struct PointGeometry {
+    tip: Vector3<f64>,
+    x6: Turning,
+    y6: Turning,
+    z6: Turning,
+    lever: Turning,
+    normal: Vector3<f64>,
+    force: Vector3<f64>,
+    moment: Vector3<f64>,
+    uncertainty: f64,
+}
+
+impl<'a> Kernel<'a> {
+    /// Prepares the evaluation of a problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        let count = problem.redundancy.beta_count;
+        let padded = count.next_multiple_of(WIDTH);
+        let angle = |k: usize| libm::sincos(problem.redundancy.beta(k % count));
+        let limits = std::array::from_fn(|j| {
+            let range = Range::of(&problem.robot.joints()[j]);
+            Limit { min: range.min - ANGLE_ROUNDING, max: range.max + ANGLE_ROUNDING, has_turns: range.has_turns() }
+        });
+        Self {
+            problem,
+            count,
+            cosine: (0..padded).map(|k| angle(k).1).collect(),
+            sine: (0..padded).map(|k| angle(k).0).collect(),
+            limits,
+            compliances: problem.robot.compliances(),
+            forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
+        }
+    }
+
+    /// Space for one thread to work in.
+    pub fn scratch(&self) -> Scratch {
+        let padded = self.count.next_multiple_of(WIDTH);
+        Scratch { columns: std::array::from_fn(|_| vec![0.0; padded]), survivors: Vec::with_capacity(padded) }
+    }
+
+    /// Evaluates path point `point` with the workpiece at `pose` (x, y, z in m, yaw in rad) into `states`.
+    ///
+    /// Allowed states get their score (m) and their joint angles (theta_5 not negative; rad), all others an infinite
+    /// score. A state is allowed when one of the two postures of its class is inside the limits of every joint by itself;
+    /// turns, and limits that tell the two apart, are for the planner to look at.
+    pub fn evaluate(&self, point: usize, pose: &[f64; 4], scratch: &mut Scratch, states: &mut States) {
+        let geometry = self.point_geometry(point, pose);
+        for class in PostureClass::ALL {
+            states.clear(class);
+        }
+        for back in [false, true] {
+            self.arm(&geometry, back, scratch);
+            for delta_negative in [false, true] {
+                self.select(delta_negative, scratch);
+                if !scratch.survivors.is_empty() {
+                    let class = PostureClass::ALL[2 * usize::from(back) + usize::from(delta_negative)];
+                    if geometry.uncertainty > 0.0 {
+                        self.wrist::<true>(&geometry, delta_negative, scratch, states.class_mut(class));
+                    } else {
+                        self.wrist::<false>(&geometry, delta_negative, scratch, states.class_mut(class));
+                    }
+                }
+            }
+        }
+    }
+
+    fn point_geometry(&self, point: usize, pose: &[f64; 4]) -> PointGeometry {
+        let g = self.problem.robot.geometry();
+        let root_from_base = g.base_from_root.transpose();
+        let workpiece = base_from_workpiece(pose);
+        let path_point = &self.problem.task.points()[point];
+        let wrench = &self.problem.task.wrenches()[point];
+        let rotation = root_from_base * workpiece.rotation;
+        let axes = rotation * path_point.workpiece_from_point();
+        let tool_from_flange = self.problem.spindle.flange_from_tool.inverse();
+        let mut lever = self.problem.spindle.flange_from_tool.translation;
+        lever.z += g.flange;
+        let flange_axis = |k: usize| Turning::new(&axes, &tool_from_flange.rotation.column(k).into_owned());
+        PointGeometry {
+            tip: root_from_base * (workpiece.point(&path_point.position) - g.root_in_base),
+            x6: flange_axis(0),
+            y6: flange_axis(1),
+            z6: flange_axis(2),
+            lever: Turning::new(&axes, &(tool_from_flange.rotation * lever)),
+            normal: axes.column(1).into_owned(),
+            force: rotation * wrench.force,
+            moment: rotation * wrench.moment,
+            uncertainty: self.problem.criterion.force_uncertainty * wrench.force.norm(),
+        }
+    }
+
+    /// The first three joints, wrist centre in front (or back) of joint 1, both elbows, for all beta: into the columns.
+    fn arm(&self, geometry: &PointGeometry, back: bool, scratch: &mut Scratch) {
+        use wrist::column as at;
+        let g = self.problem.robot.geometry();
+        let sign = if back { -1.0 } else { 1.0 };
+        let product = 1.0 / (2.0 * g.upper_arm * g.forearm);
+        let squares = g.upper_arm * g.upper_arm + g.forearm * g.forearm;
+        let infinity = Lanes::splat(f64::INFINITY);
+        let columns = &mut scratch.columns;
+        for start in (0..self.count).step_by(WIDTH) {
+            let (c, s) = (Lanes::load(&self.cosine, start), Lanes::load(&self.sine, start));
+            let wx = Lanes::splat(geometry.tip.x) - geometry.lever.at(0, c, s);
+            let wy = Lanes::splat(geometry.tip.y) - geometry.lever.at(1, c, s);
+            let wz = Lanes::splat(geometry.tip.z) - geometry.lever.at(2, c, s);
+            let radius2 = wx * wx + wy * wy;
+            let forward2 = radius2 - g.lateral * g.lateral;
+            // Out of reach makes a NaN, which passes no comparison.
+            let forward = forward2.sqrt() * sign;
+            let height = wz - g.shoulder_height;
+            let u = forward - g.shoulder_radius;
+            let v = height * g.lift;
+            let distance2 = u * u + v * v;
+            let cosine = (distance2 - squares) * product;
+            let sine = ((Lanes::splat(1.0) - cosine) * (cosine + 1.0)).sqrt();
+            let delta = sine.atan2(cosine);
+            let along = cosine * g.forearm + g.upper_arm;
+            let across = sine * (g.fold * g.forearm);
+            let (u_along, v_along) = (u * along, v * along);
+            let (u_across, v_across) = (u * across, v * across);
+            let inverse = Lanes::splat(1.0) / distance2;
+            for (negative, e) in [(false, 1.0), (true, -1.0)] {
+                let sine2 = v_along - u_across * e;
+                let cosine2 = u_along + v_across * e;
+                let (theta2, allowed2) = self.limits[1].canonical(sine2.atan2(cosine2));
+                let (theta3, allowed3) = self.limits[2].canonical(delta * e - g.forearm_angle);
+                let exists = sine.at_most(Lanes::splat(1.0));
+                let allowed = exists & allowed2 & allowed3;
+                let [t2, t3, s2, c2] = at::elbow(negative);
+                allowed.select(theta2, infinity).store(&mut columns[t2], start);
+                theta3.store(&mut columns[t3], start);
+                (sine2 * inverse).store(&mut columns[s2], start);
+                (cosine2 * inverse).store(&mut columns[c2], start);
+            }
+            let inverse_radius2 = Lanes::splat(1.0) / radius2;
+            ((wy * forward - wx * g.lateral) * inverse_radius2).store(&mut columns[at::SIN1], start);
+            ((wx * forward + wy * g.lateral) * inverse_radius2).store(&mut columns[at::COS1], start);
+            forward.store(&mut columns[at::FORWARD], start);
+            height.store(&mut columns[at::HEIGHT], start);
+        }
+    }
+
+    /// The grid values of beta that the first three joints allow with one elbow.
+    fn select(&self, delta_negative: bool, scratch: &mut Scratch) {
+        let theta2 = &scratch.columns[wrist::column::elbow(delta_negative)[0]][..self.count];
+        scratch.survivors.clear();
+        scratch.survivors.extend((0u32..).zip(theta2).filter(|(_, t)| t.is_finite()).map(|(k, _)| k));
+    }
+}
+
+#[cfg(test)]
+mod tests;

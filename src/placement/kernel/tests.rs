@@ -1,0 +1,132 @@
+//! The batch evaluator against the ordinary one.
+
+use super::*;
+use crate::placement::criterion::state;
+use crate::placement::testing::five_segments;
+use crate::robot::Posture;
+use crate::robot::angles::{wrap, yaw_from_q4};
+use crate::robot::testing::odd_arms;
+
+/// Holds every state of some points against [`state`]; returns how many were allowed.
+fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>) -> usize {
+    let kernel = Kernel::new(problem);
+    let mut scratch = kernel.scratch();
+    let mut states = States::new(problem.redundancy.beta_count, 3);
+    let mut allowed = 0;
+    for point in points {
+        kernel.evaluate(point, pose, &mut scratch, &mut states);
+        for class in PostureClass::ALL {
+            for k in 0..problem.redundancy.beta_count {
+                let found = states.scores(class)[3 + k];
+                let expected = class.postures().map(|p| reference(problem, pose, point, k, p));
+                let margin = expected.iter().map(|e| e.margin).fold(f64::MIN, f64::max);
+                if margin.abs() < 1e-9 {
+                    continue;
+                }
+                assert_eq!(found.is_finite(), margin > 0.0, "point {point} class {class:?} beta {k} margin {margin}");
+                if found.is_finite() {
+                    allowed += 1;
+                    let expected = &expected[0];
+                    assert!((found - expected.score).abs() < 1e-12 * (1.0 + found), "{found} {}", expected.score);
+                    for j in 0..6 {
+                        let angle = states.joint(class, j)[3 + k];
+                        assert!(wrap(angle - expected.joints[j]).abs() < 1e-10, "joint {} {angle}", j + 1);
+                    }
+                }
+            }
+        }
+    }
+    allowed
+}
+
+struct Expected {
+    /// Smallest distance to a constraint, negative when broken.
+    margin: f64,
+    score: f64,
+    joints: [f64; 6],
+}
+
+fn reference(problem: &Problem, pose: &[f64; 4], point: usize, k: usize, posture: Posture) -> Expected {
+    let Ok(s) = state(problem, point, pose, problem.redundancy.beta(k), posture) else {
+        return Expected { margin: -1.0, score: 0.0, joints: [0.0; 6] };
+    };
+    let mut margin = s.inverse_condition - problem.constraints.min_inverse_condition;
+    for (joint, angle) in problem.robot.joints().iter().zip(s.joints) {
+        let range = Range::of(joint);
+        let (real, excess) = range.nearest(angle);
+        if excess > 0.0 {
+            margin = margin.min(-excess);
+        } else if !range.has_turns() {
+            margin = margin.min((real - range.min).min(range.max - real));
+        }
+    }
+    if let Some(limit) = problem.constraints.max_deflection {
+        margin = margin.min((limit - s.score()) * 1e3);
+    }
+    Expected { margin, score: s.score(), joints: s.joints }
+}
+
+#[test]
+fn agrees_with_the_ordinary_evaluator_over_the_cell() {
+    let problem = five_segments();
+    let mut allowed = 0;
+    for k in 0..12 {
+        let f = f64::from(k);
+        let pose = [-0.3 + 0.05 * f, -1.64 - 0.05 * f, -0.6 + 0.03 * f, -3.0 + 0.5 * f];
+        allowed += compare(&problem, &pose, (0..105).step_by(4));
+    }
+    let optimum = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
+    allowed += compare(&problem, &optimum, 0..105);
+    assert!(allowed > 10_000, "{allowed}");
+}
+
+#[test]
+fn agrees_with_uncertainty_moments_a_limit_and_a_narrow_wrist() {
+    let mut problem = five_segments();
+    problem.criterion.force_uncertainty = 0.15;
+    problem.constraints.max_deflection = Some(1.2e-3);
+    let wrenches = problem.task.wrenches().iter().map(|w| {
+        let mut w = *w;
+        w.moment = nalgebra::Vector3::new(3.0, -5.0, 11.0);
+        w.force.z = 40.0;
+        w
+    });
+    problem.task = crate::task::Task::new(problem.task.path().clone(), wrenches.collect()).unwrap();
+    let mut joints = problem.robot.joints().clone();
+    // A wrist whose two flips differ, and a joint 6 with less than a turn.
+    (joints[4].min, joints[4].max) = (-0.4, 2.0);
+    (joints[5].min, joints[5].max) = (-2.5, 1.5);
+    problem.robot = crate::robot::Robot::new("narrow", joints).unwrap();
+    let pose = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
+    let allowed = compare(&problem, &pose, (0..105).step_by(2));
+    assert!(allowed > 1000, "{allowed}");
+}
+
+#[test]
+fn agrees_for_every_sign_of_twist_and_with_offsets() {
+    for arm in odd_arms() {
+        let mut problem = five_segments();
+        problem.robot = arm;
+        problem.redundancy.beta_count = 30;
+        problem.constraints.min_inverse_condition = 0.05;
+        let mut allowed = 0;
+        for pose in [[0.9, 0.5, 0.4, 0.3], [0.3, -1.3, 0.1, 2.0], [-0.5, 0.9, -0.3, -1.0]] {
+            allowed += compare(&problem, &pose, (0..105).step_by(15));
+        }
+        assert!(allowed > 100, "{allowed}");
+    }
+}
+
+#[test]
+fn continues_rows_cyclically() {
+    let problem = five_segments();
+    let kernel = Kernel::new(&problem);
+    let mut states = States::new(120, 5);
+    kernel.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut kernel.scratch(), &mut states);
+    for class in PostureClass::ALL {
+        states.wrap_around(class);
+        let row = states.scores(class);
+        assert_eq!(row[..5], row[120..125]);
+        assert_eq!(row[5..10], row[125..130]);
+    }
+}
