@@ -3,6 +3,7 @@ pub mod criterion;
 pub mod kernel;
 pub mod outcome;
 pub mod problem;
+pub mod redundancy;
 pub mod settings;
 
 #[cfg(test)]

@@ -1,0 +1,188 @@
+//! Dynamic programming over the grid of beta, in the four posture classes at once.
+//!
+//! Point by point: the kernel fills a fresh set of states, and each state takes the cheapest predecessor within the band
+//! that the rate of beta allows and from which no joint has to step too far. Only the last two points are kept, and for
+//! each state the way it came.
+
+use super::super::kernel::{
+    States,
+    lanes::{Lanes, Mask, WIDTH},
+};
+use super::{Extremum, Planner, STEP_ROUNDING, Workspace};
+use crate::robot::{Posture, PostureClass};
+use std::f64::consts::TAU;
+use std::ops::Range as Span;
+
+/// What one pass over a segment found.
+#[derive(Debug, Clone)]
+pub(super) struct Sweep {
+    /// For each class the smallest sum of signed scores and the beta number at the end.
+    pub ends: [Option<(f64, usize)>; 4],
+    /// For each class the first point that it cannot get to.
+    pub stuck: [Option<usize>; 4],
+    /// Points without an allowed state in any class.
+    pub blocked: Vec<usize>,
+}
+
+impl Sweep {
+    /// The first point that the class that gets farthest cannot get to.
+    pub fn farthest(&self, only: Option<Posture>) -> usize {
+        let asked = PostureClass::ALL.into_iter().filter(|class| only.is_none_or(|p| p.class() == *class));
+        asked.filter_map(|class| self.stuck[class.index()]).max().unwrap_or(0)
+    }
+}
+
+/// What bounds a step.
+struct Step<'a> {
+    reach: usize,
+    limits: &'a [f64; 6],
+    modulo: &'a [bool; 6],
+    sign: f64,
+}
+
+impl Planner<'_> {
+    /// Passes over the points of a segment. With `count_only`, only the blocked points are found.
+    pub(super) fn sweep(
+        &self,
+        span: Span<usize>,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        workspace: &mut Workspace,
+        count_only: bool,
+    ) -> Sweep {
+        let count = self.problem.redundancy.beta_count;
+        let mut sweep = Sweep { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
+        let Workspace { scratch, before, now, came_from } = workspace;
+        for (place, point) in span.enumerate() {
+            self.kernel.evaluate(point, pose, scratch, now);
+            if PostureClass::ALL.iter().all(|class| !now.is_alive(*class)) {
+                sweep.blocked.push(point);
+            }
+            if count_only {
+                continue;
+            }
+            let step = Step {
+                reach: self.reaches[point],
+                limits: &self.steps[point],
+                modulo: &self.modulo,
+                sign: extremum.sign(),
+            };
+            for class in PostureClass::ALL {
+                if now.is_alive(class) {
+                    let way = &mut came_from[(place * 4 + class.index()) * count..][..count];
+                    if place == 0 {
+                        begin(now, class, step.sign);
+                    } else if !before.is_alive(class) || !advance(before, now, class, &step, way) {
+                        now.clear(class);
+                    }
+                }
+                if now.is_alive(class) {
+                    now.wrap_around(class);
+                } else if sweep.stuck[class.index()].is_none() {
+                    sweep.stuck[class.index()] = Some(point);
+                }
+            }
+            std::mem::swap(before, now);
+        }
+        if !count_only {
+            for class in PostureClass::ALL.into_iter().filter(|class| before.is_alive(*class)) {
+                let costs = before.inner_scores(class);
+                let end = (0..count).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+                sweep.ends[class.index()] = Some((costs[end], end));
+            }
+        }
+        sweep
+    }
+
+    /// The beta numbers of the plan that a class ended with, along the segment last swept.
+    pub(super) fn trace(
+        &self,
+        span: &Span<usize>,
+        class: PostureClass,
+        sweep: &Sweep,
+        workspace: &Workspace,
+    ) -> Vec<usize> {
+        let count = self.problem.redundancy.beta_count;
+        let mut beta = sweep.ends[class.index()].map_or(0, |(_, end)| end);
+        let mut betas = vec![beta; span.len()];
+        for place in (1..span.len()).rev() {
+            let step = workspace.came_from[(place * 4 + class.index()) * count + beta];
+            beta = (beta as isize + isize::from(step)).rem_euclid(count as isize) as usize;
+            betas[place - 1] = beta;
+        }
+        betas
+    }
+}
+
+/// Scores become costs at the first point.
+fn begin(now: &mut States, class: PostureClass, sign: f64) {
+    for score in now.scores_mut(class).iter_mut() {
+        if score.is_finite() {
+            *score *= sign;
+        }
+    }
+}
+
+/// Scores become accumulated costs; `way` takes the beta step back to the predecessor. False when no state was reached.
+fn advance(before: &States, now: &mut States, class: PostureClass, step: &Step<'_>, way: &mut [i16]) -> bool {
+    let (count, pad) = (now.count(), now.pad());
+    let reach = step.reach as isize;
+    let old = before.scores(class);
+    let infinity = Lanes::splat(f64::INFINITY);
+    let mut reached = false;
+    for start in (0..count).step_by(WIDTH) {
+        let score = Lanes::load(now.scores(class), pad + start);
+        if !score.less(infinity).any() {
+            continue;
+        }
+        let mut best = infinity;
+        let mut from = Lanes::splat(0.0);
+        // Small steps first, so that of equal ways the quietest is taken.
+        for k in 0..=2 * reach {
+            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+            let place = (pad + start).wrapping_add_signed(shift);
+            let cost = Lanes::load(old, place);
+            let better = cost.less(best);
+            if !better.any() {
+                continue;
+            }
+            let better = better & within_steps(before, now, class, step, pad + start, place);
+            best = better.select(cost, best);
+            from = better.select(Lanes::splat(shift as f64), from);
+        }
+        let known = best.less(infinity) & score.less(infinity);
+        reached |= known.any();
+        let cost = known.select(best + score * step.sign, infinity);
+        let row = now.scores_mut(class);
+        for k in 0..WIDTH.min(count - start) {
+            row[pad + start + k] = cost.0[k];
+            way[start + k] = from.0[k] as i16;
+        }
+    }
+    reached
+}
+
+/// Which of four neighbouring states are within every joint's step of their predecessors.
+#[inline(always)]
+fn within_steps(
+    before: &States,
+    now: &States,
+    class: PostureClass,
+    step: &Step<'_>,
+    here: usize,
+    there: usize,
+) -> Mask {
+    let mut within = Mask::splat(true);
+    for j in 0..6 {
+        let limit = step.limits[j] + STEP_ROUNDING;
+        if !limit.is_finite() {
+            continue;
+        }
+        let mut turned = Lanes::load(now.joint(class, j), here) - Lanes::load(before.joint(class, j), there);
+        if step.modulo[j] {
+            turned = turned - (turned * (1.0 / TAU)).round() * TAU;
+        }
+        within = within & turned.abs().at_most(Lanes::splat(limit));
+    }
+    within
+}

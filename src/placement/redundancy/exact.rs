@@ -1,0 +1,149 @@
+//! Dynamic programming over (beta, turns) in one posture: where a flip or the turns of joints 1, 4 and 6 decide.
+//!
+//! Slower than [`super::band`] and rarely needed, so it is written to be plainly right: every real configuration of every
+//! grid state is a node, and an edge is a change of beta within its rate with every real joint angle within its step. The
+//! tests use it as the judge of the fast planner.
+
+use super::super::criterion;
+use super::turns::{Choice, Way, inside_steps, is_allowed};
+use super::{Extremum, Planner, Workspace};
+use crate::robot::{Posture, PostureClass, turns::Range};
+use std::ops::Range as Span;
+
+/// One real configuration at one grid value of beta.
+#[derive(Debug, Clone)]
+struct Node {
+    beta: usize,
+    joints: [f64; 6],
+    score: f64,
+    /// Smallest sum of signed scores up to here.
+    cost: f64,
+    from: usize,
+}
+
+/// The cheapest plan of a segment over the given postures.
+pub(super) fn plan(
+    planner: &Planner<'_>,
+    span: &Span<usize>,
+    pose: &[f64; 4],
+    extremum: Extremum,
+    postures: &[Posture],
+    workspace: &mut Workspace,
+) -> Option<Choice> {
+    let mut best: Option<Choice> = None;
+    for posture in postures {
+        let Some(choice) = one_posture(planner, span, pose, extremum, *posture, workspace) else { continue };
+        let sign = extremum.sign();
+        match &mut best {
+            Some(known) if known.cost * sign < choice.cost * sign => {}
+            Some(known) if known.cost == choice.cost && known.betas == choice.betas => known.ways.extend(choice.ways),
+            _ => best = Some(choice),
+        }
+    }
+    best
+}
+
+fn one_posture(
+    planner: &Planner<'_>,
+    span: &Span<usize>,
+    pose: &[f64; 4],
+    extremum: Extremum,
+    posture: Posture,
+    workspace: &mut Workspace,
+) -> Option<Choice> {
+    let count = planner.problem.redundancy.beta_count;
+    let mut layers: Vec<Vec<Node>> = Vec::with_capacity(span.len());
+    for point in span.clone() {
+        let mut layer = nodes(planner, point, pose, posture, workspace);
+        if let Some(before) = layers.last() {
+            connect(before, &mut layer, planner.reaches[point], count, &planner.steps[point]);
+            layer.retain(|node| node.cost.is_finite());
+        } else {
+            layer.iter_mut().for_each(|node| node.cost = 0.0);
+        }
+        if layer.is_empty() {
+            return None;
+        }
+        layer.iter_mut().for_each(|node| node.cost += node.score * extremum.sign());
+        layers.push(layer);
+    }
+    let last = layers.last()?;
+    let mut index = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost))?;
+    let cost = last[index].cost * extremum.sign();
+    let mut betas = Vec::with_capacity(span.len());
+    let mut joints = Vec::with_capacity(span.len());
+    for layer in layers.iter().rev() {
+        let node = &layer[index];
+        betas.push(planner.problem.redundancy.beta(node.beta));
+        joints.push(node.joints);
+        index = node.from;
+    }
+    betas.reverse();
+    joints.reverse();
+    Some(Choice { points: span.clone(), betas, cost, ways: vec![Way { posture, joints }] })
+}
+
+/// Every real configuration of every allowed grid state of one point, in the order of beta.
+fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture, space: &mut Workspace) -> Vec<Node> {
+    let problem = planner.problem;
+    // The kernel says which grid values are worth a closer look.
+    planner.kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
+    let class: PostureClass = posture.class();
+    let mut nodes = Vec::new();
+    for beta in 0..problem.redundancy.beta_count {
+        if !space.now.inner_scores(class)[beta].is_finite() {
+            continue;
+        }
+        let Ok(state) = criterion::state(problem, point, pose, problem.redundancy.beta(beta), posture) else {
+            continue;
+        };
+        if !is_allowed(problem, &state) {
+            continue;
+        }
+        let mut configurations = vec![[0.0; 6]];
+        for (j, joint) in problem.robot.joints().iter().enumerate() {
+            let range = Range::of(joint);
+            let extended = configurations.iter().flat_map(|known| {
+                range.real_angles(state.joints[j]).map(|real| {
+                    let mut next = *known;
+                    next[j] = real;
+                    next
+                })
+            });
+            configurations = extended.collect();
+        }
+        let score = state.score();
+        nodes.extend(configurations.into_iter().map(|joints| Node {
+            beta,
+            joints,
+            score,
+            cost: f64::INFINITY,
+            from: 0,
+        }));
+    }
+    nodes
+}
+
+/// Gives each node its cheapest predecessor.
+fn connect(before: &[Node], layer: &mut [Node], reach: usize, count: usize, limits: &[f64; 6]) {
+    let mut starts = vec![before.len(); count + 1];
+    for (index, node) in before.iter().enumerate().rev() {
+        starts[node.beta] = index;
+    }
+    for beta in (0..count).rev() {
+        starts[beta] = starts[beta].min(starts[beta + 1]);
+    }
+    for node in layer {
+        let reach = reach as isize;
+        for k in 0..=2 * reach {
+            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+            let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
+            for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
+                if old.cost < node.cost && inside_steps(&old.joints, &node.joints, limits) {
+                    node.cost = old.cost;
+                    node.from = index;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Beta off the grid: dynamic programming in an ever narrower tube around a plan.
+//!
+//! Each level lays five values of beta around the present plan at every point, finds the best way through them under the
+//! same constraints as on the grid (real joint angles, exact rate), and repeats until nothing moves; then the spacing is
+//! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
+
+use super::super::criterion;
+use super::super::problem::Problem;
+use super::turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
+use super::{Extremum, SegmentPlan};
+
+/// Values of beta at each point of a level.
+const TUBE: usize = 5;
+/// Repetitions of a level at the most.
+const REPEATS: usize = 8;
+
+/// How far to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tube {
+    /// First spacing of beta. rad
+    pub first: f64,
+    /// Last spacing of beta. rad
+    pub last: f64,
+}
+
+impl Tube {
+    /// From half the grid step down to a thousandth of a degree.
+    pub fn full(problem: &Problem) -> Self {
+        Self { first: problem.redundancy.beta_step() / 2.0, last: 1.7e-5 }
+    }
+}
+
+/// One value of beta at one point.
+#[derive(Clone, Copy)]
+struct Node {
+    beta: f64,
+    joints: [f64; 6],
+    score: f64,
+    cost: f64,
+    from: usize,
+}
+
+/// Refines the plan of one segment for the workpiece at `pose` (x, y, z in m, yaw in rad). Returns whether it got better.
+///
+/// The plan given need not be one for this pose exactly: what does not fit is dropped, and if nothing is left the plan
+/// stays as it is and false is returned.
+pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube, plan: &mut SegmentPlan) -> bool {
+    let mut better = false;
+    let mut spacing = tube.first;
+    while spacing >= tube.last {
+        for _ in 0..REPEATS {
+            if !level(problem, pose, extremum, spacing, plan) {
+                break;
+            }
+            better = true;
+        }
+        spacing /= 2.0;
+    }
+    better
+}
+
+/// The sum of scores and the real joint angles of fixed betas at `pose`, or `None` when they break a constraint there.
+pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<SegmentPlan> {
+    let mut replayed = plan.clone();
+    replayed.cost = 0.0;
+    for (place, point) in plan.points.clone().enumerate() {
+        let node = node(problem, pose, point, plan, place, plan.betas[place])?;
+        replayed.joints[place] = node.joints;
+        replayed.cost += node.score;
+        if place > 0 {
+            let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
+            let steps = inside_steps(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
+            if turned > problem.beta_step_limit(point) + BETA_ROUNDING || !steps {
+                return None;
+            }
+        }
+    }
+    Some(replayed)
+}
+
+/// Steps of beta are compared with their limit up to this. rad
+const BETA_ROUNDING: f64 = 1e-9;
+
+fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, place: usize, beta: f64) -> Option<Node> {
+    let state = criterion::state(problem, point, pose, beta, plan.posture).ok()?;
+    let joints = nearest_turns(&state.joints, &plan.joints[place]);
+    if !is_allowed(problem, &state) || !inside_limits(problem, &joints) {
+        return None;
+    }
+    Some(Node { beta, joints, score: state.score(), cost: f64::INFINITY, from: 0 })
+}
+
+/// One pass at one spacing; whether the plan got better by more than rounding.
+fn level(problem: &Problem, pose: &[f64; 4], extremum: Extremum, spacing: f64, plan: &mut SegmentPlan) -> bool {
+    let sign = extremum.sign();
+    let middle = (TUBE / 2) as f64;
+    let mut layers: Vec<[Option<Node>; TUBE]> = Vec::with_capacity(plan.points.len());
+    for (place, point) in plan.points.clone().enumerate() {
+        let mut layer: [Option<Node>; TUBE] = std::array::from_fn(|k| {
+            let beta = plan.betas[place] + (k as f64 - middle) * spacing;
+            node(problem, pose, point, plan, place, beta)
+        });
+        let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
+        let beta_limit = if place > 0 { problem.beta_step_limit(point) + BETA_ROUNDING } else { f64::INFINITY };
+        for node in layer.iter_mut().flatten() {
+            let best = match layers.last() {
+                None => Some((0.0, 0)),
+                Some(before) => before
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(index, old)| old.as_ref().map(|old| (index, old)))
+                    .filter(|(_, old)| {
+                        (node.beta - old.beta).abs() <= beta_limit
+                            && inside_steps(&old.joints, &node.joints, &joint_limits)
+                    })
+                    .map(|(index, old)| (old.cost, index))
+                    .min_by(|a, b| a.0.total_cmp(&b.0)),
+            };
+            (node.cost, node.from) = best.map_or((f64::INFINITY, 0), |(cost, from)| (cost + sign * node.score, from));
+        }
+        for slot in &mut layer {
+            *slot = slot.filter(|node| node.cost.is_finite());
+        }
+        layers.push(layer);
+    }
+    let end = layers.last().and_then(|layer| {
+        (0..TUBE).filter_map(|k| layer[k].map(|node| (node.cost, k))).min_by(|a, b| a.0.total_cmp(&b.0))
+    });
+    let Some((cost, mut index)) = end else { return false };
+    if cost >= plan.cost * sign - 1e-13 * plan.cost.abs() {
+        return false;
+    }
+    for place in (0..layers.len()).rev() {
+        let Some(node) = layers[place][index] else { return false };
+        plan.betas[place] = node.beta;
+        plan.joints[place] = node.joints;
+        index = node.from;
+    }
+    plan.cost = cost * sign;
+    true
+}

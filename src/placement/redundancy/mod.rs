@@ -1,0 +1,251 @@
+//! Redundancy planning: the free angle beta about the tool axis at every path point, by dynamic programming.
+//!
+//! Continuity binds only inside a segment, so every segment is planned by itself, in each posture, and the best posture of
+//! each segment is found exactly. Within a segment, from one point to the next, beta may change by the rate allowed, each
+//! joint by its speed, and the posture not at all.
+//!
+//! The plan is made in steps:
+//! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
+//!    turn. This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
+//! 2. [`turns`]: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
+//!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
+//! 3. [`exact`]: only where that fails, dynamic programming over (beta, turns) in one posture.
+//! 4. [`fine`]: beta off the grid, by dynamic programming in an ever narrower tube around the plan.
+
+mod band;
+mod exact;
+pub mod fine;
+mod turns;
+
+use super::kernel::{Kernel, Scratch, States};
+use super::problem::Problem;
+use crate::robot::{Posture, PostureClass, turns::Range};
+use std::ops::Range as Span;
+
+/// Which plan is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extremum {
+    /// The plan with the smallest mean score.
+    Smallest,
+    /// The plan with the largest.
+    Largest,
+}
+
+impl Extremum {
+    /// +1 or -1: scores times this are minimised.
+    pub fn sign(self) -> f64 {
+        match self {
+            Extremum::Smallest => 1.0,
+            Extremum::Largest => -1.0,
+        }
+    }
+}
+
+/// The plan of one segment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SegmentPlan {
+    /// The path points.
+    pub points: Span<usize>,
+    /// The posture kept all along.
+    pub posture: Posture,
+    /// Free angle at each point, changing from point to point by less than half a turn. rad
+    pub betas: Vec<f64>,
+    /// Real joint angles at each point. rad
+    pub joints: Vec<[f64; 6]>,
+    /// Sum of the scores. m
+    pub cost: f64,
+}
+
+/// What a placement is worth on the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Worth {
+    /// The mean score under the plan asked for. m
+    Feasible(f64),
+    /// Nothing to plan: number of path points that no posture allows, and of segments that no one posture gets through.
+    Infeasible {
+        /// Path points without an allowed state.
+        points: usize,
+        /// Segments without a plan.
+        segments: usize,
+    },
+}
+
+impl Worth {
+    /// The mean score, where there is one. m
+    pub fn mean(self) -> Option<f64> {
+        match self {
+            Worth::Feasible(mean) => Some(mean),
+            Worth::Infeasible { .. } => None,
+        }
+    }
+}
+
+/// Why a placement has no plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoPlan {
+    /// Path points that have no allowed state in any posture asked for.
+    pub blocked_points: Vec<usize>,
+    /// Segments (from 0) whose points are all allowed but that no posture gets through, with the first point that cannot
+    /// be reached from the segment's start by the posture that gets farthest.
+    pub broken_segments: Vec<(usize, usize)>,
+}
+
+/// The planner of one problem: what does not change from one placement to the next.
+#[derive(Debug, Clone)]
+pub struct Planner<'a> {
+    problem: &'a Problem,
+    kernel: Kernel<'a>,
+    reaches: Vec<usize>,
+    steps: Vec<[f64; 6]>,
+    modulo: [bool; 6],
+}
+
+/// Space of one thread to plan in.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    scratch: Scratch,
+    before: States,
+    now: States,
+    came_from: Vec<i16>,
+}
+
+/// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
+const STEP_ROUNDING: f64 = 1e-9;
+
+impl<'a> Planner<'a> {
+    /// Prepares the planning of a problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        let count = problem.task.points().len();
+        let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
+        let is_start = |point: &usize| starts.binary_search(point).is_ok();
+        let step = problem.redundancy.beta_step();
+        let reach = |point: usize| {
+            let most = problem.redundancy.beta_count / 2;
+            let steps = problem.beta_step_limit(point) / step + STEP_ROUNDING;
+            if steps >= most as f64 { most } else { steps as usize }
+        };
+        let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
+        Self {
+            problem,
+            kernel: Kernel::new(problem),
+            reaches: (0..count).map(|p| if is_start(&p) { 0 } else { reach(p) }).collect(),
+            steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
+            // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
+            // difference modulo a turn means anything; theta_5 only changes its sign.
+            modulo: std::array::from_fn(|j| j == 3 || j == 5 || (j != 4 && ranges[j].has_turns())),
+        }
+    }
+
+    /// The problem that is planned.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
+    /// Space for one thread.
+    pub fn workspace(&self) -> Workspace {
+        let count = self.problem.redundancy.beta_count;
+        let pad = self.reaches.iter().copied().max().unwrap_or(0);
+        let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
+        Workspace {
+            scratch: self.kernel.scratch(),
+            before: States::new(count, pad),
+            now: States::new(count, pad),
+            came_from: vec![0; longest * 4 * count],
+        }
+    }
+
+    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best or worst plan on the grid, with
+    /// the posture scheme found exactly or given (one posture per segment).
+    pub fn worth(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Worth {
+        let mut sum = 0.0;
+        let (mut points, mut segments) = (0, 0);
+        for (index, span) in self.problem.task.segments().iter().enumerate() {
+            let only = scheme.map(|s| s[index]);
+            let outcome = self.sweep(span.clone(), pose, extremum, workspace, points + segments > 0);
+            points += outcome.blocked.len();
+            if points + segments > 0 {
+                continue;
+            }
+            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace) {
+                Some(choice) => sum += choice.cost,
+                None => segments += 1,
+            }
+        }
+        if points + segments > 0 {
+            Worth::Infeasible { points, segments }
+        } else {
+            Worth::Feasible(sum / self.problem.task.points().len() as f64)
+        }
+    }
+
+    /// The best or worst plan on the grid of beta, one entry per segment.
+    ///
+    /// # Errors
+    /// [`NoPlan`] when some point or segment has none.
+    pub fn plan(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<SegmentPlan>, NoPlan> {
+        let mut failure = NoPlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
+        let mut choices = Vec::new();
+        for (index, span) in self.problem.task.segments().iter().enumerate() {
+            let only = scheme.map(|s| s[index]);
+            let outcome = self.sweep(span.clone(), pose, extremum, workspace, false);
+            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace) {
+                Some(choice) => choices.push(choice),
+                None if outcome.blocked.is_empty() => failure.broken_segments.push((index, outcome.farthest(only))),
+                None => failure.blocked_points.extend(&outcome.blocked),
+            }
+        }
+        if choices.len() == self.problem.task.segments().len() { Ok(turns::settle(choices)) } else { Err(failure) }
+    }
+
+    /// The cheapest plan of one segment whose class and turns keep every joint inside its limits.
+    fn choose(
+        &self,
+        span: Span<usize>,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        only: Option<Posture>,
+        outcome: &band::Sweep,
+        workspace: &mut Workspace,
+    ) -> Option<turns::Choice> {
+        // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
+        let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
+            .into_iter()
+            .filter(|class| only.is_none_or(|posture| posture.class() == *class))
+            .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
+            .collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best: Option<turns::Choice> = None;
+        for (cost, class) in order {
+            if best.as_ref().is_some_and(|b| b.cost * extremum.sign() <= cost) {
+                break;
+            }
+            let postures: Vec<Posture> =
+                class.postures().into_iter().filter(|posture| only.is_none_or(|p| p == *posture)).collect();
+            let betas = self.trace(&span, class, outcome, workspace);
+            let path: Vec<f64> = betas.iter().map(|k| self.problem.redundancy.beta(*k)).collect();
+            let found = turns::unwind(self.problem, &span, pose, &path, &postures, cost * extremum.sign(), &self.steps)
+                .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace));
+            if let Some(choice) = found
+                && best.as_ref().is_none_or(|b| choice.cost * extremum.sign() < b.cost * extremum.sign())
+            {
+                best = Some(choice);
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests;
