@@ -19,7 +19,7 @@ use super::problem::{Problem, base_from_workpiece};
 use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use lanes::{Lanes, Mask, WIDTH};
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// What does not change from one placement to the next.
 #[derive(Debug, Clone)]
@@ -46,9 +46,29 @@ struct Limit {
     min: f64,
     max: f64,
     has_turns: bool,
+    /// Sine and cosine of both limits.
+    ends: [(f64, f64); 2],
 }
 
 impl Limit {
+    fn new(range: Range) -> Self {
+        let (min, max) = (range.min - ANGLE_ROUNDING, range.max + ANGLE_ROUNDING);
+        Self { min, max, has_turns: range.has_turns(), ends: [libm::sincos(min), libm::sincos(max)] }
+    }
+
+    /// Where the angle of the vector (cosine, sine), of any length, is allowed: found without the angle.
+    #[inline(always)]
+    fn allows(self, sine: Lanes, cosine: Lanes) -> Mask {
+        if self.has_turns {
+            return Mask::splat(true);
+        }
+        let [(s0, c0), (s1, c1)] = self.ends;
+        let zero = Lanes::splat(0.0);
+        let after_min = zero.at_most(sine * c0 - cosine * s0);
+        let before_max = zero.at_most(cosine * s1 - sine * c1);
+        if self.max - self.min <= PI { after_min & before_max } else { after_min | before_max }
+    }
+
     /// The angle as the planner sees it (the real one, or any one where the joint has several), and where it is allowed.
     #[inline(always)]
     fn canonical(self, angle: Lanes) -> (Lanes, Mask) {
@@ -102,10 +122,7 @@ impl<'a> Kernel<'a> {
         let count = problem.redundancy.beta_count;
         let padded = count.next_multiple_of(WIDTH);
         let angle = |k: usize| libm::sincos(problem.redundancy.beta(k % count));
-        let limits = std::array::from_fn(|j| {
-            let range = Range::of(&problem.robot.joints()[j]);
-            Limit { min: range.min - ANGLE_ROUNDING, max: range.max + ANGLE_ROUNDING, has_turns: range.has_turns() }
-        });
+        let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
         Self {
             problem,
             count,
@@ -190,7 +207,6 @@ impl<'a> Kernel<'a> {
             let wz = Lanes::splat(geometry.tip.z) - geometry.lever.at(2, c, s);
             let radius2 = wx * wx + wy * wy;
             let forward2 = radius2 - g.lateral * g.lateral;
-            // Out of reach makes a NaN, which passes no comparison.
             let forward = forward2.sqrt() * sign;
             let height = wz - g.shoulder_height;
             let u = forward - g.shoulder_radius;
@@ -198,25 +214,26 @@ impl<'a> Kernel<'a> {
             let distance2 = u * u + v * v;
             let cosine = (distance2 - squares) * product;
             let sine = ((Lanes::splat(1.0) - cosine) * (cosine + 1.0)).sqrt();
-            let delta = sine.atan2(cosine);
             let along = cosine * g.forearm + g.upper_arm;
             let across = sine * (g.fold * g.forearm);
             let (u_along, v_along) = (u * along, v * along);
             let (u_across, v_across) = (u * across, v * across);
             let inverse = Lanes::splat(1.0) / distance2;
+            let (sin_bar, cos_bar) = self.forearm_sin_cos;
+            // Out of reach the sine is NaN, and so is everything made of it.
+            let exists = sine.at_most(Lanes::splat(1.0));
             for (negative, e) in [(false, 1.0), (true, -1.0)] {
                 let sine2 = v_along - u_across * e;
                 let cosine2 = u_along + v_across * e;
-                let (theta2, allowed2) = self.limits[1].canonical(sine2.atan2(cosine2));
-                let (theta3, allowed3) = self.limits[2].canonical(delta * e - g.forearm_angle);
-                let exists = sine.at_most(Lanes::splat(1.0));
-                let allowed = exists & allowed2 & allowed3;
-                let [t2, t3, s2, c2] = at::elbow(negative);
-                allowed.select(theta2, infinity).store(&mut columns[t2], start);
-                theta3.store(&mut columns[t3], start);
+                let sine3 = sine * (e * cos_bar) - cosine * sin_bar;
+                let cosine3 = cosine * cos_bar + sine * (e * sin_bar);
+                let allowed = exists & self.limits[1].allows(sine2, cosine2) & self.limits[2].allows(sine3, cosine3);
+                let [s2, c2] = at::elbow(negative);
                 (sine2 * inverse).store(&mut columns[s2], start);
-                (cosine2 * inverse).store(&mut columns[c2], start);
+                allowed.select(cosine2 * inverse, infinity).store(&mut columns[c2], start);
             }
+            sine.store(&mut columns[at::SIN_DELTA], start);
+            cosine.store(&mut columns[at::COS_DELTA], start);
             let inverse_radius2 = Lanes::splat(1.0) / radius2;
             ((wy * forward - wx * g.lateral) * inverse_radius2).store(&mut columns[at::SIN1], start);
             ((wx * forward + wy * g.lateral) * inverse_radius2).store(&mut columns[at::COS1], start);
@@ -227,9 +244,9 @@ impl<'a> Kernel<'a> {
 
     /// The grid values of beta that the first three joints allow with one elbow.
     fn select(&self, delta_negative: bool, scratch: &mut Scratch) {
-        let theta2 = &scratch.columns[wrist::column::elbow(delta_negative)[0]][..self.count];
+        let cos2 = &scratch.columns[wrist::column::elbow(delta_negative)[1]][..self.count];
         scratch.survivors.clear();
-        scratch.survivors.extend((0u32..).zip(theta2).filter(|(_, t)| t.is_finite()).map(|(k, _)| k));
+        scratch.survivors.extend((0u32..).zip(cos2).filter(|(_, c)| c.is_finite()).map(|(k, _)| k));
     }
 }
 

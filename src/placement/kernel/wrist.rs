@@ -7,7 +7,7 @@ use super::{Kernel, PointGeometry, Scratch};
 use std::f64::consts::PI;
 
 /// Number of columns that the first half hands over.
-pub(super) const COLUMNS: usize = 12;
+pub(super) const COLUMNS: usize = 10;
 
 /// The columns that the first half hands over, each over beta.
 pub(super) mod column {
@@ -19,9 +19,13 @@ pub(super) mod column {
     pub const FORWARD: usize = 2;
     /// Wrist centre above the shoulder. m
     pub const HEIGHT: usize = 3;
-    /// theta_2 (infinite where joints 1 to 3 are not allowed), theta_3, sin(theta_2), cos(theta_2) of one elbow.
-    pub const fn elbow(delta_negative: bool) -> [usize; 4] {
-        if delta_negative { [8, 9, 10, 11] } else { [4, 5, 6, 7] }
+    /// Sine and cosine of the elbow angle delta, taken as not negative.
+    pub const SIN_DELTA: usize = 4;
+    /// See [`SIN_DELTA`].
+    pub const COS_DELTA: usize = 5;
+    /// sin(theta_2) and cos(theta_2) of one elbow; the cosine is infinite where joints 1 to 3 are not allowed.
+    pub const fn elbow(delta_negative: bool) -> [usize; 2] {
+        if delta_negative { [8, 9] } else { [6, 7] }
     }
 }
 
@@ -120,14 +124,14 @@ impl Kernel<'_> {
         let (cosine, sine) = (gather(&self.cosine), gather(&self.sine));
         let (sin1, cos1) = (column(column::SIN1), column(column::COS1));
         let (forward, height) = (column(column::FORWARD), column(column::HEIGHT));
-        let [t2, t3, s2, c2] = column::elbow(delta_negative);
+        let [s2, c2] = column::elbow(delta_negative).map(column);
         let turn = |v: &super::Turning| turned([0, 1, 2].map(|k| v.at(k, cosine, sine)), sin1, cos1);
         let (x6, y6, z6, lever) = (turn(&geometry.x6), turn(&geometry.y6), turn(&geometry.z6), turn(&geometry.lever));
 
         // Elbow and forearm: the bar from elbow to wrist centre, turned back by its constant angle, is x3.
         let u = forward - g.shoulder_radius;
-        let u3 = u - column(c2) * g.upper_arm;
-        let height3 = height - column(s2) * (g.lift * g.upper_arm);
+        let u3 = u - c2 * g.upper_arm;
+        let height3 = height - s2 * (g.lift * g.upper_arm);
         let (bar_cos, bar_sin) = (u3 * (1.0 / g.forearm), height3 * (g.lift / g.forearm));
         let (sin_bar_angle, cos_bar_angle) = (self.forearm_sin_cos.0 * g.fold, self.forearm_sin_cos.1);
         let cos_psi = bar_cos * cos_bar_angle + bar_sin * sin_bar_angle;
@@ -172,7 +176,10 @@ impl Kernel<'_> {
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(limit));
         }
-        let (theta2, theta3) = (column(t2), column(t3));
+        let elbow = if delta_negative { -1.0 } else { 1.0 };
+        let delta = (column(column::SIN_DELTA) * elbow).atan2(column(column::COS_DELTA));
+        let (theta2, _) = self.limits[1].canonical(s2.atan2(c2));
+        let (theta3, _) = self.limits[2].canonical(delta - g.forearm_angle);
         for k in 0..filled {
             if allowed.lane(k) {
                 let joints = [theta1, theta2, theta3, theta4, theta5, theta6].map(|theta| theta.0[k]);

@@ -25,29 +25,140 @@ fn worth(problem: &Problem, pose: &[f64; 4], extremum: Extremum) -> Worth {
 }
 
 #[test]
-fn zz_check() {
+fn agrees_with_the_prototype_at_the_published_optimum() {
     let problem = with_prototype_steps(five_segments());
-    println!(
-        "{:?} {:?}",
-        worth(&problem, &published_optimum(), Extremum::Smallest),
-        worth(&problem, &published_optimum(), Extremum::Largest)
-    );
+    let best = worth(&problem, &published_optimum(), Extremum::Smallest).mean().unwrap();
+    let worst = worth(&problem, &published_optimum(), Extremum::Largest).mean().unwrap();
+    // Printed with four and three digits.
+    assert!((best * 1e3 - 0.5357).abs() < 1e-3 * 0.5357, "{best}");
+    assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
+}
+
+/// Holds a plan against every rule, through the ordinary evaluator.
+fn assert_sound(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) {
+    assert_eq!(plans.len(), problem.task.segments().len());
+    for plan in plans {
+        let mut sum = 0.0;
+        for (place, point) in plan.points.clone().enumerate() {
+            let found = state(problem, point, pose, plan.betas[place], plan.posture).unwrap();
+            sum += found.score();
+            assert!(found.inverse_condition >= problem.constraints.min_inverse_condition);
+            for (j, joint) in problem.robot.joints().iter().enumerate() {
+                let real = plan.joints[place][j];
+                assert!(real >= joint.min - 1e-8 && real <= joint.max + 1e-8, "joint {}", j + 1);
+                assert!(crate::robot::angles::wrap(real - found.joints[j]).abs() < 1e-9);
+                if place > 0 {
+                    let step = (real - plan.joints[place - 1][j]).abs();
+                    assert!(step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
+                }
+            }
+            if place > 0 {
+                let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
+                assert!(turned <= problem.beta_step_limit(point) + 1e-8, "beta steps {turned}");
+            }
+        }
+        assert!((sum - plan.cost).abs() < 1e-12 * sum, "{sum} {}", plan.cost);
+    }
+}
+
+/// The same arm with other ranges of joints 4, 5 and 6, in degrees.
+fn with_wrist(mut problem: Problem, ranges: [(f64, f64); 3]) -> Problem {
+    let mut joints = problem.robot.joints().clone();
+    for (joint, (min, max)) in joints[3..].iter_mut().zip(ranges) {
+        (joint.min, joint.max) = (min.to_radians(), max.to_radians());
+    }
+    problem.robot = Robot::new("other wrist", joints).unwrap();
+    problem
+}
+
+#[test]
+fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations() {
+    let mut compared = 0;
+    let mut feasible = 0;
+    for (index, ranges) in [
+        [(-350.0, 350.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-185.0, 185.0), (-125.0, 125.0), (-181.0, 200.0)],
+        [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
+        [(-60.0, 90.0), (-125.0, 125.0), (-200.0, 180.0)],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut problem = with_wrist(with_prototype_steps(five_segments()), ranges);
+        problem.redundancy.beta_count = 40;
+        let planner = Planner::new(&problem);
+        let mut workspace = planner.workspace();
+        for k in 0..8 {
+            let f = f64::from(k);
+            let pose = [-0.3 + 0.07 * f, -1.64 - 0.05 * f, -0.6 + 0.04 * f, -3.0 + 0.8 * f + 0.2 * index as f64];
+            for extremum in [Extremum::Smallest, Extremum::Largest] {
+                for scheme in [None, Some([3, 4, 3, 1, 5].map(|n| Posture::from_number(n).unwrap()))] {
+                    let found = planner.plan(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace);
+                    let mut expected = 0.0;
+                    for (segment, span) in problem.task.segments().iter().enumerate() {
+                        let only = scheme.map(|s| vec![s[segment]]);
+                        let postures = only.unwrap_or(Posture::ALL.to_vec());
+                        let choice = exact::plan(&planner, span, &pose, extremum, &postures, &mut workspace);
+                        expected += choice.map_or(f64::INFINITY, |c| c.cost);
+                    }
+                    let cost = found.as_ref().map_or(f64::INFINITY, |plans| plans.iter().map(|p| p.cost).sum());
+                    compared += 1;
+                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {pose:?} {extremum:?} {scheme:?}");
+                    let worth = planner.worth(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
+                    assert_eq!(worth.is_some(), cost.is_finite());
+                    if let Ok(plans) = found {
+                        feasible += 1;
+                        assert!((cost - expected).abs() < 1e-12 * expected, "{cost} {expected} {ranges:?} {pose:?}");
+                        assert!((worth.unwrap() * 105.0 - cost).abs() < 1e-12 * cost);
+                        assert_sound(&problem, &pose, &plans);
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared == 128 && feasible > 40, "{compared} {feasible}");
+}
+
+#[test]
+fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
+    let problem = with_prototype_steps(five_segments());
+    let pose = published_optimum();
+    for extremum in [Extremum::Smallest, Extremum::Largest] {
+        let planner = Planner::new(&problem);
+        let mut plans = planner.plan(&pose, extremum, None, &mut planner.workspace()).unwrap();
+        let before: f64 = plans.iter().map(|p| p.cost).sum();
+        for plan in &mut plans {
+            fine::refine(&problem, &pose, extremum, fine::Tube::full(&problem), plan);
+            let replayed = fine::replay(&problem, &pose, plan).unwrap();
+            assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
+        }
+        assert_sound(&problem, &pose, &plans);
+        let after: f64 = plans.iter().map(|p| p.cost).sum();
+        assert!(after * extremum.sign() <= before * extremum.sign());
+        let mut fine_grid = problem.clone();
+        fine_grid.redundancy.beta_count = 1440;
+        let grid = worth(&fine_grid, &pose, extremum).mean().unwrap() * 105.0;
+        assert!(after * extremum.sign() < grid * extremum.sign() + 2e-4 * grid, "{before} {after} {grid}");
+    }
+}
+
+#[test]
+fn says_which_points_and_segments_have_no_plan() {
+    let problem = five_segments();
     let planner = Planner::new(&problem);
-    let mut workspace = planner.workspace();
-    let t = std::time::Instant::now();
-    for _ in 0..100 {
-        planner.worth(&published_optimum(), Extremum::Smallest, None, &mut workspace);
-    }
-    println!("{:?}", t.elapsed() / 100);
-    let t = std::time::Instant::now();
-    let mut plan = planner.plan(&published_optimum(), Extremum::Smallest, None, &mut workspace).unwrap();
-    println!("{:?}", t.elapsed());
-    for p in &plan {
-        println!("{} {:?} {}", p.posture, p.points, p.cost);
-    }
-    let t = std::time::Instant::now();
-    for p in &mut plan {
-        fine::refine(&problem, &published_optimum(), Extremum::Smallest, fine::Tube::full(&problem), p);
-    }
-    println!("{:?} {}", t.elapsed(), plan.iter().map(|p| p.cost).sum::<f64>() / 105.0);
+    let far = [0.0, -4.0, -0.4, 0.0];
+    let none = planner.plan(&far, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    assert_eq!(none.blocked_points.len(), 105);
+    assert_eq!(
+        planner.worth(&far, Extremum::Smallest, None, &mut planner.workspace()),
+        Worth::Infeasible { points: 105, segments: 0 }
+    );
+    // With joints that may hardly move, points are allowed but no segment can be followed.
+    let mut joints = problem.robot.joints().clone();
+    joints.iter_mut().for_each(|j| j.max_speed = Some(1e-6));
+    let stiff = Problem { robot: Robot::new("slow", joints).unwrap(), ..problem.clone() };
+    let planner = Planner::new(&stiff);
+    let none = planner.plan(&published_optimum(), Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    assert!(none.blocked_points.is_empty());
+    assert_eq!(none.broken_segments, [(0, 1), (1, 22), (2, 43), (3, 64), (4, 85)]);
 }
