@@ -2,7 +2,6 @@
 
 use super::{Joint, RobotError};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::PI;
 
 /// An arm's shape, in the *root* frame: the base frame after the constant part of the first row, so that axis 1 is the
 /// z axis through the origin.
@@ -130,10 +129,4 @@ fn straight_angle(joints: &[Joint; 6], number: usize) -> Result<f64, RobotError>
         return Err(RobotError::Geometry { joint: number, field: "alpha", reason });
     }
     Ok(if cosine > 0.0 { 1.0 } else { -1.0 })
-}
-
-/// A wrapped angle of at most half a turn either way, for messages. deg
-pub(super) fn printable_deg(angle: f64) -> f64 {
-    let wrapped = super::angles::wrap(angle);
-    (wrapped / PI * 180.0 * 1e6).round() / 1e6
 }
