@@ -1,10 +1,12 @@
 //! The main job: where to put the workpiece.
 pub mod criterion;
+pub mod feasibility;
 pub mod kernel;
 pub mod outcome;
 pub mod problem;
 pub mod redundancy;
 pub mod settings;
+pub mod transfer;
 
 #[cfg(test)]
 pub(crate) mod testing {
