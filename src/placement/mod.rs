@@ -1,6 +1,8 @@
 //! The main job: where to put the workpiece.
+pub mod control;
 pub mod criterion;
 pub mod feasibility;
+pub mod genetic;
 pub mod kernel;
 pub mod outcome;
 pub mod problem;
