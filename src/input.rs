@@ -1,21 +1,22 @@
 //! The one error for anything that a user's file can get wrong.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What is wrong in a file, where, what was found and what is allowed.
 ///
 /// Printed as `FILE:LINE: FIELD: PROBLEM, found VALUE; allowed: ALLOWED`, leaving out what is not known.
+/// Boxed where it keeps a `Result` with this error small.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
     /// The file as the user named it.
-    pub file: PathBuf,
+    pub file: Box<Path>,
     /// Line in the file, from 1.
     pub line: Option<usize>,
     /// Field: dotted key of a TOML file, or column of a CSV file.
     pub field: Option<String>,
     /// What is wrong, as a sentence without its full stop.
-    pub problem: String,
+    pub problem: Box<str>,
     /// The value found, as written.
     pub found: Option<String>,
     /// What would have been accepted.
@@ -25,7 +26,8 @@ pub struct InputError {
 impl InputError {
     /// A problem with a file as a whole.
     pub fn new(file: &Path, problem: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), line: None, field: None, problem: problem.into(), found: None, allowed: None }
+        let problem: String = problem.into();
+        Self { file: file.into(), line: None, field: None, problem: problem.into(), found: None, allowed: None }
     }
 
     /// Adds the line, from 1.

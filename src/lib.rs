@@ -1,4 +1,5 @@
 //! stead
+pub mod config;
 pub mod cutting;
 pub mod input;
 pub mod placement;

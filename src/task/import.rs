@@ -3,7 +3,6 @@
 use super::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
 use crate::input::InputError;
 use nalgebra::Vector3;
-use std::fs::File;
 use std::path::Path;
 
 /// What a task file holds.
@@ -30,9 +29,17 @@ const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value that is
 /// no finite number, or a point that breaks a rule of [`ToolPath::new`].
 pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
-    let handle =
-        File::open(file).map_err(|e| InputError::new(file, format!("cannot be opened: {e}")).in_field("task"))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(handle);
+    let bytes =
+        std::fs::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")).in_field("task"))?;
+    parse_csv(file, &bytes)
+}
+
+/// As [`read_csv`], from the bytes of a file already read; `file` is its name in messages.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
     let header = reader.headers().map_err(|e| csv_error(file, &e))?.clone();
     let columns = Columns::find(file, &header)?;
     let mut points = Vec::new();

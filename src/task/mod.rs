@@ -5,7 +5,7 @@
 
 mod import;
 
-pub use import::{Imported, read_csv};
+pub use import::{Imported, parse_csv, read_csv};
 
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;

@@ -1,0 +1,31 @@
+//! Files into checked domain objects.
+//!
+//! A run file (TOML) names a robot file (TOML) and a task file (CSV) and states the spindle, the cell, the constraints
+//! and the settings of the search; [`read_run`] reads all three into a [`Run`], which holds a
+//! [`Problem`](crate::placement::problem::Problem) that needs no further checks. All fields carry their unit in their
+//! name; inside all is SI and radians. Whatever is wrong in a file comes back as an
+//! [`InputError`](crate::input::InputError) that names file, line, field, value found and what is allowed.
+//!
+//! ```
+//! use stead::config::read_run;
+//! # fn main() -> Result<(), stead::input::InputError> {
+//! let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+//! let run = read_run(&folder.join("configs/caro-2013.toml"))?;
+//! assert_eq!(run.problem.robot.name(), "KUKA KR270-2");
+//! assert_eq!(run.problem.task.points().len(), 105);
+//! # Ok(())
+//! # }
+//! ```
+
+mod arrays;
+mod cutting;
+pub mod reader;
+mod robot;
+mod run;
+pub mod source;
+mod tables;
+#[cfg(test)]
+mod testing;
+
+pub use robot::read_robot;
+pub use run::{InputFile, Reference, Run, read_run};
