@@ -7,6 +7,7 @@ pub mod kernel;
 pub mod outcome;
 pub mod problem;
 pub mod redundancy;
+pub mod refine;
 pub mod settings;
 pub mod transfer;
 

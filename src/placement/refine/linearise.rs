@@ -1,0 +1,81 @@
+//! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
+
+use super::super::criterion::{State, state};
+use super::super::problem::Problem;
+use super::{LENGTH_UNIT, Solution};
+use crate::robot::{Posture, scalar::Dual};
+use nalgebra::{Matrix5, SymmetricEigen};
+
+/// Number of variables of one path point: x, y, z (in [`LENGTH_UNIT`]), yaw and its beta (rad).
+pub const LOCAL: usize = 5;
+/// Units of the local variables.
+pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0];
+
+/// One path point of a solution, linearised in scaled variables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Local {
+    /// The state with exact gradients.
+    pub state: State<Dual<LOCAL>>,
+    /// Real joint angles. rad
+    pub joints: [f64; 6],
+    /// Curvature of the score where |c_i| is smooth, its negative part left out. m per square unit
+    pub curvature: Matrix5<f64>,
+}
+
+/// Gradient steps for the curvature, in scaled variables.
+const CURVATURE_STEP: f64 = 1e-4;
+
+/// All path points of a solution, in order; `None` when one cannot be reached, which a solution rules out.
+pub fn linearise(problem: &Problem, solution: &Solution) -> Option<Vec<Local>> {
+    let mut locals = Vec::with_capacity(problem.task.points().len());
+    for plan in &solution.plans {
+        for (place, point) in plan.points.clone().enumerate() {
+            let at = [solution.pose[0], solution.pose[1], solution.pose[2], solution.pose[3], plan.betas[place]];
+            let state = gradient(problem, point, at, plan.posture)?;
+            let curvature = curvature(problem, point, at, plan.posture, &state);
+            locals.push(Local { state, joints: plan.joints[place], curvature });
+        }
+    }
+    Some(locals)
+}
+
+/// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
+fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<State<Dual<LOCAL>>> {
+    let variables: [Dual<LOCAL>; LOCAL] = std::array::from_fn(|k| {
+        let mut variable = Dual::variable(at[k], k);
+        variable.gradient[k] = UNITS[k];
+        variable
+    });
+    let [x, y, z, yaw, beta] = variables;
+    state(problem, point, &[x, y, z, yaw], beta, posture).ok()
+}
+
+/// Differences of exact gradients, made symmetric, without negative eigenvalues: what a convex model can use.
+fn curvature(
+    problem: &Problem,
+    point: usize,
+    at: [f64; LOCAL],
+    posture: Posture,
+    centre: &State<Dual<LOCAL>>,
+) -> Matrix5<f64> {
+    let sign = if centre.normal_part.value < 0.0 { -1.0 } else { 1.0 };
+    let slope = |s: &State<Dual<LOCAL>>, k: usize| sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k];
+    let mut hessian = Matrix5::zeros();
+    for k in 0..LOCAL {
+        let shifted = |h: f64| {
+            let mut moved = at;
+            moved[k] += h * UNITS[k];
+            gradient(problem, point, moved, posture)
+        };
+        let (Some(up), Some(down)) = (shifted(CURVATURE_STEP), shifted(-CURVATURE_STEP)) else {
+            return Matrix5::zeros();
+        };
+        for j in 0..LOCAL {
+            hessian[(j, k)] = (slope(&up, j) - slope(&down, j)) / (2.0 * CURVATURE_STEP);
+        }
+    }
+    let symmetric = (hessian + hessian.transpose()) * 0.5;
+    let eigen = SymmetricEigen::new(symmetric);
+    let positive = eigen.eigenvalues.map(|value| value.max(0.0));
+    eigen.eigenvectors * Matrix5::from_diagonal(&positive) * eigen.eigenvectors.transpose()
+}

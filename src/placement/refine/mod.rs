@@ -1,0 +1,154 @@
+//! Gradient refinement of a placement: pose and all betas together.
+//!
+//! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
+//! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
+//! so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of beta and the
+//! cell are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
+//! Derivatives are exact ([`linearise`]). Then postures, turns and betas are planned anew, and so on until neither changes.
+//!
+//! **Worst placement.** That is a maximum over the pose of a minimum over beta. Its gradient is the multiplier of the
+//! constraint "the pose stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
+//!
+//! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
+//! or less feasible than the start.
+//!
+//! **The KKT residual** is the decrease that the linear model still promises per unit of trust region, in m of mean score;
+//! one unit is [`LENGTH_UNIT`] in position and one radian in yaw and beta. It is the smallest 1-norm that the gradient of
+//! the Lagrangian can have over all multipliers, and zero at a first-order optimum.
+
+pub mod ascent;
+pub mod linearise;
+pub mod solver;
+pub mod subproblem;
+
+use super::outcome::{Goal, Refinement};
+use super::problem::{Placement, Problem};
+use super::redundancy::{Extremum, Planner, SegmentPlan, Workspace, fine};
+use crate::robot::Posture;
+
+/// The unit of position in scaled variables. m
+pub const LENGTH_UNIT: f64 = 0.1;
+/// Rounds of refining and planning anew, at the most.
+const ROUNDS: usize = 12;
+/// A round that gains less than this share of the mean ends the refinement.
+const GAIN: f64 = 1e-6;
+
+/// A placement with its best plan, beta off the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// x, y, z (m) and yaw (rad).
+    pub pose: [f64; 4],
+    /// One entry per segment.
+    pub plans: Vec<SegmentPlan>,
+}
+
+impl Solution {
+    /// Mean score. m
+    pub fn mean(&self) -> f64 {
+        let points: usize = self.plans.iter().map(|plan| plan.points.len()).sum();
+        self.plans.iter().map(|plan| plan.cost).sum::<f64>() / points as f64
+    }
+
+    /// The placement.
+    pub fn placement(&self) -> Placement {
+        let [x, y, z, yaw] = self.pose;
+        Placement { x, y, z, yaw }
+    }
+}
+
+/// The best plan at a pose, beta refined off the grid; `None` when the pose has none.
+pub fn planned(
+    planner: &Planner<'_>,
+    pose: &[f64; 4],
+    scheme: Option<&[Posture]>,
+    tube: fine::Tube,
+    workspace: &mut Workspace,
+) -> Option<Solution> {
+    let mut plans = planner.plan(pose, Extremum::Smallest, scheme, workspace).ok()?;
+    for plan in &mut plans {
+        fine::refine(planner.problem(), pose, Extremum::Smallest, tube, plan);
+    }
+    Some(Solution { pose: *pose, plans })
+}
+
+/// Refines from one pose, with the posture scheme found anew in every round or kept as given. `None` when the pose has no
+/// plan to start from.
+pub fn refine(
+    planner: &Planner<'_>,
+    start: &[f64; 4],
+    goal: Goal,
+    scheme: Option<&[Posture]>,
+) -> Option<(Solution, Refinement)> {
+    let problem = planner.problem();
+    let mut workspace = planner.workspace();
+    let tube = fine::Tube::full(problem);
+    let mut best = planned(planner, start, scheme, tube, &mut workspace)?;
+    let mut report = Refinement {
+        goal,
+        start: best.placement(),
+        start_mean: best.mean(),
+        end: best.placement(),
+        end_mean: best.mean(),
+        rounds: 0,
+        iterations: 0,
+        kkt_residual: f64::INFINITY,
+        statuses: Vec::new(),
+    };
+    while report.rounds < ROUNDS {
+        report.rounds += 1;
+        let before = best.mean();
+        let signature = signature(&best);
+        let (status, iterations) = match goal {
+            Goal::Best => {
+                let run = solver::run(problem, &best);
+                best = run.solution;
+                (run.status, run.iterations)
+            }
+            Goal::Worst => {
+                let run = ascent::run(planner, &best, scheme, &mut workspace);
+                best = run.solution;
+                (run.status, run.iterations)
+            }
+        };
+        report.iterations += iterations;
+        report.statuses.push(status);
+        // Plan anew at the new pose. For the best placement a better plan is welcome; for the worst one every plan is
+        // already the best at its pose.
+        if goal == Goal::Best
+            && let Some(anew) = planned(planner, &best.pose, scheme, tube, &mut workspace)
+            && anew.mean() < best.mean()
+        {
+            best = anew;
+        }
+        let gained = (before - best.mean()).abs();
+        if self::signature(&best) == signature && gained < GAIN * before {
+            break;
+        }
+    }
+    report.kkt_residual = match goal {
+        Goal::Best => subproblem::kkt_residual(problem, &best),
+        Goal::Worst => ascent::kkt_residual(problem, &best),
+    };
+    report.end = best.placement();
+    report.end_mean = best.mean();
+    Some((best, report))
+}
+
+/// What must not change any more: posture and turns of every segment.
+fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
+    let turns = |plan: &SegmentPlan| plan.joints.first().map_or([0; 6], |q| q.map(crate::robot::turns::turns));
+    solution.plans.iter().map(|plan| (plan.posture, turns(plan))).collect()
+}
+
+/// A solution moved by a step of all variables (pose, then every beta), if it is allowed there.
+fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) -> Option<Solution> {
+    let mut plans = Vec::with_capacity(solution.plans.len());
+    for plan in &solution.plans {
+        let shifted = SegmentPlan { betas: betas[plan.points.clone()].to_vec(), ..plan.clone() };
+        plans.push(fine::replay(problem, &pose, &shifted)?);
+    }
+    Some(Solution { pose, plans })
+}
+
+#[cfg(test)]
+mod tests;
