@@ -2,6 +2,7 @@
 pub mod cutting;
 pub mod input;
 pub mod placement;
+pub mod report;
 pub mod robot;
 pub mod stiffness;
 pub mod task;
