@@ -7,16 +7,26 @@ use crate::placement::outcome::*;
 use crate::placement::problem::{Placement, Problem};
 use crate::placement::settings::{SearchSettings, TransferSettings};
 use crate::placement::testing::five_segments;
-use crate::robot::{Posture, angles::yaw_from_q4, turns::Range};
+use crate::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use std::sync::OnceLock;
 
 /// Grid steps of beta from point to point.
 const STEPS: i64 = 4;
 
-/// The problem of the result.
+/// The problem of the result: the paper's, with narrower limits of joints 5 and 6 and a largest deflection, so that every
+/// reason against a state occurs.
 pub fn problem() -> &'static Problem {
     static PROBLEM: OnceLock<Problem> = OnceLock::new();
-    PROBLEM.get_or_init(five_segments)
+    PROBLEM.get_or_init(|| {
+        let mut problem = five_segments();
+        let mut joints = problem.robot.joints().clone();
+        for (j, limit_deg) in [(4, 75.0_f64), (5, 120.0)] {
+            (joints[j].min, joints[j].max) = (-limit_deg.to_radians(), limit_deg.to_radians());
+        }
+        problem.robot = Robot::new("KUKA KR270-2", joints).unwrap();
+        problem.constraints.max_deflection = Some(4.5e-3);
+        problem
+    })
 }
 
 /// The result.
@@ -64,7 +74,7 @@ fn generation(goal: Goal, end: f64, k: usize) -> Generation {
     let left = libm::exp(-(k as f64) / 9.0);
     let ripple = 1.0 + 0.08 * libm::sin(2.1 * k as f64);
     let toward = if goal == Goal::Best { 1.0 } else { -0.25 };
-    let best = (k > 0).then_some(end * (1.01 + toward * 2.0 * left));
+    let best = (k > 0).then_some(end * (1.0 + toward * (0.01 + 2.0 * left)));
     let average = (k > 0).then_some(end * (1.05 + toward * (0.8 * ripple + 2.3 * left)));
     Generation { goal, generation: k, best, average, feasible: 2 * k, population: 120, evaluations: 120 * (k + 1) }
 }
@@ -187,6 +197,9 @@ fn allowed(point: usize, pose: &[f64; 4], k: usize, posture: Posture) -> Result<
     if found.inverse_condition < problem().constraints.min_inverse_condition {
         return Err(Blocked::Conditioning);
     }
+    if problem().constraints.max_deflection.is_some_and(|limit| found.score() > limit) {
+        return Err(Blocked::Deflection);
+    }
     Ok(found)
 }
 
@@ -197,7 +210,7 @@ pub fn assert_well_formed(svg: &str) {
     while let Some(start) = rest.find('<') {
         let end = rest[start..].find('>').unwrap() + start;
         let tag = &rest[start + 1..end];
-        assert!(!tag.contains('<') && tag.matches('"').count() % 2 == 0, "{tag}");
+        assert!(!tag.contains('<') && tag.matches('"').count().is_multiple_of(2), "{tag}");
         if let Some(name) = tag.strip_prefix('/') {
             assert_eq!(open.pop(), Some(name));
         } else if !tag.ends_with('/') {

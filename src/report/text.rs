@@ -1,29 +1,25 @@
 //! The short table for people.
 
 use super::number::fixed;
-use super::{Context, words};
-use crate::placement::outcome::{Case, Outcome};
+use super::{Context, Reference, words};
+use crate::placement::outcome::Outcome;
 use crate::placement::problem::Problem;
 
 /// Widest posture scheme that is written in full.
-const POSTURES_WIDTH: usize = 14;
+const POSTURES_WIDTH: usize = 40;
 
-/// The four cases with placement, postures, mean and largest deflection and the ratio to case 1, beside the published
-/// figures where there are any; then times, and the size of the search. Lines are at most 110 characters wide and end with
-/// a line break.
+/// The four cases: first placements and posture schemes, then mean and largest deflection, the ratio to case 1 beside the
+/// published figures where there are any, and times; last the size of the search. Lines are at most 110 characters wide
+/// and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
-    let mut text = format!(
-        "{}: {} points in {} segments\n\n",
-        problem.robot.name(),
-        problem.task.points().len(),
-        problem.task.segments().len()
-    );
-    text.push_str(&aligned(&case_rows(outcome, context), &[1, 2, 8]));
+    let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
+    let mut text = format!("{}: {points} points in {segments} segments\n\n", problem.robot.name());
+    text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    text.push('\n');
+    text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
     if let Some(reference) = &context.reference {
         line(&mut text, &format!("ref: {}", reference.source));
     }
-    text.push('\n');
-    text.push_str(&aligned(&time_rows(outcome), &[]));
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
     if outcome.interrupted {
@@ -32,45 +28,42 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     text
 }
 
-fn case_rows(outcome: &Outcome, context: &Context) -> Vec<Vec<String>> {
-    let mut header = vec![
-        "case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures", "mean mm", "max mm", "ratio",
-    ];
-    if context.reference.is_some() {
-        header.extend(["ref mm", "ratio"]);
-    }
-    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for (index, case) in outcome.cases.iter().enumerate() {
-        let mut row = case_row(case, &outcome.cases[0]);
-        if let Some(reference) = &context.reference {
-            let [first, here] = [reference.case_mm[0], reference.case_mm[index]];
-            row.extend([here.to_string(), fixed(here / first, 2)]);
-        }
+fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
+    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for case in &outcome.cases {
+        let (placement_word, plan_word) = words::case(case.number);
+        let placement = &case.placement;
+        let mut row = vec![case.number.to_string(), placement_word.to_owned(), plan_word.to_owned()];
+        row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
+        row.push(fixed(placement.q4(), 4));
+        row.push(fixed(placement.yaw.to_degrees(), 1));
+        row.push(words::postures_within(&case.plan.postures, POSTURES_WIDTH));
         rows.push(row);
     }
     rows
 }
 
-fn case_row(case: &Case, first: &Case) -> Vec<String> {
-    let (placement_word, plan_word) = words::case(case.number);
-    let placement = &case.placement;
-    let mut row = vec![case.number.to_string(), placement_word.to_owned(), plan_word.to_owned()];
-    row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
-    row.push(fixed(placement.q4(), 4));
-    row.push(fixed(placement.yaw.to_degrees(), 1));
-    row.push(words::postures_within(&case.plan.postures, POSTURES_WIDTH));
-    row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
-    row.push(fixed(case.plan.mean / first.plan.mean, 2));
-    row
-}
-
-fn time_rows(outcome: &Outcome) -> Vec<Vec<String>> {
-    let mut rows = vec![["case", "cutting s", "moves s", "cycle s"].map(str::to_owned).to_vec()];
-    for case in &outcome.cases {
+fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<String>> {
+    let mut header = vec!["case", "mean mm", "max mm", "ratio"];
+    if reference.is_some() {
+        header.extend(["ref mm", "ref ratio"]);
+    }
+    header.extend(["cutting s", "moves s", "cycle s"]);
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    let first = outcome.cases[0].plan.mean;
+    for (index, case) in outcome.cases.iter().enumerate() {
+        let mut row = vec![case.number.to_string()];
+        row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
+        row.push(fixed(case.plan.mean / first, 2));
+        if let Some(Reference { case_mm, .. }) = reference {
+            row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
+        }
         let total = case.cycle.total();
-        let seconds = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| fixed(time, 1));
         let moves = total.map(|total| total - case.cycle.cutting);
-        rows.push(vec![case.number.to_string(), fixed(case.cycle.cutting, 1), seconds(moves), seconds(total)]);
+        let seconds = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| fixed(time, 1));
+        row.extend([Some(case.cycle.cutting), moves, total].map(seconds));
+        rows.push(row);
     }
     rows
 }

@@ -1,6 +1,6 @@
 //! Axes: scales from numbers to pixels, ticks at round numbers, and a frame with labels.
 
-use super::canvas::{Canvas, Drawn, Lettering, Pixel};
+use super::canvas::{Canvas, Drawn, Lettering, Place};
 use super::colour::{GRID, INK};
 use crate::report::number::fixed;
 
@@ -25,8 +25,13 @@ impl Scale {
 
     /// The pixel of a number.
     pub fn pixel(&self, value: f64) -> i32 {
+        self.place(value).round() as i32
+    }
+
+    /// The place of a number between the pixels.
+    pub fn place(&self, value: f64) -> f64 {
         let part = (value - self.from) / (self.to - self.from);
-        (f64::from(self.start) + part * f64::from(self.end - self.start)).round() as i32
+        f64::from(self.start) + part * f64::from(self.end - self.start)
     }
 
     /// The pixel of a number, the nearest end for a number beyond the scale.
@@ -87,9 +92,9 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    /// The pixel of a point.
-    pub fn pixel(&self, x: f64, y: f64) -> Pixel {
-        (self.x.pixel(x), self.y.pixel(y))
+    /// The place of a point.
+    pub fn place(&self, x: f64, y: f64) -> Place {
+        (self.x.place(x), self.y.place(y))
     }
 
     /// Thin lines at the ticks, to be drawn before the content.

@@ -1,4 +1,4 @@
-//! Drawing in whole pixels.
+//! Drawing in pixels: frames, fills and text on whole ones, curves on quarters of one.
 
 use super::super::output::ReportError;
 use plotters::coord::Shift;
@@ -7,6 +7,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// A place on the picture: pixels to the right and down from the upper left corner.
 pub(super) type Pixel = (i32, i32);
+/// The same, between the pixels too.
+pub(super) type Place = (f64, f64);
 /// What a failed drawing says.
 pub(super) type DrawError = DrawingAreaErrorKind<std::io::Error>;
 /// The result of drawing something.
@@ -34,6 +36,8 @@ pub(super) struct Lettering {
     pub upwards: bool,
 }
 
+/// Whole numbers of the SVG document to a pixel.
+const FINENESS: i32 = 4;
 /// Plotters divides font sizes by this on the way to SVG.
 const FONT_SCALE: f64 = 1.24;
 
@@ -78,93 +82,116 @@ impl Lettering {
 impl Canvas<'_> {
     /// A filled rectangle between two corners.
     pub fn fill(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        self.area.draw(&Rectangle::new([from, to], colour.filled()))
+        self.area.draw(&Rectangle::new([raster(from), raster(to)], colour.filled()))
     }
 
     /// The outline of a rectangle.
     pub fn outline(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        self.area.draw(&Rectangle::new([from, to], colour.stroke_width(1)))
+        self.line(vec![from, (to.0, from.1), to, (from.0, to.1), from], colour, 1)
     }
 
-    /// A line through points.
+    /// A line through pixels.
     pub fn line(&self, points: Vec<Pixel>, colour: RGBColor, width: u32) -> Drawn {
-        self.area.draw(&PathElement::new(points, colour.stroke_width(width)))
+        self.curve(&points.into_iter().map(exact).collect::<Vec<_>>(), colour, width)
+    }
+
+    /// A line through any places.
+    pub fn curve(&self, points: &[Place], colour: RGBColor, width: u32) -> Drawn {
+        let points: Vec<Pixel> = points.iter().map(|place| fine(*place)).collect();
+        self.area.draw(&PathElement::new(points, colour.stroke_width(width * FINENESS as u32)))
     }
 
     /// A line with a white edge that stands out from any ground.
-    pub fn edged_line(&self, points: Vec<Pixel>, colour: RGBColor, width: u32) -> Drawn {
-        self.line(points.clone(), WHITE, width + 3)?;
-        self.line(points, colour, width)
+    pub fn edged_curve(&self, points: &[Place], colour: RGBColor, width: u32) -> Drawn {
+        self.curve(points, WHITE, width + 3)?;
+        self.curve(points, colour, width)
     }
 
     /// A dashed straight line.
     pub fn dashed(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
-        let length = libm::hypot(dx, dy);
+        let (from, to) = (exact(from), exact(to));
+        let length = libm::hypot(to.0 - from.0, to.1 - from.1);
         let at = |along: f64| {
             let part = (along / length).min(1.0);
-            (from.0 + (dx * part).round() as i32, from.1 + (dy * part).round() as i32)
+            (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part)
         };
         let mut along = 0.0;
         while along < length {
-            self.line(vec![at(along), at(along + 7.0)], colour, 1)?;
+            self.curve(&[at(along), at(along + 7.0)], colour, 1)?;
             along += 12.0;
         }
         Ok(())
     }
 
     /// An arrow with its head at `to`.
-    pub fn arrow(&self, from: Pixel, to: Pixel, colour: RGBColor, width: u32) -> Drawn {
-        self.line(vec![from, to], colour, width)?;
-        let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
+    pub fn arrow(&self, from: Place, to: Place, colour: RGBColor, width: u32) -> Drawn {
+        self.curve(&[from, to], colour, width)?;
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy).max(1.0);
         let (ux, uy) = (dx / length, dy / length);
-        let (tip, head) = ((f64::from(to.0) + 4.0 * ux, f64::from(to.1) + 4.0 * uy), 9.0);
-        let corner = |side: f64| {
-            let x = tip.0 - head * ux - side * uy;
-            let y = tip.1 - head * uy + side * ux;
-            (x.round() as i32, y.round() as i32)
-        };
-        let tip = (tip.0.round() as i32, tip.1.round() as i32);
-        self.area.draw(&Polygon::new(vec![tip, corner(4.0), corner(-4.0)], colour.filled()))
+        let at = |ahead: f64, aside: f64| fine((to.0 + ahead * ux - aside * uy, to.1 + ahead * uy + aside * ux));
+        self.area.draw(&Polygon::new(vec![at(5.0, 0.0), at(-5.0, 4.0), at(-5.0, -4.0)], colour.filled()))
     }
 
     /// A filled disc with a white edge.
-    pub fn dot(&self, centre: Pixel, radius: u32, colour: RGBColor) -> Drawn {
-        self.area.draw(&Circle::new(centre, radius + 1, WHITE.filled()))?;
-        self.area.draw(&Circle::new(centre, radius, colour.filled()))
+    pub fn dot(&self, centre: Place, radius: i32, colour: RGBColor) -> Drawn {
+        let disc = |radius: i32, colour: RGBColor| Circle::new(fine(centre), radius * FINENESS, colour.filled());
+        self.area.draw(&disc(radius + 1, WHITE))?;
+        self.area.draw(&disc(radius, colour))
     }
 
     /// A text.
     pub fn text(&self, text: &str, place: Pixel, lettering: Lettering) -> Drawn {
         let weight = if lettering.bold { FontStyle::Bold } else { FontStyle::Normal };
         let transform = if lettering.upwards { FontTransform::Rotate270 } else { FontTransform::None };
-        let style = ("sans-serif", lettering.size * FONT_SCALE, weight)
+        let style = ("sans-serif", lettering.size * FONT_SCALE * f64::from(FINENESS), weight)
             .into_font()
             .transform(transform)
             .color(&lettering.colour)
             .pos(Pos::new(lettering.horizontal, lettering.vertical));
-        self.area.draw(&Text::new(text.to_owned(), place, style))
+        self.area.draw(&Text::new(text.to_owned(), raster(place), style))
     }
 }
 
-/// Draws a picture of the given size on white and returns the SVG document.
+/// The place of a pixel.
+pub(super) fn exact(pixel: Pixel) -> Place {
+    (f64::from(pixel.0), f64::from(pixel.1))
+}
+
+/// The pixel nearest to a place.
+pub(super) fn nearest(place: Place) -> Pixel {
+    (place.0.round() as i32, place.1.round() as i32)
+}
+
+fn raster(pixel: Pixel) -> Pixel {
+    (pixel.0 * FINENESS, pixel.1 * FINENESS)
+}
+
+fn fine(place: Place) -> Pixel {
+    nearest((place.0 * f64::from(FINENESS), place.1 * f64::from(FINENESS)))
+}
+
+/// Draws a picture of the given size in pixels on white and returns the SVG document.
 ///
 /// # Errors
 /// [`ReportError::Format`] naming `what`.
 pub(super) fn picture(
     what: &'static str,
-    size: (u32, u32),
+    size: Pixel,
     paint: impl FnOnce(&Canvas<'_>) -> Drawn,
 ) -> Result<String, ReportError> {
     let mut document = String::new();
     paint_on(&mut document, size, paint).map_err(|error| ReportError::Format { what, cause: error.to_string() })?;
+    let (width, height) = raster(size);
+    let fine = format!("width=\"{width}\" height=\"{height}\"");
     // Opaque is the default of SVG: saying so on every element is a seventh of the file.
-    Ok(document.replace(" opacity=\"1\"", ""))
+    let document = document.replace(" opacity=\"1\"", "");
+    Ok(document.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", size.0, size.1), 1))
 }
 
-fn paint_on(document: &mut String, size: (u32, u32), paint: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn {
-    let canvas = Canvas { area: SVGBackend::with_string(document, size).into_drawing_area() };
+fn paint_on(document: &mut String, size: Pixel, paint: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn {
+    let (width, height) = raster(size);
+    let canvas = Canvas { area: SVGBackend::with_string(document, (width as u32, height as u32)).into_drawing_area() };
     canvas.area.fill(&WHITE)?;
     paint(&canvas)?;
     canvas.area.present()

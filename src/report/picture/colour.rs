@@ -7,6 +7,8 @@ use plotters::style::RGBColor;
 pub(super) const INK: RGBColor = RGBColor(60, 60, 60);
 /// Things of second rank.
 pub(super) const GREY: RGBColor = RGBColor(130, 130, 130);
+/// Thin lines of second rank.
+pub(super) const PALE: RGBColor = RGBColor(175, 175, 175);
 /// Grid lines.
 pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
 /// What is best.

@@ -14,12 +14,12 @@ use plotters::style::{BLACK, RGBColor, WHITE};
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
 pub fn convergence(outcome: &Outcome) -> Result<String, ReportError> {
-    picture("the picture of the convergence", (900, 800), |canvas| {
+    picture("the picture of the convergence", (900, 820), |canvas| {
         canvas.text("Convergence of the genetic search", (85, 26), Lettering::new(17.0).bold())?;
         let [best, _, worst, _] = &outcome.cases;
         let search = |goal| outcome.convergence.iter().filter(|state| state.goal == goal).copied().collect();
         Search { goal: Goal::Best, states: search(Goal::Best), refined: best.plan.mean }.draw(canvas, 72, 375)?;
-        Search { goal: Goal::Worst, states: search(Goal::Worst), refined: worst.plan.mean }.draw(canvas, 440, 743)
+        Search { goal: Goal::Worst, states: search(Goal::Worst), refined: worst.plan.mean }.draw(canvas, 460, 763)
     })
 }
 
@@ -70,12 +70,12 @@ impl Search {
         value: impl Fn(&Generation) -> Option<f64>,
     ) -> Drawn {
         for run in self.states.chunk_by(|a, b| value(a).is_some() == value(b).is_some()) {
-            let at = |state| value(state).map(|value| panel.pixel(state.generation as f64, value * 1e3));
+            let at = |state| value(state).map(|value| panel.place(state.generation as f64, value * 1e3));
             let points: Vec<_> = run.iter().filter_map(at).collect();
             if let [alone] = points[..] {
                 canvas.dot(alone, 3, colour)?;
             } else if !points.is_empty() {
-                canvas.line(points, colour, 2)?;
+                canvas.curve(&points, colour, 2)?;
             }
         }
         Ok(())

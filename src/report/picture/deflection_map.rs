@@ -1,7 +1,7 @@
 //! The deflection over path point and beta, with both plans (Caro 2013, Fig. 7 and 9).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
+use super::canvas::{Canvas, Drawn, Lettering, Pixel, Place, picture};
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, ground, viridis};
 use super::hatch::{Slope, hatch};
 use crate::placement::outcome::{Blocked, Case, DeflectionMap, MapCell, Plan};
@@ -12,11 +12,15 @@ use crate::report::words;
 use plotters::style::{RGBColor, WHITE};
 use std::collections::BTreeSet;
 
-const SIZE: (u32, u32) = (1120, 700);
+const SIZE: Pixel = (1120, 710);
 const LEFT: i32 = 80;
 const RIGHT: i32 = 975;
 const TOP: i32 = 122;
 const BOTTOM: i32 = 572;
+/// Segments narrower than this are not labelled. Pixels
+const NARROW: i32 = 22;
+/// Segments narrower than this are labelled with numbers only. Pixels
+const MEDIUM: i32 = 75;
 /// Most columns of the picture: a longer path is thinned out to keep the file small.
 const COLUMNS: usize = 240;
 
@@ -69,22 +73,11 @@ impl<'a> Picture<'a> {
         let column_edges = starts.iter().chain([&points]).map(|start| x.pixel(*start as f64 - 0.5)).collect();
         let step = 360.0 / map.beta_count as f64;
         let row_edges = (0..=map.beta_count + 1).map(|k| y.clamped(-180.0 + (k as f64 - 0.5) * step)).collect();
-        let scores = map.rows.iter().flatten().flatten().map(|cell| cell.score);
         let x_ticks = Ticks::round(&x, 12);
         let y_ticks = Ticks::every(&y, 45.0, 0);
         let panel =
             Panel { x, y, x_ticks, y_ticks, x_label: "path point", y_label: "angle β about the tool axis (deg)" };
-        Self {
-            problem,
-            map,
-            best,
-            worst,
-            panel,
-            brightest: scores.fold(0.0, f64::max),
-            columns,
-            column_edges,
-            row_edges,
-        }
+        Self { problem, map, best, worst, panel, brightest: brightest(map), columns, column_edges, row_edges }
     }
 
     fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
@@ -161,23 +154,25 @@ impl<'a> Picture<'a> {
 
     /// Borders of the segments, and above them their numbers and postures, as far as there is room.
     fn segments(&self, canvas: &Canvas<'_>) -> Drawn {
-        let heading = Lettering::new(11.5).ending();
         let segments = self.problem.task.segments();
         let narrowest = segments.iter().map(|range| self.panel.x.pixel(range.len() as f64) - self.panel.x.pixel(0.0));
         let narrowest = narrowest.min().unwrap_or(0);
-        if narrowest < 22 {
-            canvas.text("segments", (LEFT - 8, TOP - 10), heading.coloured(INK))?;
+        if (NARROW..MEDIUM).contains(&narrowest) {
+            let heading = Lettering::new(11.5).ending();
+            canvas.text("segment", (LEFT - 8, TOP - 43), heading.bold().coloured(INK))?;
+            canvas.text("posture", (LEFT - 8, TOP - 26), heading.coloured(GREEN))?;
+            canvas.text("posture", (LEFT - 8, TOP - 10), heading.coloured(RED))?;
         }
         for (index, range) in segments.iter().enumerate() {
             let (left, right) = (self.edge(range.start), self.edge(range.end));
             if index > 0 {
                 canvas.line(vec![(left, TOP - 50), (left, BOTTOM)], INK, 1)?;
             }
-            if narrowest < 22 {
+            if narrowest < NARROW {
                 continue;
             }
             let middle = (left + right) / 2;
-            let (segment, posture) = if narrowest < 75 { ("", "") } else { ("segment ", "posture ") };
+            let (segment, posture) = if narrowest < MEDIUM { ("", "") } else { ("segment ", "posture ") };
             let lettering = Lettering::new(11.5).centred();
             canvas.text(&format!("{segment}{}", index + 1), (middle, TOP - 43), lettering.bold().coloured(INK))?;
             for (plan, colour, up) in [(&self.best.plan, GREEN, 26), (&self.worst.plan, RED, 10)] {
@@ -194,10 +189,10 @@ impl<'a> Picture<'a> {
     }
 
     fn plan(&self, canvas: &Canvas<'_>, plan: &Plan, colour: RGBColor) -> Drawn {
-        for run in plan_lines(plan, |point, beta_deg| self.panel.pixel(point, beta_deg)) {
+        for run in plan_lines(plan, |point, beta_deg| self.panel.place(point, beta_deg)) {
             match run[..] {
                 [alone] => canvas.dot(alone, 3, colour)?,
-                _ => canvas.edged_line(run, colour, 3)?,
+                _ => canvas.edged_curve(&run, colour, 3)?,
             }
         }
         Ok(())
@@ -211,6 +206,11 @@ impl<'a> Picture<'a> {
             canvas.fill((left, upper), (right, lower), viridis(level))?;
         }
         canvas.outline((left, TOP), (right, BOTTOM), INK)?;
+        let largest = scores(self.map).fold(0.0, f64::max);
+        if largest > self.brightest {
+            let beyond = format!("up to {}", fixed(largest * 1e3, 2));
+            canvas.text(&beyond, (left, TOP - 12), Lettering::new(12.0).coloured(INK))?;
+        }
         let scale = Scale::new(0.0, self.brightest * 1e3, BOTTOM, TOP);
         let ticks = Ticks::round(&scale, 9);
         let mut widest = 0;
@@ -232,19 +232,25 @@ impl<'a> Picture<'a> {
         for (kind, plan, colour) in [("best", &self.best.plan, GREEN), ("worst", &self.worst.plan, RED)] {
             let (mean, max) = (fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4));
             let label = format!("{kind} plan: mean {mean} mm, largest {max} mm");
-            canvas.line(vec![(x, 636), (x + 32, 636)], colour, 3)?;
-            canvas.text(&label, (x + 40, 636), lettering)?;
+            canvas.line(vec![(x, 632), (x + 32, 632)], colour, 3)?;
+            canvas.text(&label, (x + 40, 632), lettering)?;
             x += 40 + lettering.width(&label) + 24;
         }
         let reasons = self.reasons();
         if reasons.is_empty() {
             return Ok(());
         }
-        canvas.text("not allowed:", (LEFT, 668), lettering)?;
-        x = LEFT + lettering.width("not allowed:") + 10;
+        let indent = LEFT + lettering.width("not allowed:") + 10;
+        let mut y = 664;
+        canvas.text("not allowed:", (LEFT, y), lettering)?;
+        x = indent;
         for blocked in reasons {
             let label = words::reason_in_legend(blocked);
-            let corners = ((x, 660), (x + 26, 676));
+            let width = 33 + lettering.width(&label);
+            if x + width > SIZE.0 {
+                (x, y) = (indent, y + 26);
+            }
+            let corners = ((x, y - 8), (x + 26, y + 8));
             canvas.fill(corners.0, corners.1, ground(blocked))?;
             match blocked {
                 Blocked::Conditioning => hatch(canvas, corners, Slope::Up, GREY, |_| true)?,
@@ -252,16 +258,30 @@ impl<'a> Picture<'a> {
                 Blocked::Reach | Blocked::JointLimit(_) => {}
             }
             canvas.outline(corners.0, corners.1, GREY)?;
-            canvas.text(&label, (x + 33, 668), lettering)?;
-            x += 33 + lettering.width(&label) + 12;
+            canvas.text(&label, (x + 33, y), lettering)?;
+            x += width + 12;
         }
         Ok(())
     }
 }
 
+fn scores(map: &DeflectionMap) -> impl Iterator<Item = f64> + '_ {
+    map.rows.iter().flatten().flatten().map(|cell| cell.score)
+}
+
+/// The score at the bright end of the colour scale: the largest, but where few states are far above all others, the one
+/// that 97 of 100 states do not pass, so that a peak does not leave the rest in the dark. m
+fn brightest(map: &DeflectionMap) -> f64 {
+    let mut sorted: Vec<f64> = scores(map).collect();
+    sorted.sort_by(f64::total_cmp);
+    let largest = sorted.last().copied().unwrap_or(0.0);
+    let common = sorted.get(sorted.len() * 97 / 100).copied().unwrap_or(0.0);
+    if common > 0.0 && largest > 1.5 * common { common } else { largest }
+}
+
 /// The lines of a plan over path point and beta in degrees: one for each segment, cut where beta passes 180 deg.
-fn plan_lines(plan: &Plan, pixel: impl Fn(f64, f64) -> Pixel) -> Vec<Vec<Pixel>> {
-    let mut lines: Vec<Vec<Pixel>> = Vec::new();
+fn plan_lines(plan: &Plan, place: impl Fn(f64, f64) -> Place) -> Vec<Vec<Place>> {
+    let mut lines: Vec<Vec<Place>> = Vec::new();
     let mut line = Vec::new();
     for (index, point) in plan.points.iter().enumerate() {
         let (x, beta_deg) = (point.point as f64, point.beta.to_degrees());
@@ -274,12 +294,12 @@ fn plan_lines(plan: &Plan, pixel: impl Fn(f64, f64) -> Pixel) -> Vec<Vec<Pixel>>
                 let unwrapped = step - 2.0 * side;
                 let part = (-side - before.beta.to_degrees()) / unwrapped;
                 let crossing = before.point as f64 + (x - before.point as f64) * part;
-                line.push(pixel(crossing, -side));
+                line.push(place(crossing, -side));
                 lines.push(std::mem::take(&mut line));
-                line.push(pixel(crossing, side));
+                line.push(place(crossing, side));
             }
         }
-        line.push(pixel(x, beta_deg));
+        line.push(place(x, beta_deg));
     }
     lines.push(line);
     lines.retain(|line| !line.is_empty());
@@ -298,7 +318,10 @@ mod tests {
         for (k, (segment, beta_deg)) in [(1, 150.0), (1, 170.0), (1, -170.0), (2, 0.0)].into_iter().enumerate() {
             (plan.points[k].segment, plan.points[k].beta) = (segment, f64::to_radians(beta_deg));
         }
-        let lines = plan_lines(&plan, |x, y| ((x * 10.0).round() as i32, y.round() as i32));
-        assert_eq!(lines, [vec![(0, 150), (10, 170), (15, 180)], vec![(15, -180), (20, -170)], vec![(30, 0)]]);
+        let lines = plan_lines(&plan, |x, y| ((x * 10.0).round(), y.round()));
+        assert_eq!(
+            lines,
+            [vec![(0.0, 150.0), (10.0, 170.0), (15.0, 180.0)], vec![(15.0, -180.0), (20.0, -170.0)], vec![(30.0, 0.0)]]
+        );
     }
 }

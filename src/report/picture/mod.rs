@@ -1,4 +1,4 @@
-//! Pictures: SVG, made with whole pixel coordinates so that the same result gives the same bytes.
+//! Pictures: SVG, with coordinates in quarters of a pixel, so that the same result gives the same bytes.
 
 mod axes;
 mod canvas;
@@ -7,6 +7,7 @@ mod colour;
 mod convergence;
 mod deflection_map;
 mod hatch;
+mod scene;
 
 pub use cell::cell;
 pub use convergence::convergence;
