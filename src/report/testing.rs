@@ -93,10 +93,13 @@ fn refinement(goal: Goal, case: &Case) -> Refinement {
     }
 }
 
+/// A state in each posture, or why it is not allowed.
+type Postures = [Result<State<f64>, Blocked>; 8];
+
 /// All states of a placement: for point, beta and posture the state, or why it is not allowed.
 struct Grid {
     placement: Placement,
-    states: Vec<Vec<[Result<State<f64>, Blocked>; 8]>>,
+    states: Vec<Vec<Postures>>,
 }
 
 impl Grid {
@@ -109,7 +112,7 @@ impl Grid {
     }
 
     fn map(&self) -> DeflectionMap {
-        let cell = |states: &[Result<State<f64>, Blocked>; 8]| {
+        let cell = |states: &Postures| {
             let allowed = states.iter().zip(Posture::ALL).filter_map(|(s, posture)| Some((s.as_ref().ok()?, posture)));
             let cells = allowed.map(|(state, posture)| MapCell { score: state.score(), posture });
             let nearest = states.iter().filter_map(|s| s.as_ref().err().copied()).max();
