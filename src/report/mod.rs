@@ -1,0 +1,91 @@
+//! Results to files: CSV tables, JSON, pictures, and a short table for people. This room only reads results.
+//!
+//! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
+
+pub mod json;
+pub mod number;
+pub mod output;
+pub mod picture;
+pub mod tables;
+pub mod text;
+mod words;
+
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+
+pub use output::{Folder, ReportError};
+
+use crate::placement::outcome::Outcome;
+use crate::placement::problem::Problem;
+use crate::placement::settings::{SearchSettings, TransferSettings};
+use std::path::PathBuf;
+
+/// A file that the result depends on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// What it is to the job: `config`, `robot`, `task`.
+    pub role: String,
+    /// Its name, without what differs from machine to machine.
+    pub name: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+/// Figures to compare with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Where they are from.
+    pub source: String,
+    /// Mean deflection of cases 1 to 4, as printed there. mm
+    pub case_mm: [f64; 4],
+}
+
+/// What the reports state besides the problem and its result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Context {
+    /// The files the result depends on.
+    pub inputs: Vec<Input>,
+    /// How hard the search was, and its seed.
+    pub search: SearchSettings,
+    /// The assumptions behind the times of the moves.
+    pub transfer: TransferSettings,
+    /// Figures to compare with, where there are any.
+    pub reference: Option<Reference>,
+}
+
+/// Writes everything that the placement job reports into a folder: `best.csv`, `worst.csv`, `placements.csv`,
+/// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`. Returns the
+/// paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_placement(
+    folder: &Folder,
+    problem: &Problem,
+    outcome: &Outcome,
+    context: &Context,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let [best, best_worst, worst, worst_worst] = &outcome.cases;
+    let summary = json::summary_json(problem, outcome, context);
+    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst)?;
+    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst)?;
+    let files = [
+        ("best.csv", tables::plans(&outcome.cases[..2])?),
+        ("worst.csv", tables::plans(&outcome.cases[2..])?),
+        ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
+        ("convergence.csv", tables::convergence(&outcome.convergence)?),
+        ("deflection-map-best.csv", tables::deflection_map(problem, &outcome.map_best)?),
+        ("deflection-map-worst.csv", tables::deflection_map(problem, &outcome.map_worst)?),
+        ("transfers.csv", tables::transfers(&outcome.cases)?),
+        ("refinements.csv", tables::refinements(&outcome.refinements)?),
+        ("summary.json", json::bytes(&summary)),
+        ("convergence.svg", picture::convergence(outcome)?.into_bytes()),
+        ("deflection-map-best.svg", map_best.into_bytes()),
+        ("deflection-map-worst.svg", map_worst.into_bytes()),
+        ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
+    ];
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
