@@ -1,7 +1,27 @@
-//! The one error for anything that a user's file can get wrong.
+//! What comes from files: which ones, what they cite, and the one error for anything that they can get wrong.
 
 use std::fmt;
 use std::path::Path;
+
+/// A file that was read, so that a result can say what it came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputFile {
+    /// What the file is for: `config`, `robot` or `task`.
+    pub role: &'static str,
+    /// For the config its file name, for the others the path as the config gives it, with forward slashes.
+    pub name: String,
+    /// SHA-256 digest of the bytes that were read, in hexadecimal.
+    pub sha256: String,
+}
+
+/// Published mean deflections of the four cases, to print beside ours (Caro 2013, Table III).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Where they were published.
+    pub source: String,
+    /// Mean deflection of cases 1 to 4, as printed there. mm
+    pub case_mm: [f64; 4],
+}
 
 /// What is wrong in a file, where, what was found and what is allowed.
 ///

@@ -1,4 +1,5 @@
 //! stead
+pub mod cli;
 pub mod config;
 pub mod cutting;
 pub mod input;

@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! The `stead` command: see [`stead::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    stead::cli::main()
+}

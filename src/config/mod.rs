@@ -28,4 +28,4 @@ mod tables;
 mod testing;
 
 pub use robot::read_robot;
-pub use run::{InputFile, Reference, Run, read_run};
+pub use run::{Run, read_run};

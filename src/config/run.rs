@@ -8,7 +8,7 @@ use super::tables::{
     cell_from, constraints_from, criterion_from, redundancy_from, reference_from, search_from, spindle_from,
     transfer_from,
 };
-use crate::input::InputError;
+use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
 use crate::placement::settings::{SearchSettings, TransferSettings};
 use crate::robot::Robot;
@@ -30,26 +30,6 @@ pub struct Run {
     pub reference: Option<Reference>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
-}
-
-/// A file that was read, so that a result can say what it came from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputFile {
-    /// What the file is for: `config`, `robot` or `task`.
-    pub role: &'static str,
-    /// For the config its file name, for the others the path as the config gives it, with forward slashes.
-    pub name: String,
-    /// SHA-256 digest of the bytes that were read, in hexadecimal.
-    pub sha256: String,
-}
-
-/// Published mean deflections of the four cases (Caro 2013, Table III).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Where they were published.
-    pub source: String,
-    /// Mean deflection of cases 1 to 4. m
-    pub case: [f64; 4],
 }
 
 /// Reads a run file and the robot and task files that it names. Top-level keys: `robot` and `task` (paths relative to
@@ -184,7 +164,7 @@ mod tests {
         assert_eq!(run.transfer, TransferSettings::default());
         let reference = run.reference.unwrap();
         assert_eq!(reference.source, "Caro et al. 2013, Table III");
-        assert!((reference.case[1] - 0.35e-3).abs() < 1e-18);
+        assert_eq!(reference.case_mm[1], 0.35);
         assert_eq!(run.notes, Vec::<String>::new());
 
         let softer = shipped("caro-2013-k1-0.8.toml");

@@ -1,8 +1,7 @@
 //! The tables of a run file, each into its domain object.
 
 use super::reader::{Field, Table};
-use super::run::Reference;
-use crate::input::InputError;
+use crate::input::{InputError, Reference};
 use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Redundancy};
 use crate::placement::settings::{PostureSearch, SearchSettings, TransferSettings};
 use crate::robot::{Spindle, angles::yaw_from_q4};
@@ -94,7 +93,7 @@ pub(super) fn transfer_from(table: &Table<'_>) -> Result<TransferSettings, Input
 pub(super) fn reference_from(table: &Table<'_>) -> Result<Reference, InputError> {
     let [source, case] = table.fields(["source", "case_mm"])?;
     let case: [f64; 4] = case.numbers_where("four numbers above 0, of cases 1 to 4", |value| value > 0.0)?;
-    Ok(Reference { source: source.string()?.to_owned(), case: case.map(|value| value / 1e3) })
+    Ok(Reference { source: source.string()?.to_owned(), case_mm: case })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ pub mod feasibility;
 pub mod genetic;
 pub mod kernel;
 pub mod outcome;
+pub mod place;
 pub mod problem;
 pub mod redundancy;
 pub mod refine;

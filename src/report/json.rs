@@ -136,7 +136,8 @@ fn refinement(refinement: &Refinement) -> Value {
 }
 
 fn inputs(context: &Context) -> Value {
-    let entry = |input: &super::Input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 });
+    let entry =
+        |input: &crate::input::InputFile| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 });
     context.inputs.iter().map(entry).collect()
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
 
+pub mod evaluation;
 pub mod json;
 pub mod number;
 pub mod output;
@@ -17,36 +18,17 @@ mod tests;
 
 pub use output::{Folder, ReportError};
 
+use crate::input::{InputFile, Reference};
 use crate::placement::outcome::Outcome;
 use crate::placement::problem::Problem;
 use crate::placement::settings::{SearchSettings, TransferSettings};
 use std::path::PathBuf;
 
-/// A file that the result depends on.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// What it is to the job: `config`, `robot`, `task`.
-    pub role: String,
-    /// Its name, without what differs from machine to machine.
-    pub name: String,
-    /// SHA-256 of its bytes, in hexadecimal.
-    pub sha256: String,
-}
-
-/// Figures to compare with.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Where they are from.
-    pub source: String,
-    /// Mean deflection of cases 1 to 4, as printed there. mm
-    pub case_mm: [f64; 4],
-}
-
 /// What the reports state besides the problem and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Context {
     /// The files the result depends on.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<InputFile>,
     /// How hard the search was, and its seed.
     pub search: SearchSettings,
     /// The assumptions behind the times of the moves.
@@ -55,7 +37,8 @@ pub struct Context {
     pub reference: Option<Reference>,
 }
 
-/// Writes everything that the placement job reports into a folder: `best.csv`, `worst.csv`, `placements.csv`,
+/// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
+/// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`. Returns the
 /// paths in that order.
@@ -73,8 +56,10 @@ pub fn write_placement(
     let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst)?;
     let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst)?;
     let files = [
-        ("best.csv", tables::plans(&outcome.cases[..2])?),
-        ("worst.csv", tables::plans(&outcome.cases[2..])?),
+        ("best.csv", tables::plan(&best.plan)?),
+        ("best-worst-plan.csv", tables::plan(&best_worst.plan)?),
+        ("worst.csv", tables::plan(&worst.plan)?),
+        ("worst-worst-plan.csv", tables::plan(&worst_worst.plan)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
         ("deflection-map-best.csv", tables::deflection_map(problem, &outcome.map_best)?),

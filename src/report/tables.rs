@@ -2,15 +2,15 @@
 
 use super::number::{Unit, fixed};
 use super::output::ReportError;
-use super::{Reference, words};
-use crate::placement::outcome::{Case, DeflectionMap, Generation, PlanPoint, Refinement};
+use super::words;
+use crate::input::Reference;
+use crate::placement::outcome::{Case, DeflectionMap, Generation, Plan, PlanPoint, Refinement};
 use crate::placement::problem::{Placement, Problem};
 use crate::robot::turns::turns;
 use crate::task::ToolPath;
 use nalgebra::Vector3;
 
-const PLAN: [&str; 28] = [
-    "case",
+const PLAN: [&str; 27] = [
     "point",
     "segment",
     "x_mm",
@@ -40,18 +40,17 @@ const PLAN: [&str; 28] = [
     "score_mm",
 ];
 
-/// `best.csv`, `worst.csv`: the plans of one placement point by point. Places are those of the tool centre point, and all
+/// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
 /// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn plans(cases: &[Case]) -> Result<Vec<u8>, ReportError> {
-    let rows = cases.iter().flat_map(|case| case.plan.points.iter().map(|point| plan_row(case.number, point)));
-    table("the table of a plan", &PLAN, rows)
+pub fn plan(plan: &Plan) -> Result<Vec<u8>, ReportError> {
+    table("the table of a plan", &PLAN, plan.points.iter().map(plan_row))
 }
 
-fn plan_row(case: u8, point: &PlanPoint) -> Vec<String> {
-    let mut row = vec![case.to_string(), point.point.to_string(), point.segment.to_string()];
+fn plan_row(point: &PlanPoint) -> Vec<String> {
+    let mut row = vec![point.point.to_string(), point.segment.to_string()];
     row.extend(vector(Unit::PLACE_MM, &point.position));
     row.extend([Unit::ANGLE_DEG.text(point.beta), point.posture.to_string()]);
     row.extend([0, 3, 5].map(|j| turns(point.joints[j]).to_string()));

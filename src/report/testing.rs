@@ -1,7 +1,8 @@
 //! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
 //! planned by a shortest path over the grid, with an invented search.
 
-use super::{Context, Input, Reference};
+use super::Context;
+use crate::input::{InputFile, Reference};
 use crate::placement::criterion::{State, state};
 use crate::placement::outcome::*;
 use crate::placement::problem::{Placement, Problem};
@@ -58,7 +59,7 @@ pub fn outcome() -> &'static Outcome {
 
 /// What goes with the result.
 pub fn context() -> Context {
-    let input = |role: &str, name: &str| Input { role: role.to_owned(), name: name.to_owned(), sha256: "0".repeat(64) };
+    let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
     Context {
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),

@@ -1,7 +1,8 @@
 //! The short table for people.
 
 use super::number::fixed;
-use super::{Context, Reference, words};
+use super::{Context, words};
+use crate::input::Reference;
 use crate::placement::outcome::Outcome;
 use crate::placement::problem::Problem;
 
@@ -69,7 +70,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
 }
 
 /// Columns with two blanks between them, to the right but for the given ones.
-fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
+pub(super) fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();

@@ -14,6 +14,9 @@ const TUBE: usize = 5;
 /// Repetitions of a level at the most.
 const REPEATS: usize = 8;
 
+/// A pass that gains less than this share of the cost ends its level.
+const LEAST_GAIN: f64 = 1e-9;
+
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tube {
@@ -42,8 +45,8 @@ struct Node {
 
 /// Refines the plan of one segment for the workpiece at `pose` (x, y, z in m, yaw in rad). Returns whether it got better.
 ///
-/// The plan given need not be one for this pose exactly: what does not fit is dropped, and if nothing is left the plan
-/// stays as it is and false is returned.
+/// The plan given need not be one for this pose exactly: with an infinite cost, the betas of `plan` are only where the tube
+/// is laid, and the first way through it is taken. Where there is none the plan stays as it is and false is returned.
 pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube, plan: &mut SegmentPlan) -> bool {
     let mut better = false;
     let mut spacing = tube.first;
@@ -127,7 +130,7 @@ fn level(problem: &Problem, pose: &[f64; 4], extremum: Extremum, spacing: f64, p
         (0..TUBE).filter_map(|k| layer[k].map(|node| (node.cost, k))).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     let Some((cost, mut index)) = end else { return false };
-    if cost >= plan.cost * sign - 1e-13 * plan.cost.abs() {
+    if plan.cost.is_finite() && cost >= plan.cost * sign - LEAST_GAIN * plan.cost.abs() {
         return false;
     }
     for place in (0..layers.len()).rev() {

@@ -1,111 +1,96 @@
 //! Ascent to the worst placement: a maximum over the pose of the minimum over all plans.
 //!
 //! The gradient of that minimum with respect to the pose is exact (envelope theorem): it is the multiplier of "the pose
-//! stays" in the subproblem. A step goes along it, projected into the cell, to a pose where everything is planned anew.
+//! stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model inside the cell
+//! and a trust region, again by clarabel, and leads to a pose where everything is planned anew.
 
-use super::super::problem::{Placement, Problem};
+use super::super::problem::Problem;
 use super::super::redundancy::{Planner, Workspace, fine};
 use super::linearise::{UNITS, linearise};
 use super::solver::Run;
-use super::subproblem::{Question, pose_bounds, solve};
-use super::{Solution, planned};
+use super::subproblem::{Question, pose_bounds, pose_step, solve};
+use super::{Solution, inside, planned};
 use crate::robot::Posture;
+use nalgebra::{Matrix4, Vector4};
 
-/// Step sizes in scaled variables, first and last.
-const STEPS: (f64, f64) = (0.2, 1e-5);
+/// The trust region at the start, at the most and at the end, in scaled variables.
+const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
 /// Iterations at the most.
-const MOST_ITERATIONS: usize = 60;
-/// A step has to gain this share of what the gradient promises.
+const MOST_ITERATIONS: usize = 40;
+/// A step has to gain this share of what the model promises.
 const ARMIJO: f64 = 0.05;
+/// A promised gain of less than this share of the mean ends it.
+const LEAST_PROMISE: f64 = 1e-6;
 
 /// Climbs from a solution; never returns a lower one.
 pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Run {
     let problem = planner.problem();
     let tube = fine::Tube::full(problem);
     let mut best = start.clone();
-    let mut step = STEPS.0;
     let mut iterations = 0;
-    let mut status = "converged: no gain with the smallest step".to_owned();
-    while step >= STEPS.1 {
+    let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
+    let Some(mut gradient) = pose_gradient(problem, &best) else {
+        return ended(best, iterations, "the subproblem could not be solved");
+    };
+    let mut trust = TRUST.0;
+    let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
+    while trust >= TRUST.2 {
         if iterations == MOST_ITERATIONS {
-            status = "stopped at the largest number of iterations".to_owned();
-            break;
+            return ended(best, iterations, "stopped at the largest number of iterations");
         }
         iterations += 1;
-        let Some(gradient) = pose_gradient(problem, &best) else {
-            status = "the subproblem could not be solved".to_owned();
-            break;
+        let Some(step) = pose_step(problem, &best.pose, &gradient, &curvature, trust) else {
+            return ended(best, iterations, "the subproblem could not be solved");
         };
-        let mut improved = false;
-        let mut promised = f64::INFINITY;
-        while !improved && step >= STEPS.1 {
-            let direction = projected(problem, &best.pose, &gradient, step);
-            promised = (0..4).map(|k| direction[k] * gradient[k]).sum();
-            if promised <= 0.0 {
-                break;
-            }
-            let pose: [f64; 4] = std::array::from_fn(|k| best.pose[k] + direction[k] * UNITS[k]);
-            let [x, y, z, yaw] = pose;
-            let inside = problem.cell.clamp(&Placement { x, y, z, yaw });
-            let pose = [inside.x, inside.y, inside.z, inside.yaw];
-            match planned(planner, &pose, scheme, tube, workspace) {
-                Some(next) if next.mean() - best.mean() > ARMIJO * promised => {
-                    best = next;
-                    step = (step * 1.5).min(STEPS.0);
-                    improved = true;
-                }
-                _ => step /= 2.0,
-            }
+        let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
+        if promised < LEAST_PROMISE * best.mean() {
+            return ended(best, iterations, "converged: no first-order gain");
         }
-        if promised <= 0.0 {
-            status = "converged: the gradient points out of the cell".to_owned();
-            break;
+        let pose = inside(problem, std::array::from_fn(|k| best.pose[k] + step[k] * UNITS[k]));
+        let candidate = planned(planner, &pose, scheme, tube, workspace);
+        let Some(next) = candidate.filter(|next| next.mean() - best.mean() > ARMIJO * promised) else {
+            trust = trust.min(step.amax()) / 3.0;
+            continue;
+        };
+        if next.mean() - best.mean() > 0.7 * promised && step.amax() > 0.9 * trust {
+            trust = (2.0 * trust).min(TRUST.1);
         }
+        best = next;
+        let Some(there) = pose_gradient(problem, &best) else {
+            return ended(best, iterations, "the subproblem could not be solved");
+        };
+        learn(&mut curvature, &step, &(gradient - there));
+        gradient = there;
     }
-    Run { solution: best, status, iterations }
+    ended(best, iterations, "converged: no gain in the smallest trust region")
+}
+
+/// Damped BFGS (Powell 1978): keeps the curvature positive definite whatever the change of gradient says.
+fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64>) {
+    let image = *curvature * step;
+    let along = step.dot(&image);
+    let measured = step.dot(change);
+    let share = if measured >= 0.2 * along { 1.0 } else { 0.8 * along / (along - measured) };
+    let change = change * share + image * (1.0 - share);
+    let denominator = step.dot(&change);
+    if along > 0.0 && denominator > 0.0 {
+        *curvature += change * change.transpose() / denominator - image * image.transpose() / along;
+    }
 }
 
 /// Gradient of the mean score of the best plan with respect to the pose, postures fixed. m per scaled unit
-fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<[f64; 4]> {
+pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
     let locals = linearise(problem, solution)?;
     let question = Question { trust: 1e-3, curved: true, pose_stays: true };
-    solve(problem, solution, &locals, question).ok().map(|answer| answer.pose_gradient)
-}
-
-/// A step of the given length along the gradient, shortened to stay in the cell component by component.
-fn projected(problem: &Problem, pose: &[f64; 4], gradient: &[f64; 4], step: f64) -> [f64; 4] {
-    let bounds = pose_bounds(problem, pose);
-    let mut free = [true; 4];
-    let mut direction = [0.0; 4];
-    // A component that the cell stops gives its length to the others.
-    for _ in 0..4 {
-        let norm = libm::sqrt((0..4).filter(|k| free[*k]).map(|k| gradient[k] * gradient[k]).sum());
-        if norm == 0.0 {
-            break;
-        }
-        let mut stopped = false;
-        for k in (0..4).filter(|k| free[*k]).collect::<Vec<_>>() {
-            let wanted = step * gradient[k] / norm;
-            direction[k] = bounds[k].clamp(wanted);
-            if (direction[k] - wanted).abs() > 0.5 * wanted.abs() {
-                free[k] = false;
-                stopped = true;
-            }
-        }
-        if !stopped {
-            break;
-        }
-    }
-    direction
+    let answer = solve(problem, solution, &locals, question).ok()?;
+    Some(Vector4::from(answer.pose_gradient))
 }
 
 /// What the gradient still promises inside the cell, per unit of trust region. m per scaled unit
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let bounds = pose_bounds(problem, &solution.pose);
     pose_gradient(problem, solution).map_or(f64::INFINITY, |gradient| {
-        (0..4)
-            .filter(|k| if gradient[*k] > 0.0 { bounds[*k].max > 1e-9 } else { bounds[*k].min < -1e-9 })
-            .map(|k| gradient[k].abs())
-            .sum()
+        let room = |k: usize| if gradient[k] > 0.0 { bounds[k].max } else { -bounds[k].min };
+        (0..4).filter(|k| room(*k) > 1e-9).map(|k| gradient[k].abs()).sum()
     })
 }

@@ -31,7 +31,7 @@ pub const LENGTH_UNIT: f64 = 0.1;
 /// Rounds of refining and planning anew, at the most.
 const ROUNDS: usize = 12;
 /// A round that gains less than this share of the mean ends the refinement.
-const GAIN: f64 = 1e-6;
+const GAIN: f64 = 1e-5;
 
 /// A placement with its best plan, beta off the grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,7 +122,11 @@ pub fn refine(
         }
         let gained = (before - best.mean()).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
-            break;
+            // The model knows one plan; a neighbour may have another, better one.
+            match poll(planner, &best, goal, scheme, &mut workspace) {
+                Some(better) => best = better,
+                None => break,
+            }
         }
     }
     report.kkt_residual = match goal {
@@ -134,21 +138,77 @@ pub fn refine(
     Some((best, report))
 }
 
+/// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
+const POLLS: [f64; 2] = [0.03, 0.006];
+
+/// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
+fn poll(
+    planner: &Planner<'_>,
+    centre: &Solution,
+    goal: Goal,
+    scheme: Option<&[Posture]>,
+    workspace: &mut Workspace,
+) -> Option<Solution> {
+    let problem = planner.problem();
+    let tube = fine::Tube::full(problem);
+    let sign = match goal {
+        Goal::Best => 1.0,
+        Goal::Worst => -1.0,
+    };
+    let mut best: Option<Solution> = None;
+    for distance in POLLS {
+        for k in 0..4 {
+            for side in [-1.0, 1.0] {
+                let mut pose = centre.pose;
+                pose[k] += side * distance * linearise::UNITS[k];
+                let pose = inside(problem, pose);
+                let Some(near) = planned(planner, &pose, scheme, tube, workspace) else { continue };
+                let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
+                if near.mean() * sign < known * sign {
+                    best = Some(near);
+                }
+            }
+        }
+        if best.is_some() {
+            break;
+        }
+    }
+    best
+}
+
+/// The pose, not outside the cell.
+fn inside(problem: &Problem, pose: [f64; 4]) -> [f64; 4] {
+    let [x, y, z, yaw] = pose;
+    let clamped = problem.cell.clamp(&Placement { x, y, z, yaw });
+    [clamped.x, clamped.y, clamped.z, clamped.yaw]
+}
+
 /// What must not change any more: posture and turns of every segment.
 fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
     let turns = |plan: &SegmentPlan| plan.joints.first().map_or([0; 6], |q| q.map(crate::robot::turns::turns));
     solution.plans.iter().map(|plan| (plan.posture, turns(plan))).collect()
 }
 
-/// A solution moved by a step of all variables (pose, then every beta), if it is allowed there.
+/// A solution moved by a step of all variables (pose, then every beta), if there is an allowed one near there.
+///
+/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new pose the betas settle in a
+/// narrow tube around their step (a second-order correction).
 fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) -> Option<Solution> {
     let mut plans = Vec::with_capacity(solution.plans.len());
     for plan in &solution.plans {
-        let shifted = SegmentPlan { betas: betas[plan.points.clone()].to_vec(), ..plan.clone() };
-        plans.push(fine::replay(problem, &pose, &shifted)?);
+        let betas = betas[plan.points.clone()].to_vec();
+        let mut shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
+        fine::refine(problem, &pose, Extremum::Smallest, SETTLING, &mut shifted);
+        if !shifted.cost.is_finite() {
+            return None;
+        }
+        plans.push(shifted);
     }
     Some(Solution { pose, plans })
 }
+
+/// The tube in which betas settle after a step. rad
+const SETTLING: fine::Tube = fine::Tube { first: 4e-3, last: 1.2e-4 };
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 
 use super::linearise::linearise;
 use super::subproblem::{Question, solve};
-use super::{Solution, moved};
+use super::{Solution, inside, moved};
 use crate::placement::problem::Problem;
 use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
@@ -21,9 +21,13 @@ const FIRST_TRUST: f64 = 0.1;
 /// The largest trust region.
 const MOST_TRUST: f64 = 0.4;
 /// The trust region at which it ends.
-const LAST_TRUST: f64 = 1e-7;
+const LAST_TRUST: f64 = 1e-6;
 /// A promised gain of less than this share of the mean ends it.
-const LEAST_PROMISE: f64 = 1e-8;
+const LEAST_PROMISE: f64 = 1e-7;
+/// So many steps in a row that gain less than [`LEAST_GAIN`] of the mean end it.
+const LAZY_STEPS: usize = 3;
+/// See [`LAZY_STEPS`].
+const LEAST_GAIN: f64 = 1e-6;
 /// Iterations at the most.
 const MOST_ITERATIONS: u64 = 80;
 
@@ -33,6 +37,7 @@ pub struct SequentialConvex<'a> {
     problem: &'a Problem,
     solution: Arc<Mutex<Solution>>,
     trust: f64,
+    lazy: usize,
     ending: Option<String>,
 }
 
@@ -59,7 +64,7 @@ pub fn run_observed<'a>(
     observe: impl FnOnce(Executor<(), SequentialConvex<'a>, Iterate>) -> Executor<(), SequentialConvex<'a>, Iterate>,
 ) -> Run {
     let best = Arc::new(Mutex::new(start.clone()));
-    let solver = SequentialConvex { problem, solution: Arc::clone(&best), trust: FIRST_TRUST, ending: None };
+    let solver = SequentialConvex { problem, solution: Arc::clone(&best), trust: FIRST_TRUST, lazy: 0, ending: None };
     let executor = Executor::new((), solver)
         .configure(|state| state.param(parameters(start)).max_iters(MOST_ITERATIONS))
         .timer(false);
@@ -138,6 +143,10 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
             }
         }
         let next = accepted.unwrap_or(known);
+        self.lazy = if mean - next.mean() < LEAST_GAIN * mean { self.lazy + 1 } else { 0 };
+        if self.lazy >= LAZY_STEPS && self.ending.is_none() {
+            self.ending = Some("converged: no more gain".to_owned());
+        }
         if self.trust < LAST_TRUST && self.ending.is_none() {
             self.ending = Some("converged: no gain in the smallest trust region".to_owned());
         }
@@ -158,11 +167,4 @@ impl SequentialConvex<'_> {
     fn known(&self) -> Result<Solution, Error> {
         Ok(self.solution.lock().map_err(|_| Error::msg("poisoned"))?.clone())
     }
-}
-
-/// The pose, not outside the cell by rounding.
-fn inside(problem: &Problem, pose: [f64; 4]) -> [f64; 4] {
-    let [x, y, z, yaw] = pose;
-    let clamped = problem.cell.clamp(&crate::placement::problem::Placement { x, y, z, yaw });
-    [clamped.x, clamped.y, clamped.z, clamped.yaw]
 }

@@ -14,6 +14,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT, ZeroConeT,
 };
+use nalgebra::{Matrix4, Vector4};
 
 /// What a subproblem is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,6 +172,37 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
     })
 }
 
+/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
+/// clarabel found none.
+pub fn pose_step(
+    problem: &Problem,
+    pose: &[f64; 4],
+    gradient: &Vector4<f64>,
+    curvature: &Matrix4<f64>,
+    trust: f64,
+) -> Option<Vector4<f64>> {
+    let unit = gradient.norm();
+    let upper = curvature.upper_triangle() / unit;
+    let entries = (0..4).flat_map(|k| (0..=k).map(move |j| (j, k)));
+    let (row, column): (Vec<usize>, Vec<usize>) = entries.unzip();
+    let value = row.iter().zip(&column).map(|(j, k)| upper[(*j, *k)]).collect();
+    let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
+    let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
+    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    let bounds = pose_bounds(problem, pose);
+    for (k, bound) in bounds.iter().enumerate() {
+        rows.add([(k, 1.0)], bound.max.min(trust));
+        rows.add([(k, -1.0)], (-bound.min).min(trust));
+    }
+    let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
+    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
+    let mut solver =
+        DefaultSolver::new(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)], settings).ok()?;
+    solver.solve();
+    matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved)
+        .then(|| Vector4::from_fn(|k, _| bounds[k].clamp(solver.solution.x[k])))
+}
+
 /// How far each pose variable may move inside the cell, in scaled variables.
 pub fn pose_bounds(problem: &Problem, pose: &[f64; 4]) -> [Interval; 4] {
     let cell = &problem.cell;
@@ -217,7 +249,7 @@ fn curvature(locals: &[Local], variables: usize, unit: f64) -> CscMatrix<f64> {
 }
 
 /// Trust region in which the linear model is asked what it still promises.
-const KKT_TRUST: f64 = 1e-4;
+const KKT_TRUST: f64 = 1e-2;
 
 /// The first-order optimality of a solution with postures and turns fixed: see [`super`]. m per scaled unit; infinite when
 /// the subproblem could not be solved.

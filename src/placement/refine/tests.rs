@@ -1,23 +1,124 @@
 //! The refinement: exact gradients, never worse, never infeasible.
 
 use super::*;
+use crate::placement::problem::Interval;
 use crate::placement::testing::five_segments;
 use crate::robot::angles::yaw_from_q4;
 
+fn published_optimum() -> [f64; 4] {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+}
+
+/// Every point of a solution is allowed, with joints and betas within their steps.
+fn assert_allowed(problem: &Problem, solution: &Solution) {
+    assert!(problem.cell.contains(&solution.placement()), "{:?}", solution.placement());
+    for plan in &solution.plans {
+        let replayed = fine::replay(problem, &solution.pose, plan).unwrap();
+        assert!((replayed.cost - plan.cost).abs() < 1e-10 * plan.cost);
+        for (a, b) in replayed.joints.iter().flatten().zip(plan.joints.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9);
+        }
+    }
+}
+
 #[test]
-fn zz() {
+fn best_gets_better_and_stays_allowed() {
     let problem = five_segments();
     let planner = Planner::new(&problem);
-    for (goal, pose) in [
-        (Goal::Best, [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]),
-        (Goal::Best, [0.0, -1.7, -0.4, 0.7]),
-        (Goal::Worst, [0.0, -2.0, -0.4, 2.2]),
-        (Goal::Worst, [0.2, -2.1, -0.3, -2.2]),
-    ] {
-        let t = std::time::Instant::now();
-        if let Some((s, r)) = refine(&planner, &pose, goal, None) {
-            println!("{:?} {:#?}", t.elapsed(), r);
-            println!("{:?}", s.plans.iter().map(|p| p.posture.number()).collect::<Vec<_>>());
+    for start in [published_optimum(), [0.0, -1.7, -0.4, 0.7]] {
+        let (solution, report) = refine(&planner, &start, Goal::Best, None).unwrap();
+        assert_allowed(&problem, &solution);
+        assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
+        assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
+        assert_eq!(report.statuses.len(), report.rounds);
+        // Nothing better in the neighbourhood, everything planned anew.
+        let mut workspace = planner.workspace();
+        for k in 0..4 {
+            for side in [-1.0, 1.0] {
+                let mut pose = solution.pose;
+                pose[k] += side * if k < 3 { 3e-3 } else { 3e-2 };
+                let [x, y, z, yaw] = pose;
+                if !problem.cell.contains(&Placement { x, y, z, yaw }) {
+                    continue;
+                }
+                let near = planned(&planner, &pose, None, fine::Tube::full(&problem), &mut workspace);
+                assert!(near.is_none_or(|n| n.mean() > solution.mean() * (1.0 - 2e-5)), "variable {k} {side}");
+            }
+        }
+    }
+}
+
+#[test]
+fn worst_gets_worse_and_stays_allowed() {
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    let (solution, report) = refine(&planner, &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
+}
+
+#[test]
+fn a_start_without_a_plan_is_refused() {
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    assert_eq!(refine(&planner, &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
+}
+
+#[test]
+fn constraints_bind_and_hold() {
+    let mut problem = five_segments();
+    problem.cell.yaw = Interval { min: 0.5, max: 0.9 };
+    problem.constraints.min_inverse_condition = 0.4;
+    problem.constraints.max_deflection = Some(1.5e-3);
+    let planner = Planner::new(&problem);
+    let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean <= report.start_mean);
+}
+
+#[test]
+fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    let mut workspace = planner.workspace();
+    let tube = fine::Tube { first: 0.026, last: 1e-7 };
+    let pose = [0.2, -2.1, -0.3, -2.2];
+    let here = planned(&planner, &pose, None, tube, &mut workspace).unwrap();
+    let gradient = ascent::pose_gradient(&problem, &here).unwrap();
+    for k in 0..4 {
+        let h = 1e-4;
+        let mut at = |side: f64| {
+            let mut moved = pose;
+            moved[k] += side * h * linearise::UNITS[k];
+            planned(&planner, &moved, None, tube, &mut workspace).unwrap().mean()
+        };
+        let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
+        assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
+    }
+}
+
+#[test]
+fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    let tube = fine::Tube::full(&problem);
+    let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
+    let locals = linearise::linearise(&problem, &here).unwrap();
+    for plan in &here.plans {
+        for (place, point) in plan.points.clone().enumerate().step_by(4) {
+            for k in 0..linearise::LOCAL {
+                let h = 1e-6;
+                let at = |side: f64| {
+                    let (mut pose, mut beta) = (here.pose, plan.betas[place]);
+                    match k {
+                        4 => beta += side * h,
+                        _ => pose[k] += side * h * linearise::UNITS[k],
+                    }
+                    crate::placement::criterion::state(&problem, point, &pose, beta, plan.posture).unwrap()
+                };
+                let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
+                assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
+            }
         }
     }
 }

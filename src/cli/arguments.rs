@@ -1,0 +1,130 @@
+//! What may be said on the command line.
+
+use crate::placement::problem::Placement;
+use crate::robot::angles::yaw_from_q4;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Workpiece placement optimiser for robotic machining.
+#[derive(Debug, Parser)]
+#[command(name = "stead", version, about, arg_required_else_help = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Find the best and the worst placement of a workpiece, and write tables and pictures
+    Place(PlaceOptions),
+    /// Evaluate one given placement: its best and its worst redundancy plan
+    Score(ScoreOptions),
+    /// Tell for one placement, path point and beta what each of the eight postures gives
+    Explain(ExplainOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlaceOptions {
+    /// Run file (TOML)
+    pub config: PathBuf,
+    /// Folder for the results [default: results/<name of the run file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of the random numbers, instead of the run file's
+    #[arg(long, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    pub seed: Option<u64>,
+    /// Number of threads [default: as many as processors]; it does not change the result
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ScoreOptions {
+    /// Run file (TOML)
+    pub config: PathBuf,
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainOptions {
+    /// Run file (TOML)
+    pub config: PathBuf,
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// Path point, counted from 0 in the order of the task file
+    #[arg(long, value_name = "I")]
+    pub point: usize,
+    /// Free angle beta about the tool axis in degrees
+    #[arg(long, value_name = "B", value_parser = finite, allow_hyphen_values = true)]
+    pub beta_deg: f64,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A placement: the workpiece origin in the robot base frame, and its yaw.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct PlaceArguments {
+    /// x of the workpiece origin in mm
+    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true)]
+    x_mm: f64,
+    /// y of the workpiece origin in mm
+    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true)]
+    y_mm: f64,
+    /// z of the workpiece origin in mm
+    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
+    z_mm: f64,
+    #[command(flatten)]
+    turn: Turn,
+}
+
+/// The yaw, in one of two ways.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Turn {
+    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
+    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true)]
+    q4: Option<f64>,
+    /// Yaw of the workpiece in degrees
+    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
+    yaw_deg: Option<f64>,
+}
+
+impl PlaceArguments {
+    pub fn placement(&self) -> Placement {
+        let yaw = match (self.turn.q4, self.turn.yaw_deg) {
+            (Some(q4), _) => yaw_from_q4(q4),
+            (None, yaw) => crate::robot::angles::wrap(yaw.unwrap_or(0.0).to_radians()),
+        };
+        Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("allowed: a finite decimal number".to_owned()),
+    }
+}
+
+fn quaternion(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|q| (-1.0..=1.0).contains(q)).ok_or_else(|| "allowed: a number from -1 to 1".to_owned())
+}
+
+/// More threads than this help nobody.
+const MOST_THREADS: usize = 1024;
+
+fn threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=MOST_THREADS).contains(n))
+        .ok_or_else(|| format!("allowed: a whole number from 1 to {MOST_THREADS}"))
+}

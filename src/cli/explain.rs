@@ -1,0 +1,31 @@
+//! `stead explain`: one placement, one path point, one beta, eight postures.
+
+use super::arguments::ExplainOptions;
+use super::score::mention_cell;
+use super::{Failure, print};
+use crate::config::read_run;
+use crate::placement::feasibility::explain;
+use crate::report::{evaluation, json};
+
+pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
+    let run = read_run(&options.config)?;
+    let count = run.problem.task.points().len();
+    if options.point >= count {
+        let last = count - 1;
+        return Err(Failure::Usage(format!(
+            "--point: no such path point, found {}; allowed: 0 to {last}",
+            options.point
+        )));
+    }
+    let placement = options.place.placement();
+    mention_cell(&run.problem, &placement);
+    let beta = options.beta_deg.to_radians();
+    let pose = [placement.x, placement.y, placement.z, placement.yaw];
+    let postures = explain(&run.problem, &pose, options.point, beta);
+    if options.json {
+        print(&json::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures)));
+    } else {
+        print(evaluation::explain_text(&placement, options.point, beta, &postures).as_bytes());
+    }
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! The command line: one file per subcommand, no physics.
+//!
+//! Tables for people, or with `--json` one JSON document, go to standard output; progress and diagnostics to standard
+//! error, progress bars only to a terminal. Exit code 0: done. 1: the job failed, or nothing is feasible. 2: wrong usage or
+//! bad input.
+
+mod arguments;
+mod explain;
+mod place;
+mod progress;
+mod score;
+
+use crate::input::InputError;
+use crate::placement::place::NothingFeasible;
+use crate::report::output::ReportError;
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Why a command ends without its result.
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    /// Something in a file is wrong.
+    #[error("{0}")]
+    Input(#[from] InputError),
+    /// Something on the command line is wrong beyond what the parser sees.
+    #[error("{0}")]
+    Usage(String),
+    /// A place to write to is wrong.
+    #[error("{0}")]
+    Output(ReportError),
+    /// No placement is feasible.
+    #[error("{0}")]
+    Nothing(#[from] NothingFeasible),
+    /// The job itself failed.
+    #[error("{0}")]
+    Job(String),
+}
+
+impl Failure {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Failure::Input(_) | Failure::Usage(_) | Failure::Output(_) => 2,
+            Failure::Nothing(_) | Failure::Job(_) => 1,
+        }
+    }
+}
+
+/// Parses the command line, runs the command, and says how it went.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command {
+        Command::Place(options) => place::run(&options),
+        Command::Score(options) => score::run(&options),
+        Command::Explain(options) => explain::run(&options),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say(&format!("error: {failure}"));
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell.
+fn print(text: &[u8]) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text).and_then(|()| out.flush());
+}
+
+/// Writes a line to standard error.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Runs a job on so many threads, or on as many as there are processors.
+fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<(T, usize), Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads {
+        builder = builder.num_threads(threads);
+    }
+    let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
+    Ok((pool.install(job), pool.current_num_threads()))
+}

@@ -1,0 +1,52 @@
+//! `stead place`: search, then files, then a table.
+
+use super::arguments::PlaceOptions;
+use super::progress::Watcher;
+use super::{Failure, on_threads, print, say};
+use crate::config::read_run;
+use crate::placement::place::place;
+use crate::report::json::{self, Timing};
+use crate::report::output::Folder;
+use crate::report::{Context, evaluation, text, write_placement};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
+    let run = read_run(&options.config)?;
+    let mut search = run.search;
+    search.seed = options.seed.unwrap_or(search.seed);
+    // Before the long work: an output folder that cannot be written is found out now.
+    let folder = Folder::create(&out_dir(options)).map_err(Failure::Output)?;
+    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+
+    let watcher = Watcher::start();
+    let started = Instant::now();
+    let (outcome, threads) = on_threads(options.threads, || place(&run.problem, &search, &run.transfer, &watcher))?;
+    let wall = started.elapsed().as_secs_f64();
+    watcher.finish();
+    let outcome = outcome.inspect_err(|nothing| {
+        if options.json {
+            print(&json::bytes(&evaluation::infeasible_json(nothing)));
+        }
+    })?;
+
+    let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
+    write_placement(&folder, &run.problem, &outcome, &context).map_err(|e| Failure::Job(e.to_string()))?;
+    if options.json {
+        print(&json::bytes(&json::place_json(&outcome, &context, &Timing { wall, threads })));
+    } else {
+        let table = text::placement_text(&run.problem, &outcome, &context);
+        let where_to = folder.path().display();
+        print(format!("{table}in {wall:.1} s on {threads} threads; results in {where_to}\n").as_bytes());
+    }
+    if outcome.interrupted {
+        say("interrupted: the results are the best found so far, not the end of the search");
+    }
+    Ok(())
+}
+
+/// The folder asked for, or `results/` and the name of the run file.
+fn out_dir(options: &PlaceOptions) -> PathBuf {
+    let name = options.config.file_stem().unwrap_or_default();
+    options.out.clone().unwrap_or_else(|| Path::new("results").join(name))
+}

@@ -1,0 +1,67 @@
+//! Progress bars on a terminal, and Ctrl-C.
+
+use crate::placement::control::{Control, Progress};
+use crate::placement::outcome::Goal;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Watches a placement job: draws its progress if standard error is a terminal, and stops it at Ctrl-C.
+pub(super) struct Watcher {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+}
+
+impl Watcher {
+    /// Takes over Ctrl-C: the first asks the job to stop and keep what it has, the second ends the process.
+    pub fn start() -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&stop);
+        // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
+        let _ = ctrlc::set_handler(move || {
+            if seen.swap(true, Ordering::SeqCst) {
+                #[expect(clippy::exit, reason = "the user asked twice; there is nobody to return to")]
+                std::process::exit(130);
+            }
+        });
+        // Draws nothing when standard error is not a terminal.
+        let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}") {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self { bar, stop }
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn show(&self, prefix: &'static str, done: usize, of: usize, message: String) {
+        self.bar.set_prefix(prefix);
+        self.bar.set_length(of as u64);
+        self.bar.set_position(done as u64);
+        self.bar.set_message(message);
+    }
+}
+
+impl Control for Watcher {
+    fn report(&self, progress: Progress) {
+        match progress {
+            Progress::Generation { generation, of } => {
+                let best = generation.best.map_or("nothing feasible yet".to_owned(), |m| format!("{:.4} mm", m * 1e3));
+                let prefix = match generation.goal {
+                    Goal::Best => "best placement",
+                    Goal::Worst => "worst placement",
+                };
+                self.show(prefix, generation.generation, of, best);
+            }
+            Progress::Refined { done, of, .. } => self.show("refining", done, of, String::new()),
+            Progress::Finishing => self.show("plans and maps", 0, 1, String::new()),
+        }
+    }
+
+    fn should_stop(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+}

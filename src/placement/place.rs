@@ -1,0 +1,233 @@
+//! The placement job: search, refine, plan, map.
+
+use super::control::{Control, Progress};
+use super::criterion::state;
+use super::feasibility::{Finding, deflection_map, diagnose};
+use super::genetic::{self, Found, Individual};
+use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement};
+use super::problem::{Placement, Problem};
+use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
+use super::refine::{Solution, planned, refine};
+use super::settings::{SearchSettings, TransferSettings};
+use super::transfer::cycle;
+use crate::robot::{Posture, angles::wrap};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Why a placement job has no result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NothingFeasible {
+    /// The placement that comes nearest: of all tried the one with the fewest blocked points.
+    pub placement: Placement,
+    /// Whether it was the only one asked for, or the nearest of a search.
+    pub searched: bool,
+    /// Which constraint fails at which points there.
+    pub findings: Vec<Finding>,
+}
+
+impl std::fmt::Display for NothingFeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Placement { x, y, z, .. } = self.placement;
+        if self.searched {
+            write!(f, "no feasible placement was found; the nearest is")?;
+        } else {
+            write!(f, "nothing is feasible at")?;
+        }
+        write!(
+            f,
+            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, Q4 = {:.4} (yaw {:.2} deg):",
+            x * 1e3,
+            y * 1e3,
+            z * 1e3,
+            self.placement.q4(),
+            self.placement.yaw.to_degrees()
+        )?;
+        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))
+    }
+}
+
+impl std::error::Error for NothingFeasible {}
+
+/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
+///
+/// The result depends on the arguments alone, not on the number of threads. When `control` asks to stop, the search ends
+/// with its present generation, refinement is left out, and [`Outcome::interrupted`] is set.
+///
+/// # Errors
+/// [`NothingFeasible`] when the search met no feasible placement.
+pub fn place(
+    problem: &Problem,
+    settings: &SearchSettings,
+    transfer: &TransferSettings,
+    control: &dyn Control,
+) -> Result<Outcome, NothingFeasible> {
+    let planner = Planner::new(problem);
+    let found = [Goal::Best, Goal::Worst].map(|goal| genetic::search(&planner, settings, goal, control));
+    let Some((solutions, refinements)) = finish(&planner, &found, control) else {
+        let nearest = &found[0].basins[0];
+        return Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true));
+    };
+    control.report(Progress::Finishing);
+    let [best, worst] = &solutions;
+    let case = |number, solution: &Refined, extremum| {
+        let plans = match extremum {
+            Extremum::Smallest => Ok(solution.solution.plans.clone()),
+            Extremum::Largest => worst_plan(&planner, &solution.solution.pose, solution.scheme.as_deref()),
+        };
+        // A pose with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+        let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
+        Case {
+            number,
+            placement: solution.solution.placement(),
+            plan: detailed(problem, &solution.solution.pose, &plans),
+            cycle: cycle(problem, transfer, &plans),
+        }
+    };
+    let evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    Ok(Outcome {
+        cases: [
+            case(1, best, Extremum::Smallest),
+            case(2, best, Extremum::Largest),
+            case(3, worst, Extremum::Smallest),
+            case(4, worst, Extremum::Largest),
+        ],
+        convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
+        refinements,
+        map_best: deflection_map(problem, &best.solution.pose),
+        map_worst: deflection_map(problem, &worst.solution.pose),
+        evaluations,
+        states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
+        interrupted: found.iter().any(|f| f.interrupted) || control.should_stop(),
+    })
+}
+
+/// What one given placement is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Score {
+    /// The placement.
+    pub placement: Placement,
+    /// The best plan.
+    pub best: Plan,
+    /// The worst plan.
+    pub worst: Plan,
+}
+
+/// Plans one given placement, best and worst.
+///
+/// # Errors
+/// [`NothingFeasible`] when it has no plan.
+pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, NothingFeasible> {
+    let planner = Planner::new(problem);
+    let pose = [placement.x, placement.y, placement.z, placement.yaw];
+    let mut workspace = planner.workspace();
+    let tube = fine::Tube::full(problem);
+    let (Some(best), Ok(worst)) =
+        (planned(&planner, &pose, None, tube, &mut workspace), worst_plan(&planner, &pose, None))
+    else {
+        return Err(nothing(&planner, &pose, None, false));
+    };
+    Ok(Score {
+        placement: *placement,
+        best: detailed(problem, &pose, &best.plans),
+        worst: detailed(problem, &pose, &worst),
+    })
+}
+
+/// A refined solution with the scheme it was held to.
+struct Refined {
+    solution: Solution,
+    scheme: Option<Vec<Posture>>,
+}
+
+/// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
+/// when nothing feasible went in.
+fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> Option<([Refined; 2], Vec<Refinement>)> {
+    let goals = [Goal::Best, Goal::Worst];
+    let jobs: Vec<(Goal, &Individual)> =
+        goals.iter().zip(found).flat_map(|(goal, f)| f.basins.iter().map(|i| (*goal, i))).collect();
+    let done = AtomicUsize::new(0);
+    let results: Vec<(Goal, Refined, Option<Refinement>)> = jobs
+        .par_iter()
+        .filter_map(|(goal, individual)| {
+            let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
+            let refined = if control.should_stop() {
+                let tube = fine::Tube::full(planner.problem());
+                planned(planner, pose, scheme, tube, &mut planner.workspace()).map(|s| (s, None))
+            } else {
+                refine(planner, pose, *goal, scheme).map(|(solution, report)| (solution, Some(report)))
+            };
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            control.report(Progress::Refined { goal: *goal, done, of: jobs.len() });
+            let (solution, report) = refined?;
+            Some((*goal, Refined { solution, scheme: individual.scheme.clone() }, report))
+        })
+        .collect();
+    let mut refinements = Vec::new();
+    let mut chosen: [Option<Refined>; 2] = [None, None];
+    for (goal, refined, report) in results {
+        refinements.extend(report);
+        let slot = &mut chosen[usize::from(goal == Goal::Worst)];
+        let better = slot.as_ref().is_none_or(|known| match goal {
+            Goal::Best => refined.solution.mean() < known.solution.mean(),
+            Goal::Worst => refined.solution.mean() > known.solution.mean(),
+        });
+        if better {
+            *slot = Some(refined);
+        }
+    }
+    let [Some(best), Some(worst)] = chosen else { return None };
+    Some(([best, worst], refinements))
+}
+
+fn worst_plan(
+    planner: &Planner<'_>,
+    pose: &[f64; 4],
+    scheme: Option<&[Posture]>,
+) -> Result<Vec<SegmentPlan>, super::redundancy::NoPlan> {
+    let problem = planner.problem();
+    let mut plans = planner.plan(pose, Extremum::Largest, scheme, &mut planner.workspace())?;
+    plans.par_iter_mut().for_each(|plan| {
+        fine::refine(problem, pose, Extremum::Largest, fine::Tube::full(problem), plan);
+    });
+    Ok(plans)
+}
+
+fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> NothingFeasible {
+    let none = planner.plan(pose, Extremum::Smallest, scheme, &mut planner.workspace());
+    let findings = none.err().map(|none| diagnose(planner.problem(), pose, &none)).unwrap_or_default();
+    let [x, y, z, yaw] = *pose;
+    NothingFeasible { placement: Placement { x, y, z, yaw }, searched, findings }
+}
+
+/// A plan with everything that there is to say of each point, from the ordinary evaluator.
+fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
+    let [x, y, z, yaw] = *pose;
+    let base_from_workpiece = Placement { x, y, z, yaw }.base_from_workpiece();
+    let mut points = Vec::with_capacity(problem.task.points().len());
+    for (segment, plan) in plans.iter().enumerate() {
+        for (place, point) in plan.points.clone().enumerate() {
+            let Ok(s) = state(problem, point, pose, plan.betas[place], plan.posture) else { continue };
+            points.push(PlanPoint {
+                point,
+                segment: segment + 1,
+                position: base_from_workpiece.point(&problem.task.points()[point].position),
+                beta: wrap(plan.betas[place]),
+                posture: plan.posture,
+                joints: plan.joints[place],
+                inverse_condition: s.inverse_condition,
+                force: base_from_workpiece.rotation * problem.task.wrenches()[point].force,
+                deflection: s.deflection,
+                feed_part: s.feed_part,
+                normal_part: s.normal_part,
+                axial_part: s.axial_part,
+                score: s.score(),
+            });
+        }
+    }
+    Plan {
+        postures: plans.iter().map(|plan| plan.posture).collect(),
+        mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
+        max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        points,
+    }
+}

@@ -1,0 +1,133 @@
+//! Reports of single evaluations: `stead score` and `stead explain`.
+
+use super::json::placement as placement_json;
+use super::number::{Unit, fixed};
+use super::text::aligned;
+use super::words;
+use crate::placement::feasibility::{Explanation, Finding};
+use crate::placement::outcome::Plan;
+use crate::placement::place::{NothingFeasible, Score};
+use crate::placement::problem::Placement;
+use serde_json::{Value, json};
+
+/// Degrees with the digits that a comparison with another program needs.
+const FINE_DEG: Unit = Unit { decimals: 6, ..Unit::ANGLE_DEG };
+/// Millimetres likewise.
+const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
+
+/// What `stead score --json` prints.
+pub fn score_json(score: &Score) -> Value {
+    let plan = |plan: &Plan| {
+        json!({
+            "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
+            "max_mm": Unit::DEFLECTION_MM.number(plan.max),
+            "postures": plan.postures,
+        })
+    };
+    json!({
+        "placement": placement_json(&score.placement),
+        "feasible": true,
+        "best": plan(&score.best),
+        "worst": plan(&score.worst),
+    })
+}
+
+/// What `stead score --json` and `stead place --json` print when nothing is feasible.
+pub fn infeasible_json(nothing: &NothingFeasible) -> Value {
+    let finding = |finding: &Finding| {
+        json!({
+            "segment": finding.segment,
+            "first_point": finding.points.0,
+            "last_point": finding.points.1,
+            "message": finding.to_string(),
+        })
+    };
+    json!({
+        "placement": placement_json(&nothing.placement),
+        "feasible": false,
+        "best": Value::Null,
+        "worst": Value::Null,
+        "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),
+    })
+}
+
+/// The table of `stead score`.
+pub fn score_text(score: &Score) -> String {
+    let row = |name: &str, plan: &Plan| {
+        vec![
+            name.to_owned(),
+            fixed(plan.mean * 1e3, 4),
+            fixed(plan.max * 1e3, 4),
+            words::postures_within(&plan.postures, 60),
+        ]
+    };
+    let header = ["plan", "mean mm", "max mm", "postures"].map(str::to_owned).to_vec();
+    let rows = [header, row("best", &score.best), row("worst", &score.worst)];
+    format!("{}\n\n{}", place_text(&score.placement), aligned(&rows, &[0, 3]))
+}
+
+/// What `stead explain --json` prints.
+pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> Value {
+    let posture = |e: &Explanation| {
+        let state = e.state.as_ref();
+        json!({
+            "posture": e.posture,
+            "joints_deg": state.map(|s| s.joints.map(|angle| FINE_DEG.number(angle))),
+            "inverse_condition": state.map(|s| Unit::PLAIN.number(s.inverse_condition)),
+            "normal_deflection_mm": state.map(|s| FINE_MM.number(s.normal_part.abs())),
+            "score_mm": state.map(|s| FINE_MM.number(s.score())),
+            "feasible": e.is_allowed(),
+            "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "placement": placement_json(placement),
+        "point": point,
+        "beta_deg": FINE_DEG.number(beta),
+        "postures": postures.iter().map(posture).collect::<Vec<_>>(),
+    })
+}
+
+/// The table of `stead explain`.
+pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> String {
+    let header = ["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm", ""];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let mut broken = String::new();
+    for e in postures {
+        let mut row = vec![e.posture.to_string()];
+        match &e.state {
+            Some(s) => {
+                row.extend(s.joints.map(|angle| fixed(angle.to_degrees(), 3)));
+                row.extend([fixed(s.inverse_condition, 4), fixed(s.normal_part.abs() * 1e3, 5)]);
+            }
+            None => row.extend((0..8).map(|_| "-".to_owned())),
+        }
+        row.push(if e.is_allowed() { "allowed" } else { "refused" }.to_owned());
+        rows.push(row);
+        for violation in &e.violations {
+            broken.push_str(&format!("  posture {}: {violation}\n", e.posture));
+        }
+    }
+    let mut text = format!(
+        "{}, point {point}, beta {} deg\n\n{}",
+        place_text(placement),
+        fixed(beta.to_degrees(), 3),
+        aligned(&rows, &[9])
+    );
+    if !broken.is_empty() {
+        text.push_str("\nbroken constraints\n");
+        text.push_str(&broken);
+    }
+    text
+}
+
+fn place_text(placement: &Placement) -> String {
+    format!(
+        "x {} mm, y {} mm, z {} mm, Q4 {} (yaw {} deg)",
+        fixed(placement.x * 1e3, 1),
+        fixed(placement.y * 1e3, 1),
+        fixed(placement.z * 1e3, 1),
+        fixed(placement.q4(), 4),
+        fixed(placement.yaw.to_degrees(), 2)
+    )
+}
