@@ -57,6 +57,9 @@ const MUTATION: (f64, f64) = (0.2, 0.004);
 /// Two placements are in one basin when they are nearer than this, relative to the cell, and in yaw (rad).
 const BASIN: (f64, f64) = (0.25, 0.35);
 
+/// Basins kept in mind during the search.
+const ARCHIVE: usize = 64;
+
 /// Order of two individuals, better first.
 pub fn rank(goal: Goal, a: Worth, b: Worth) -> Ordering {
     match (a, b) {
@@ -98,7 +101,8 @@ pub fn search(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal, cont
         // A stable sort: equals stay in the order of their index.
         population.sort_by(|a, b| rank(goal, a.worth, b.worth));
         archive.extend(population.iter().filter(|i| i.worth.mean().is_some()).cloned());
-        keep_best(&mut archive, goal, 4 * settings.population);
+        archive.sort_by(|a, b| rank(goal, a.worth, b.worth));
+        archive = distinct(cell, &archive, ARCHIVE);
         let figures = figures(goal, generation, &population, evaluations);
         history.push(figures);
         control.report(Progress::Generation { generation: figures, of: settings.generations });
@@ -107,11 +111,11 @@ pub fn search(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal, cont
             break;
         }
     }
-    let mut basins = distinct(cell, &archive, settings.basins);
-    if basins.is_empty() {
-        basins.push(population.swap_remove(0));
+    archive.truncate(settings.basins);
+    if archive.is_empty() {
+        archive.push(population.swap_remove(0));
     }
-    Found { basins, history, evaluations, interrupted }
+    Found { basins: archive, history, evaluations, interrupted }
 }
 
 /// The random numbers of one individual: seed and place decide, nothing else.
@@ -245,19 +249,6 @@ fn figures(goal: Goal, generation: usize, population: &[Individual], evaluations
         feasible: means.len(),
         population: population.len(),
         evaluations,
-    }
-}
-
-fn keep_best(archive: &mut Vec<Individual>, goal: Goal, most: usize) {
-    archive.sort_by(|a, b| rank(goal, a.worth, b.worth));
-    archive.dedup_by(|a, b| a.pose == b.pose && a.scheme == b.scheme);
-    // Better ones of one basin must not crowd out the others: beyond the limit only every other one goes on.
-    if archive.len() > most {
-        let mut index = 0;
-        archive.retain(|_| {
-            index += 1;
-            index <= most / 2 || index % 2 == 0
-        });
     }
 }
 

@@ -8,7 +8,7 @@ use super::super::problem::Problem;
 use super::super::redundancy::{Planner, Workspace, fine};
 use super::linearise::{UNITS, linearise};
 use super::solver::Run;
-use super::subproblem::{Question, pose_bounds, pose_step, solve};
+use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
 use super::{Solution, inside, planned};
 use crate::robot::Posture;
 use nalgebra::{Matrix4, Vector4};
@@ -86,11 +86,32 @@ pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Ve
     Some(Vector4::from(answer.pose_gradient))
 }
 
-/// What the gradient still promises inside the cell, per unit of trust region. m per scaled unit
-pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
+/// Distance of the sampled neighbours, in scaled variables.
+const SAMPLING: f64 = 2e-3;
+
+/// First-order optimality of a worst placement: m of mean score per scaled unit, zero at a maximum.
+///
+/// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the best
+/// plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector that a
+/// convex combination of them makes with the outward normals of the cell's active bounds.
+pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&[Posture]>) -> f64 {
+    let problem = planner.problem();
+    let mut workspace = planner.workspace();
     let bounds = pose_bounds(problem, &solution.pose);
-    pose_gradient(problem, solution).map_or(f64::INFINITY, |gradient| {
-        let room = |k: usize| if gradient[k] > 0.0 { bounds[k].max } else { -bounds[k].min };
-        (0..4).filter(|k| room(*k) > 1e-9).map(|k| gradient[k].abs()).sum()
-    })
+    let mut gradients: Vec<Vector4<f64>> = pose_gradient(problem, solution).into_iter().collect();
+    let mut normals = Vec::new();
+    for k in 0..4 {
+        for side in [-1.0, 1.0] {
+            let room = if side > 0.0 { bounds[k].max } else { -bounds[k].min };
+            if room < SAMPLING {
+                normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
+                continue;
+            }
+            let mut pose = solution.pose;
+            pose[k] += side * SAMPLING * UNITS[k];
+            let near = planned(planner, &pose, scheme, fine::Tube::full(problem), &mut workspace);
+            gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
+        }
+    }
+    shortest(&gradients, &normals)
 }

@@ -12,9 +12,10 @@
 //! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
 //! or less feasible than the start.
 //!
-//! **The KKT residual** is the decrease that the linear model still promises per unit of trust region, in m of mean score;
-//! one unit is [`LENGTH_UNIT`] in position and one radian in yaw and beta. It is the smallest 1-norm that the gradient of
-//! the Lagrangian can have over all multipliers, and zero at a first-order optimum.
+//! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one radian in
+//! yaw and beta; it is zero at a first-order optimum. For the best placement it is the decrease that the linear model still
+//! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
+//! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
 
 pub mod ascent;
 pub mod linearise;
@@ -131,7 +132,7 @@ pub fn refine(
     }
     report.kkt_residual = match goal {
         Goal::Best => subproblem::kkt_residual(problem, &best),
-        Goal::Worst => ascent::kkt_residual(problem, &best),
+        Goal::Worst => ascent::kkt_residual(planner, &best, scheme),
     };
     report.end = best.placement();
     report.end_mean = best.mean();

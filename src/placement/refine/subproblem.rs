@@ -203,6 +203,44 @@ pub fn pose_step(
         .then(|| Vector4::from_fn(|k, _| bounds[k].clamp(solver.solution.x[k])))
 }
 
+/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
+/// infinite when there is no gradient or clarabel found none.
+pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
+    let unit = gradients.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    if gradients.is_empty() || unit == 0.0 {
+        return if gradients.is_empty() { f64::INFINITY } else { 0.0 };
+    }
+    let columns: Vec<Vector4<f64>> =
+        gradients.iter().map(|g| g / unit).chain(normals.iter().map(|normal| -normal)).collect();
+    let n = columns.len();
+    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
+    for k in 0..n {
+        for j in 0..=k {
+            row.push(j);
+            column.push(k);
+            value.push(columns[j].dot(&columns[k]));
+        }
+    }
+    let quadratic = CscMatrix::new_from_triplets(n, n, row, column, value);
+    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    rows.add((0..gradients.len()).map(|i| (i, 1.0)), 1.0);
+    for k in 0..n {
+        rows.add([(k, -1.0)], 0.0);
+    }
+    let matrix = CscMatrix::new_from_triplets(n + 1, n, rows.row, rows.column, rows.value);
+    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
+    let cones = [ZeroConeT(1), NonnegativeConeT(n)];
+    let Ok(mut solver) = DefaultSolver::new(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones, settings) else {
+        return f64::INFINITY;
+    };
+    solver.solve();
+    if !matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+        return f64::INFINITY;
+    }
+    let sum = columns.iter().zip(&solver.solution.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
+    sum.norm() * unit
+}
+
 /// How far each pose variable may move inside the cell, in scaled variables.
 pub fn pose_bounds(problem: &Problem, pose: &[f64; 4]) -> [Interval; 4] {
     let cell = &problem.cell;
