@@ -202,6 +202,12 @@ impl Mask {
         self.0.iter().fold(0, |all, bits| all | bits) != 0
     }
 
+    /// Whether every lane that the other says yes in says yes here.
+    #[inline(always)]
+    pub fn covers(self, other: Self) -> bool {
+        (0..WIDTH).fold(0, |missing, k| missing | (other.0[k] & !self.0[k])) == 0
+    }
+
     /// The answer of one lane.
     #[inline(always)]
     pub fn lane(self, k: usize) -> bool {

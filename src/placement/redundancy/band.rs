@@ -32,15 +32,25 @@ impl Sweep {
     }
 }
 
-/// What bounds a step.
-struct Step<'a> {
-    reach: usize,
-    limits: &'a [f64; 6],
-    modulo: &'a [bool; 6],
-    sign: f64,
+/// What bounds a step from one point to the next.
+#[derive(Debug, Clone, Copy)]
+pub struct Step<'a> {
+    /// Largest change of the beta number.
+    pub reach: usize,
+    /// Largest change of each joint angle. rad
+    pub limits: &'a [f64; 6],
+    /// Joints whose angles are compared modulo a turn.
+    pub modulo: &'a [bool; 6],
+    /// Scores times this are minimised.
+    pub sign: f64,
 }
 
 impl Planner<'_> {
+    /// What bounds the step to path point `point` from the one before.
+    pub fn step(&self, point: usize, extremum: Extremum) -> Step<'_> {
+        Step { reach: self.reaches[point], limits: &self.steps[point], modulo: &self.modulo, sign: extremum.sign() }
+    }
+
     /// Passes over the points of a segment. With `count_only`, only the blocked points are found.
     pub(super) fn sweep(
         &self,
@@ -61,12 +71,7 @@ impl Planner<'_> {
             if count_only {
                 continue;
             }
-            let step = Step {
-                reach: self.reaches[point],
-                limits: &self.steps[point],
-                modulo: &self.modulo,
-                sign: extremum.sign(),
-            };
+            let step = self.step(point, extremum);
             for class in PostureClass::ALL {
                 if now.is_alive(class) {
                     let way = &mut came_from[(place * 4 + class.index()) * count..][..count];
@@ -114,8 +119,8 @@ impl Planner<'_> {
     }
 }
 
-/// Scores become costs at the first point.
-fn begin(now: &mut States, class: PostureClass, sign: f64) {
+/// Turns the scores of a segment's first point into costs.
+pub fn begin(now: &mut States, class: PostureClass, sign: f64) {
     for score in now.scores_mut(class).iter_mut() {
         if score.is_finite() {
             *score *= sign;
@@ -123,46 +128,73 @@ fn begin(now: &mut States, class: PostureClass, sign: f64) {
     }
 }
 
-/// Scores become accumulated costs; `way` takes the beta step back to the predecessor. False when no state was reached.
-fn advance(before: &States, now: &mut States, class: PostureClass, step: &Step<'_>, way: &mut [i16]) -> bool {
+/// Turns the scores of a point into the smallest sums of costs up to it, from those of the point before; `way` takes for
+/// each beta number the step back to the predecessor. False when no state was reached.
+///
+/// Rows of `before` must be continued cyclically (see [`States::wrap_around`]) by at least `step.reach`.
+pub fn advance(before: &States, now: &mut States, class: PostureClass, step: &Step<'_>, way: &mut [i16]) -> bool {
     let (count, pad) = (now.count(), now.pad());
-    let reach = step.reach as isize;
-    let old = before.scores(class);
     let infinity = Lanes::splat(f64::INFINITY);
     let mut reached = false;
     for start in (0..count).step_by(WIDTH) {
         let score = Lanes::load(now.scores(class), pad + start);
-        if !score.less(infinity).any() {
+        let allowed = score.less(infinity);
+        if !allowed.any() {
             continue;
         }
-        let mut best = infinity;
-        let mut from = Lanes::splat(0.0);
-        // Small steps first, so that of equal ways the quietest is taken.
-        for k in 0..=2 * reach {
-            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
-            let place = (pad + start).wrapping_add_signed(shift);
-            let cost = Lanes::load(old, place);
-            let better = cost.less(best);
-            if !better.any() {
-                continue;
-            }
-            let better = better & within_steps(before, now, class, step, pad + start, place);
-            best = better.select(cost, best);
-            from = better.select(Lanes::splat(shift as f64), from);
+        let here = pad + start;
+        // The cheapest predecessors, joint steps not looked at. Mostly they are within every step, and then they are the
+        // cheapest of those that are.
+        let (mut best, mut from) = cheapest(before, class, step.reach, here, |_, better| better);
+        let chosen = from.0.map(|shift| here.wrapping_add_signed(shift as isize));
+        let known = allowed & best.less(infinity);
+        if !within_steps(before, now, class, step, here, |k| chosen[k]).covers(known) {
+            (best, from) = cheapest(before, class, step.reach, here, |place, better| {
+                better & within_steps(before, now, class, step, here, |k| place + k)
+            });
         }
-        let known = best.less(infinity) & score.less(infinity);
+        let known = allowed & best.less(infinity);
         reached |= known.any();
         let cost = known.select(best + score * step.sign, infinity);
         let row = now.scores_mut(class);
         for k in 0..WIDTH.min(count - start) {
-            row[pad + start + k] = cost.0[k];
+            row[here + k] = cost.0[k];
             way[start + k] = from.0[k] as i16;
         }
     }
     reached
 }
 
-/// Which of four neighbouring states are within every joint's step of their predecessors.
+/// For four neighbouring states from `here` the smallest cost of a predecessor that `admits` it, and the shift to it. Small
+/// shifts are looked at first, so that of equal ways the quietest is taken.
+#[inline(always)]
+fn cheapest(
+    before: &States,
+    class: PostureClass,
+    reach: usize,
+    here: usize,
+    admits: impl Fn(usize, Mask) -> Mask,
+) -> (Lanes, Lanes) {
+    let costs = before.scores(class);
+    let reach = reach as isize;
+    let mut best = Lanes::splat(f64::INFINITY);
+    let mut from = Lanes::splat(0.0);
+    for k in 0..=2 * reach {
+        let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+        let place = here.wrapping_add_signed(shift);
+        let cost = Lanes::load(costs, place);
+        let better = cost.less(best);
+        if !better.any() {
+            continue;
+        }
+        let better = admits(place, better);
+        best = better.select(cost, best);
+        from = better.select(Lanes::splat(shift as f64), from);
+    }
+    (best, from)
+}
+
+/// Which of four neighbouring states from `here` are within every joint's step of their predecessors at `there`.
 #[inline(always)]
 fn within_steps(
     before: &States,
@@ -170,15 +202,17 @@ fn within_steps(
     class: PostureClass,
     step: &Step<'_>,
     here: usize,
-    there: usize,
+    there: impl Fn(usize) -> usize,
 ) -> Mask {
+    let there: [usize; WIDTH] = std::array::from_fn(there);
     let mut within = Mask::splat(true);
     for j in 0..6 {
         let limit = step.limits[j] + STEP_ROUNDING;
         if !limit.is_finite() {
             continue;
         }
-        let mut turned = Lanes::load(now.joint(class, j), here) - Lanes::load(before.joint(class, j), there);
+        let old = before.joint(class, j);
+        let mut turned = Lanes::load(now.joint(class, j), here) - Lanes(there.map(|place| old[place]));
         if step.modulo[j] {
             turned = turned - (turned * (1.0 / TAU)).round() * TAU;
         }

@@ -12,7 +12,7 @@
 //! 3. [`exact`]: only where that fails, dynamic programming over (beta, turns) in one posture.
 //! 4. [`fine`]: beta off the grid, by dynamic programming in an ever narrower tube around the plan.
 
-mod band;
+pub mod band;
 mod exact;
 pub mod fine;
 mod turns;
@@ -141,10 +141,15 @@ impl<'a> Planner<'a> {
         self.problem
     }
 
+    /// How far states must be continued cyclically for the widest step.
+    pub fn pad(&self) -> usize {
+        self.reaches.iter().copied().max().unwrap_or(0)
+    }
+
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
         let count = self.problem.redundancy.beta_count;
-        let pad = self.reaches.iter().copied().max().unwrap_or(0);
+        let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
             scratch: self.kernel.scratch(),
