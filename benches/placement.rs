@@ -4,6 +4,8 @@
 //! counts edges: for each allowed state every predecessor within the band of beta, with the joint steps checked. `worth` is
 //! both together, once per placement.
 
+#![allow(clippy::expect_used, reason = "a benchmark of shipped files")]
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;

@@ -1,4 +1,45 @@
-//! stead
+//! **stead** finds where to put a workpiece in a robot cell so that the robot machines it most accurately.
+//!
+//! An industrial arm is some fifty times softer than a machine tool, and its softness changes with its pose. So the place of
+//! the workpiece, the posture of the arm and the free rotation of the spindle about the tool axis decide how well it
+//! machines. stead takes a robot, a spindle, a tool path with cutting forces and the volume in which the workpiece may
+//! stand, and finds the best placement, and the worst to show what is at stake (Caro et al. 2013).
+//!
+//! # The rooms
+//!
+//! A room uses only rooms on lower floors.
+//!
+//! | floor | rooms | what they hold |
+//! |---|---|---|
+//! | 5 | [`cli`] | one file per subcommand; no physics |
+//! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
+//! | 3 | [`placement`] | the job: criterion, redundancy planning, search, refinement |
+//! | 2 | [`stiffness`] | how the arm yields |
+//! | 1 | [`robot`], [`task`], [`cutting`] | what the arm is, what is to be cut, what pushes |
+//! | 0 | [`input`] | the one error for anything that a file can get wrong |
+//!
+//! # From a file to a result
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use stead::{config, placement};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let run = config::read_run(Path::new("configs/caro-2013.toml"))?;
+//! let outcome = placement::place::place(&run.problem, &run.search, &run.transfer, &placement::control::Unwatched)?;
+//! for case in &outcome.cases {
+//!     assert!(case.plan.mean > 0.0);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Conventions
+//!
+//! SI units and radians everywhere inside; files carry the unit in the name of the field. A transform `a_from_b` takes
+//! coordinates in b to coordinates in a. Library code returns typed errors: it does not print, exit or panic. The same
+//! input and seed give the same bytes for any number of threads: random numbers are counter-based, reductions run in a
+//! fixed order, and transcendental functions come from `libm`, not from the C library of the machine.
+
 pub mod cli;
 pub mod config;
 pub mod cutting;

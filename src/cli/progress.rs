@@ -20,7 +20,7 @@ impl Watcher {
         // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
         let _ = ctrlc::set_handler(move || {
             if seen.swap(true, Ordering::SeqCst) {
-                #[expect(clippy::exit, reason = "the user asked twice; there is nobody to return to")]
+                // Nobody is left to return to.
                 std::process::exit(130);
             }
         });

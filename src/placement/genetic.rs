@@ -252,8 +252,8 @@ fn figures(goal: Goal, generation: usize, population: &[Individual], evaluations
     }
 }
 
-/// The best individuals that are not in a basin of a better one.
-fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individual> {
+/// Of individuals sorted from the best, those that are not in the basin of a better one: at most `most`.
+pub fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individual> {
     let mut basins: Vec<Individual> = Vec::new();
     for individual in sorted {
         if basins.len() == most {

@@ -1,4 +1,17 @@
 //! The main job: where to put the workpiece.
+//!
+//! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
+//! - [`criterion`]: the score of one state, the ordinary evaluator; [`kernel`]: the same for a whole batch of states.
+//! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
+//! - [`genetic`]: the global search; [`refine`]: gradients from its basins to the optimum.
+//! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
+//! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`control`]: progress out, a wish to stop in.
+//!
+//! Where the paper (Caro et al. 2013) leaves a choice or has a misprint, this room does as follows. Eq. 8 is a plain
+//! rotation about z. The compliance is `J K_theta^-1 J^T` without a complementary term. kappa_F carries the factor 1/6 that
+//! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
+//! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
+
 pub mod control;
 pub mod criterion;
 pub mod feasibility;

@@ -335,7 +335,9 @@ mod tests {
         let shear = matrix![1.0, 0.1, 0.0; 0.0, 0.995, 0.0; 0.0, 0.0, 1.0];
         assert!(Spindle::new(shear, here).is_err());
         assert!(Spindle::new(Matrix3::identity(), vector![f64::NAN, 0.0, 0.0]).is_err());
-        let printed = matrix![0.0, -0.70710678, 0.70710678; 1.0, 0.0, 0.0; 0.0, 0.70710678, 0.70710678];
+        // Half the square root of two, as printed with eight digits.
+        let h = 70_710_678.0 / 1e8;
+        let printed = matrix![0.0, -h, h; 1.0, 0.0, 0.0; 0.0, h, h];
         let rotation = Spindle::new(printed, here).map(|s| s.flange_from_tool.rotation);
         let error = rotation.map(|r| (r * r.transpose() - Matrix3::identity()).abs().max());
         assert!(error.is_ok_and(|e| e < 1e-15));

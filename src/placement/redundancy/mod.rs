@@ -7,9 +7,9 @@
 //! The plan is made in steps:
 //! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
 //!    turn. This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
-//! 2. [`turns`]: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
+//! 2. `turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
-//! 3. [`exact`]: only where that fails, dynamic programming over (beta, turns) in one posture.
+//! 3. `exact`: only where that fails, dynamic programming over (beta, turns) in one posture.
 //! 4. [`fine`]: beta off the grid, by dynamic programming in an ever narrower tube around the plan.
 
 pub mod band;

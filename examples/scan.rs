@@ -1,0 +1,86 @@
+//! Scans a cell exhaustively on a grid of placements and refines from the best and the worst of it: what the genetic search
+//! is measured against.
+//!
+//! `cargo run --release --example scan -- configs/caro-2013.toml [x y z yaw]` with the numbers of grid values (default 7 7 7 72).
+
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
+use rayon::prelude::*;
+use std::env;
+use std::error::Error;
+use std::path::Path;
+use stead::config::read_run;
+use stead::placement::genetic::{Individual, distinct, rank};
+use stead::placement::outcome::Goal;
+use stead::placement::problem::Interval;
+use stead::placement::redundancy::{Extremum, Planner};
+use stead::placement::refine::refine;
+
+/// Basins of the grid that are refined, for each goal.
+const REFINED: usize = 16;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let config = arguments.first().ok_or("usage: scan CONFIG [NX NY NZ NYAW]")?;
+    let mut counts = [7, 7, 7, 72];
+    for (count, text) in counts.iter_mut().zip(&arguments[1..]) {
+        *count = text.parse::<usize>()?.max(1);
+    }
+    let run = read_run(Path::new(config))?;
+    let planner = Planner::new(&run.problem);
+    let cell = &run.problem.cell;
+    let [x, y, z] = cell.position;
+    let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
+    let poses: Vec<[f64; 4]> = (0..counts.iter().product())
+        .map(|mut index| {
+            std::array::from_fn(|k| {
+                let value = axes[k][index % counts[k]];
+                index /= counts[k];
+                value
+            })
+        })
+        .collect();
+    let scanned: Vec<Individual> = poses
+        .par_iter()
+        .map_init(
+            || planner.workspace(),
+            |workspace, pose| Individual {
+                pose: *pose,
+                scheme: None,
+                worth: planner.worth(pose, Extremum::Smallest, None, workspace),
+            },
+        )
+        .collect();
+    let feasible = scanned.iter().filter(|i| i.worth.mean().is_some()).count();
+    println!("{} placements scanned, {feasible} of them feasible", scanned.len());
+    for goal in [Goal::Best, Goal::Worst] {
+        let mut sorted: Vec<Individual> = scanned.iter().filter(|i| i.worth.mean().is_some()).cloned().collect();
+        sorted.sort_by(|a, b| rank(goal, a.worth, b.worth));
+        let basins = distinct(cell, &sorted, REFINED);
+        let refined = basins.par_iter().filter_map(|basin| refine(&planner, &basin.pose, goal, None));
+        let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
+        reports.sort_by(|a, b| match goal {
+            Goal::Best => a.end_mean.total_cmp(&b.end_mean),
+            Goal::Worst => b.end_mean.total_cmp(&a.end_mean),
+        });
+        println!("{goal:?}: the first three of {} refined basins", reports.len());
+        for report in reports.iter().take(3) {
+            println!(
+                "  {:.7} mm at x {:.1} y {:.1} z {:.1} mm, Q4 {:.4} (grid {:.7} mm)",
+                report.end_mean * 1e3,
+                report.end.x * 1e3,
+                report.end.y * 1e3,
+                report.end.z * 1e3,
+                report.end.q4(),
+                report.start_mean * 1e3
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Grid values from end to end; the middle of the interval when there is one value.
+fn axis(bounds: Interval, count: usize) -> Vec<f64> {
+    let share = |k: usize| if count == 1 { 0.5 } else { k as f64 / (count - 1) as f64 };
+    (0..count).map(|k| bounds.min + share(k) * bounds.width()).collect()
+}
