@@ -222,14 +222,17 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Which constraint fails at which points of a placement that has no plan.
-pub fn diagnose(problem: &Problem, pose: &[f64; 4], none: &NoPlan) -> Vec<Finding> {
+/// Which constraint fails at which points of a placement that has no plan, in any posture or in a given scheme (one
+/// posture per segment).
+pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, none: &NoPlan) -> Vec<Finding> {
     let beta_count = problem.redundancy.beta_count;
     let nearest_of = |point: usize| {
+        let only = scheme.map(|postures| postures[problem.task.path().segment_of(point)]);
         let states = (0..beta_count).flat_map(|k| {
             let beta = problem.redundancy.beta(k);
             explain(problem, pose, point, beta).map(|e| (beta, e))
         });
+        let states = states.filter(|(_, e)| only.is_none_or(|posture| e.posture == posture));
         states.min_by(|a, b| a.1.severity().total_cmp(&b.1.severity()))
     };
     let nearest: Vec<_> = none.blocked_points.par_iter().map(|point| (*point, nearest_of(*point))).collect();
@@ -306,7 +309,7 @@ mod tests {
         let planner = Planner::new(&problem);
         let far = [0.0, -4.0, -0.4, 0.0];
         let none = planner.plan(&far, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
-        let findings = diagnose(&problem, &far, &none);
+        let findings = diagnose(&problem, &far, None, &none);
         assert_eq!(findings.first().map(|f| f.points), Some((0, 20)));
         let text = findings[0].to_string();
         assert!(text.contains("segment 1, points 0 to 20") && text.contains("beyond the stretched arm"), "{text}");
@@ -314,7 +317,7 @@ mod tests {
         let planner = Planner::new(&problem);
         let near = [0.0, -1.8, -0.4, 0.0];
         let none = planner.plan(&near, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
-        let text = diagnose(&problem, &near, &none)[0].to_string();
+        let text = diagnose(&problem, &near, None, &none)[0].to_string();
         assert!(text.contains("1/kappa") && text.contains("below 0.95"), "{text}");
     }
 }

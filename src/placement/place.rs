@@ -62,11 +62,18 @@ pub fn place(
     control: &dyn Control,
 ) -> Result<Outcome, NothingFeasible> {
     let planner = Planner::new(problem);
-    let found = [Goal::Best, Goal::Worst].map(|goal| genetic::search(&planner, settings, goal, control));
-    let Some((solutions, refinements)) = finish(&planner, &found, control) else {
-        let nearest = &found[0].basins[0];
-        return Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true));
+    let search = |goal| {
+        let found = genetic::search(&planner, settings, goal, control);
+        match &found.basins[..] {
+            [nearest, ..] if nearest.worth.mean().is_none() => {
+                Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true))
+            }
+            _ => Ok(found),
+        }
     };
+    let found = [search(Goal::Best)?, search(Goal::Worst)?];
+    let (solutions, refinements) = finish(&planner, &found, control)
+        .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
     control.report(Progress::Finishing);
     let [best, worst] = &solutions;
     let case = |number, solution: &Refined, extremum| {
@@ -194,7 +201,7 @@ fn worst_plan(
 
 fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> NothingFeasible {
     let none = planner.plan(pose, Extremum::Smallest, scheme, &mut planner.workspace());
-    let findings = none.err().map(|none| diagnose(planner.problem(), pose, &none)).unwrap_or_default();
+    let findings = none.err().map(|none| diagnose(planner.problem(), pose, scheme, &none)).unwrap_or_default();
     let [x, y, z, yaw] = *pose;
     NothingFeasible { placement: Placement { x, y, z, yaw }, searched, findings }
 }
@@ -229,5 +236,72 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
         mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
         max: points.iter().map(|p| p.score).fold(0.0, f64::max),
         points,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::control::Unwatched;
+    use super::super::settings::PostureSearch;
+    use super::super::testing::five_segments;
+    use super::*;
+
+    fn small() -> SearchSettings {
+        SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
+    }
+
+    #[test]
+    fn four_cases_are_ordered_and_complete() {
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 40;
+        for postures in [PostureSearch::Exact, PostureSearch::Genetic] {
+            // A random scheme is rarely feasible, so the published way needs more individuals to find any.
+            let population = if postures == PostureSearch::Genetic { 80 } else { 16 };
+            let settings = SearchSettings { postures, population, ..small() };
+            let outcome = place(&problem, &settings, &TransferSettings::default(), &Unwatched).unwrap();
+            let means: Vec<f64> = outcome.cases.iter().map(|c| c.plan.mean).collect();
+            assert!(means[0] <= means[1] && means[2] <= means[3] && means[0] <= means[2], "{means:?}");
+            assert!(outcome.cases.iter().all(|c| c.plan.points.len() == 105 && c.plan.postures.len() == 5));
+            assert_eq!(outcome.cases[0].placement, outcome.cases[1].placement);
+            assert!(outcome.refinements.iter().all(|r| match r.goal {
+                Goal::Best => r.end_mean <= r.start_mean,
+                Goal::Worst => r.end_mean >= r.start_mean,
+            }));
+            assert!(!outcome.interrupted);
+        }
+    }
+
+    #[test]
+    fn a_cell_out_of_reach_says_why() {
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 24;
+        problem.cell.position[1] = super::super::problem::Interval { min: -6.0, max: -5.0 };
+        let nothing = place(&problem, &small(), &TransferSettings::default(), &Unwatched).unwrap_err();
+        assert!(nothing.searched && !nothing.findings.is_empty());
+        assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");
+    }
+
+    #[test]
+    fn stopping_early_still_returns_a_result() {
+        struct Stop;
+        impl Control for Stop {
+            fn should_stop(&self) -> bool {
+                true
+            }
+        }
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 24;
+        let outcome = place(&problem, &small(), &TransferSettings::default(), &Stop).unwrap();
+        assert!(outcome.interrupted && outcome.refinements.is_empty());
+        assert_eq!(outcome.evaluations, 32);
+    }
+
+    #[test]
+    fn score_agrees_with_the_prototype() {
+        let problem = five_segments();
+        let yaw = crate::robot::angles::yaw_from_q4(0.9258);
+        let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
+        assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
+        assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
     }
 }

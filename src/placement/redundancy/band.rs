@@ -20,15 +20,14 @@ pub(super) struct Sweep {
     pub ends: [Option<(f64, usize)>; 4],
     /// For each class the first point that it cannot get to.
     pub stuck: [Option<usize>; 4],
-    /// Points without an allowed state in any class.
+    /// Points without an allowed state in any class asked for.
     pub blocked: Vec<usize>,
 }
 
 impl Sweep {
     /// The first point that the class that gets farthest cannot get to.
-    pub fn farthest(&self, only: Option<Posture>) -> usize {
-        let asked = PostureClass::ALL.into_iter().filter(|class| only.is_none_or(|p| p.class() == *class));
-        asked.filter_map(|class| self.stuck[class.index()]).max().unwrap_or(0)
+    pub fn farthest(&self) -> usize {
+        self.stuck.iter().flatten().copied().max().unwrap_or(0)
     }
 }
 
@@ -51,12 +50,14 @@ impl Planner<'_> {
         Step { reach: self.reaches[point], limits: &self.steps[point], modulo: &self.modulo, sign: extremum.sign() }
     }
 
-    /// Passes over the points of a segment. With `count_only`, only the blocked points are found.
+    /// Passes over the points of a segment, in every posture class or in that of one posture. With `count_only`, only the
+    /// blocked points are found.
     pub(super) fn sweep(
         &self,
         span: Span<usize>,
         pose: &[f64; 4],
         extremum: Extremum,
+        only: Option<Posture>,
         workspace: &mut Workspace,
         count_only: bool,
     ) -> Sweep {
@@ -65,6 +66,12 @@ impl Planner<'_> {
         let Workspace { scratch, before, now, came_from } = workspace;
         for (place, point) in span.enumerate() {
             self.kernel.evaluate(point, pose, scratch, now);
+            if let Some(posture) = only {
+                PostureClass::ALL
+                    .into_iter()
+                    .filter(|class| *class != posture.class())
+                    .for_each(|class| now.clear(class));
+            }
             if PostureClass::ALL.iter().all(|class| !now.is_alive(*class)) {
                 sweep.blocked.push(point);
             }

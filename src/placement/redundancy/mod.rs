@@ -172,7 +172,7 @@ impl<'a> Planner<'a> {
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let outcome = self.sweep(span.clone(), pose, extremum, workspace, points + segments > 0);
+            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, points + segments > 0);
             points += outcome.blocked.len();
             if points + segments > 0 {
                 continue;
@@ -204,10 +204,10 @@ impl<'a> Planner<'a> {
         let mut choices = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let outcome = self.sweep(span.clone(), pose, extremum, workspace, false);
+            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, false);
             match self.choose(span.clone(), pose, extremum, only, &outcome, workspace) {
                 Some(choice) => choices.push(choice),
-                None if outcome.blocked.is_empty() => failure.broken_segments.push((index, outcome.farthest(only))),
+                None if outcome.blocked.is_empty() => failure.broken_segments.push((index, outcome.farthest())),
                 None => failure.blocked_points.extend(&outcome.blocked),
             }
         }
@@ -227,7 +227,6 @@ impl<'a> Planner<'a> {
         // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
-            .filter(|class| only.is_none_or(|posture| posture.class() == *class))
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -122,3 +122,46 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
         }
     }
 }
+
+#[test]
+fn a_cell_without_room_is_refined_in_beta_alone() {
+    let mut problem = five_segments();
+    let pose = published_optimum();
+    problem.cell.position = [pose[0], pose[1], pose[2]].map(|v| Interval { min: v, max: v });
+    problem.cell.yaw = Interval { min: pose[3], max: pose[3] };
+    let planner = Planner::new(&problem);
+    for goal in [Goal::Best, Goal::Worst] {
+        let (solution, report) = refine(&planner, &pose, goal, None).unwrap();
+        assert_allowed(&problem, &solution);
+        assert!(report.end_mean <= report.start_mean * (1.0 + 1e-12));
+        assert!((0..4).all(|k| (solution.pose[k] - pose[k]).abs() < 1e-12), "{:?}", solution.pose);
+    }
+}
+
+#[test]
+fn argmin_observers_see_every_iteration() {
+    use argmin::core::observers::{Observe, ObserverMode};
+    use argmin::core::{Error, KV};
+    use std::sync::{Arc, Mutex};
+
+    struct Costs(Arc<Mutex<Vec<f64>>>);
+    impl Observe<solver::Iterate> for Costs {
+        fn observe_iter(&mut self, state: &solver::Iterate, _: &KV) -> Result<(), Error> {
+            self.0.lock().unwrap().push(state.get_cost());
+            Ok(())
+        }
+    }
+
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    let tube = fine::Tube::full(&problem);
+    let start = planned(&planner, &[0.0, -1.7, -0.4, 0.7], None, tube, &mut planner.workspace()).unwrap();
+    let costs = Arc::new(Mutex::new(Vec::new()));
+    let observer = Costs(Arc::clone(&costs));
+    let run = solver::run_observed(&problem, &start, |executor| executor.add_observer(observer, ObserverMode::Always));
+    let costs = costs.lock().unwrap();
+    assert_eq!(costs.len(), run.iterations);
+    assert!(costs.len() > 2 && costs.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert_eq!(costs.last().copied(), Some(run.solution.mean()));
+    assert!(!run.status.is_empty());
+}
