@@ -31,10 +31,10 @@ pub(super) struct PlaceOptions {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Seed of the random numbers, instead of the run file's
-    #[arg(long, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// Number of threads [default: as many as processors]; it does not change the result
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print one JSON document instead of tables
     #[arg(long)]
@@ -59,7 +59,7 @@ pub(super) struct ExplainOptions {
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Path point, counted from 0 in the order of the task file
-    #[arg(long, value_name = "I")]
+    #[arg(long, value_name = "I", value_parser = point, allow_negative_numbers = true)]
     pub point: usize,
     /// Free angle beta about the tool axis in degrees
     #[arg(long, value_name = "B", value_parser = finite, allow_hyphen_values = true)]
@@ -117,6 +117,16 @@ fn finite(text: &str) -> Result<f64, String> {
 
 fn quaternion(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|q| (-1.0..=1.0).contains(q)).ok_or_else(|| "allowed: a number from -1 to 1".to_owned())
+}
+
+/// Seeds are what a run file can hold too.
+fn seed(text: &str) -> Result<u64, String> {
+    const MOST: u64 = i64::MAX as u64;
+    text.parse().ok().filter(|n| *n <= MOST).ok_or_else(|| format!("allowed: a whole number from 0 to {MOST}"))
+}
+
+fn point(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
 }
 
 /// More threads than this help nobody.

@@ -4,6 +4,7 @@ use super::arguments::PlaceOptions;
 use super::progress::Watcher;
 use super::{Failure, on_threads, print, say};
 use crate::config::read_run;
+use crate::placement::control::Control;
 use crate::placement::place::place;
 use crate::report::json::{self, Timing};
 use crate::report::output::Folder;
@@ -27,6 +28,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let outcome = outcome.inspect_err(|nothing| {
         if options.json {
             print(&json::bytes(&evaluation::infeasible_json(nothing)));
+        }
+        if watcher.should_stop() {
+            say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
 

@@ -7,8 +7,9 @@ use tempfile::Builder;
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The output folder is not there and cannot be made, or something else stands in its place.
-    #[error("{}: the output folder cannot be created: {cause}", path.display())]
+    /// The output folder is not there and cannot be made, something else stands in its place, or nothing can be written to
+    /// it.
+    #[error("{}: results cannot be written here: {cause}; allowed: a folder that can be made or written to", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -40,13 +41,18 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Takes a folder, making it and its parents where they are missing.
+    /// Takes a folder, making it and its parents where they are missing, and tries whether a file can be written to it.
     ///
     /// # Errors
-    /// [`ReportError::Folder`] when there is none and none can be made.
+    /// [`ReportError::Folder`] when there is none and none can be made, or when no file can be written to it.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
         let fail = |cause| ReportError::Folder { path: path.to_owned(), cause };
+        if path.exists() && !path.is_dir() {
+            return Err(fail(std::io::Error::new(std::io::ErrorKind::NotADirectory, "a file of that name is there")));
+        }
         std::fs::create_dir_all(path).map_err(fail)?;
+        // Gone again as soon as it is dropped.
+        temporary().tempfile_in(path).map_err(fail)?;
         Ok(Self { path: path.to_owned() })
     }
 
@@ -69,8 +75,7 @@ impl Folder {
     }
 
     fn write_whole(&self, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-        let mut builder = Builder::new();
-        builder.prefix(".stead-").suffix(".tmp");
+        let mut builder = temporary();
         readable(&mut builder);
         let mut file = builder.tempfile_in(&self.path)?;
         file.write_all(bytes)?;
@@ -78,6 +83,13 @@ impl Folder {
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     }
+}
+
+/// What temporary files are called.
+fn temporary() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".stead-").suffix(".tmp");
+    builder
 }
 
 /// Temporary files are private by default; results get the permissions of any new file.
@@ -112,7 +124,8 @@ mod tests {
         std::fs::write(&file, "").unwrap();
         let error = Folder::create(&file).unwrap_err();
         assert!(matches!(error, ReportError::Folder { .. }));
-        assert!(error.to_string().starts_with(&format!("{}: the output folder", file.display())), "{error}");
+        let start = format!("{}: results cannot be written here: a file of that name", file.display());
+        assert!(error.to_string().starts_with(&start), "{error}");
 
         let folder = Folder::create(&place.path().join("out")).unwrap();
         std::fs::create_dir(folder.path().join("best.csv")).unwrap();

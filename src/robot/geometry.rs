@@ -55,8 +55,8 @@ impl Geometry {
         for (number, field, length) in [(5, "a", joints[4].a), (5, "d", joints[4].d), (6, "a", joints[5].a)] {
             if length.abs() > LENGTH_TOLERANCE {
                 let reason = format!(
-                    "the wrist is not spherical: axes 4, 5 and 6 must meet in one point, which needs {field}_{number} = 0, \
-                     found {} mm",
+                    "the wrist is not spherical: axes 4, 5 and 6 must meet in one point, which needs {field}_{number} = 0 \
+                     and not {} mm",
                     length * 1e3
                 );
                 return Err(RobotError::Geometry { joint: number, field, reason });
@@ -64,7 +64,7 @@ impl Geometry {
         }
         let upper_arm = joints[2].a;
         if upper_arm <= LENGTH_TOLERANCE {
-            let reason = format!("the upper arm a_3 must be above zero, found {} mm", upper_arm * 1e3);
+            let reason = format!("the upper arm a_3 must be above zero, and not {} mm", upper_arm * 1e3);
             return Err(RobotError::Geometry { joint: 3, field: "a", reason });
         }
         let (a4, d4) = (joints[3].a, joints[3].d);
@@ -112,7 +112,7 @@ fn right_angle(joints: &[Joint; 6], number: usize, rule: &str) -> Result<f64, Ro
     let (sine, cosine) = libm::sincos(joints[number - 1].alpha);
     if cosine.abs() > TWIST_TOLERANCE {
         let found = joints[number - 1].alpha.to_degrees();
-        let reason = format!("{rule}, which needs alpha_{number} = 90 or -90 deg, found {found} deg");
+        let reason = format!("{rule}, which needs alpha_{number} = 90 or -90 deg and not {found} deg");
         return Err(RobotError::Geometry { joint: number, field: "alpha", reason });
     }
     Ok(if sine > 0.0 { 1.0 } else { -1.0 })
@@ -124,7 +124,7 @@ fn straight_angle(joints: &[Joint; 6], number: usize) -> Result<f64, RobotError>
     if sine.abs() > TWIST_TOLERANCE {
         let found = joints[number - 1].alpha.to_degrees();
         let reason = format!(
-            "axis {number} must be parallel to axis 2, which needs alpha_{number} = 0 or 180 deg, found {found} deg"
+            "axis {number} must be parallel to axis 2, which needs alpha_{number} = 0 or 180 deg and not {found} deg"
         );
         return Err(RobotError::Geometry { joint: number, field: "alpha", reason });
     }

@@ -40,14 +40,15 @@ pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
 /// As [`read_csv`].
 pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
-    let header = reader.headers().map_err(|e| csv_error(file, &e))?.clone();
+    let mut line_at = LineCounter { bytes, at: 0, line: 1 };
+    let header = reader.headers().map_err(|e| csv_error(file, &mut line_at, &e))?.clone();
     let columns = Columns::find(file, &header)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut lines = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| csv_error(file, &e))?;
-        let row = Row { file, record: &record, header: &header };
+        let record = record.map_err(|e| csv_error(file, &mut line_at, &e))?;
+        let row = Row { file, line: line_at.of(record.position()), record: &record, header: &header };
         let segment = row.segment(columns.required[0])?;
         let vector = |k: usize| row.vector([columns.required[k], columns.required[k + 1], columns.required[k + 2]]);
         points.push((segment, PathPoint { position: vector(1)? * 1e-3, feed: vector(4)?, axis: vector(7)? }));
@@ -55,7 +56,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
             let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| row.vector(moment))?;
             wrenches.push(Wrench { force: row.vector(force)?, moment });
         }
-        lines.push(row.line());
+        lines.push(row.line);
     }
     let path = ToolPath::new(points).map_err(|e| locate(file, &lines, &e))?;
     Ok(Imported { path, wrenches, lines })
@@ -77,6 +78,14 @@ impl Columns {
                 .in_field(column)
                 .allowed(all().copied().collect::<Vec<_>>().join(","))
         };
+        if let (1, Some(name)) = (header.len(), header.get(0))
+            && let Some(mark) = [';', '\t', '|'].into_iter().find(|mark| name.contains(*mark))
+        {
+            return Err(InputError::new(file, "the columns are not separated by commas")
+                .at_line(1)
+                .found(format!("{mark:?} between them"))
+                .allowed("columns separated by commas, and a point in decimal numbers"));
+        }
         for (index, name) in header.iter().enumerate() {
             if !all().any(|known| *known == name) {
                 let nearest = all().max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));
@@ -111,21 +120,44 @@ impl Columns {
     }
 }
 
+/// Tells the line of a row. The reader's own count takes a row to begin right behind the row before it, so it is early
+/// after blank lines, and by one in files whose lines end in carriage return and line feed.
+struct LineCounter<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl LineCounter<'_> {
+    /// The line, from 1, of the row that the reader says to begin at a position, which must not go back.
+    fn of(&mut self, position: Option<&csv::Position>) -> usize {
+        let start = position.map_or(0, |position| position.byte() as usize).min(self.bytes.len());
+        let blank = self.bytes[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+        while self.at < start + blank {
+            let ends = match self.bytes[self.at] {
+                b'\n' => true,
+                b'\r' => self.bytes.get(self.at + 1) != Some(&b'\n'),
+                _ => false,
+            };
+            self.line += usize::from(ends);
+            self.at += 1;
+        }
+        self.line
+    }
+}
+
 /// One row under its header.
 struct Row<'a> {
     file: &'a Path,
+    line: usize,
     record: &'a csv::StringRecord,
     header: &'a csv::StringRecord,
 }
 
 impl Row<'_> {
-    fn line(&self) -> usize {
-        self.record.position().map_or(0, |p| p.line() as usize)
-    }
-
     fn fail(&self, column: usize, problem: &str, allowed: &str) -> InputError {
         InputError::new(self.file, problem)
-            .at_line(self.line())
+            .at_line(self.line)
             .in_field(&self.header[column])
             .found(format!("'{}'", &self.record[column]))
             .allowed(allowed)
@@ -147,19 +179,19 @@ impl Row<'_> {
     }
 }
 
-fn csv_error(file: &Path, error: &csv::Error) -> InputError {
-    let line = error.position().map(|p| p.line() as usize);
-    let problem = match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("this row has {len} values under {expected_len} columns")
-        }
-        csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
-        _ => format!("not readable as CSV: {error}"),
+fn csv_error(file: &Path, line_at: &mut LineCounter<'_>, error: &csv::Error) -> InputError {
+    let (problem, allowed) = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
+            format!("this row does not fit its header, found {len} values"),
+            format!("{expected_len} values, one for each column"),
+        ),
+        csv::ErrorKind::Utf8 { .. } => ("not UTF-8 text".to_owned(), "UTF-8 text".to_owned()),
+        _ => (format!("not readable as CSV: {error}"), "a CSV file".to_owned()),
     };
-    let error = InputError::new(file, problem);
-    match line {
-        Some(line) => error.at_line(line),
-        None => error,
+    let located = InputError::new(file, problem).allowed(allowed);
+    match error.position() {
+        Some(position) => located.at_line(line_at.of(Some(position))),
+        None => located,
     }
 }
 
@@ -233,13 +265,30 @@ mod tests {
             (HEADER.to_owned(), ["no points", "allowed", "at least one row", ""]),
             (format!("{HEADER}2,10,20,30,1,0,0,0,0,1,5,6,7\n"), [":2:", "segment", "found 2", "1 at the start"]),
             (format!("{HEADER}1,10,20,30,1,0,0,0,0,2,5,6,7\n"), [":2:", "axis", "length 2", "length 1"]),
-            (format!("{HEADER}1,10,20,30,1,0,0\n"), [":2:", "7 values", "13 columns", ""]),
+            (format!("{HEADER}1,10,20,30,1,0,0\n"), [":2:", "found 7 values", "allowed: 13 values", ""]),
+            (HEADER.replace(',', ";"), [":1:", "found ';'", "allowed", "separated by commas"]),
+            (HEADER.replace(',', "\t"), [":1:", "found '\\t'", "allowed", "separated by commas"]),
             (format!("{HEADER}x,10,20,30,1,0,0,0,0,1,5,6,7\n"), [":2:", "segment", "'x'", "whole numbers"]),
         ] {
             let message = read(&text).map(|_| ()).unwrap_err().to_string();
             for part in parts {
                 assert!(message.contains(part), "{part} in {message}");
             }
+        }
+    }
+
+    #[test]
+    fn lines_are_those_of_an_editor_whatever_ends_them() {
+        let good = ["1,10,20,30,1,0,0,0,0,1,5,6,7", "1,11,20,30,1,0,0,0,0,1,5,6,7", "1,12,20,30,1,0,0,0,0,1,5,6,7"];
+        for end in ["\n", "\r\n", "\r"] {
+            let blank = end.repeat(3);
+            // The mark at the start is what spreadsheets put there.
+            let text = ["\u{feff}", HEADER.trim_end(), end, good[0], end, good[1], &blank, good[2], end].concat();
+            assert_eq!(read(&text).unwrap().lines, [2, 3, 6], "{end:?}");
+            let bad = text.replace("1,12,20,30", "1,12,2O,30");
+            assert!(read(&bad).map(drop).unwrap_err().to_string().contains(":6: y_mm: "), "{end:?}");
+            let short = text.replace("1,12,20,30", "1,12,20");
+            assert!(read(&short).map(drop).unwrap_err().to_string().contains(":6: this row"), "{end:?}");
         }
     }
 }

@@ -1,0 +1,126 @@
+//! A folder with a run of its own, and the command run in it.
+
+use assert_cmd::cargo::cargo_bin;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// The run file of a [`Bench`], from its folder.
+pub const RUN: &str = "configs/run.toml";
+
+/// A temporary folder with the published case in it: run file, robot and task as in the crate, and a search so small
+/// that it takes seconds. The command runs in this folder.
+pub struct Bench {
+    folder: TempDir,
+}
+
+/// How the command ended and what it said.
+pub struct Ended {
+    /// Exit code; none after a signal.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Bench {
+    /// Copies the files.
+    pub fn new() -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        for (from, to) in [
+            ("configs/caro-2013.toml", RUN),
+            ("configs/robots/kuka-kr270-2.toml", "configs/robots/kuka-kr270-2.toml"),
+            ("tasks/five-segments.csv", "tasks/five-segments.csv"),
+        ] {
+            bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
+        }
+        bench.replace(RUN, "population = 120\n", "population = 16\n");
+        bench.replace(RUN, "generations = 51\n", "generations = 3\nbasins = 2\n");
+        bench.replace(RUN, "beta_step_deg = 3.0\n", "beta_step_deg = 12.0\n");
+        bench
+    }
+
+    /// A path in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// What is in a file.
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// Writes a file, and the folders to it.
+    pub fn write(&self, name: &str, text: &str) {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    /// Replaces the first place where a text stands in a file, which must be there. Returns its line, from 1.
+    pub fn replace(&self, name: &str, from: &str, to: &str) -> usize {
+        let text = self.read(name);
+        let at = text.find(from).unwrap_or_else(|| panic!("{from} is not in {name}"));
+        self.write(name, &text.replacen(from, to, 1));
+        1 + text[..at].matches('\n').count()
+    }
+
+    /// The command in this folder, not started yet.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(cargo_bin!("stead"));
+        command.current_dir(self.folder.path()).args(arguments);
+        command
+    }
+
+    /// Runs the command to its end; neither output is a terminal.
+    pub fn stead(&self, arguments: &[&str]) -> Ended {
+        Ended::from(self.command(arguments).output().unwrap())
+    }
+
+    /// Every file and folder below a folder of this one, by its path from there; folders have no content.
+    pub fn tree(&self, below: &str) -> BTreeMap<String, Option<Vec<u8>>> {
+        let root = self.path(below);
+        let mut tree = BTreeMap::new();
+        let mut folders = vec![root.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(&folder).unwrap() {
+                let path = entry.unwrap().path();
+                let name = path.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+                if path.is_dir() {
+                    tree.insert(name, None);
+                    folders.push(path);
+                } else {
+                    tree.insert(name, Some(std::fs::read(path).unwrap()));
+                }
+            }
+        }
+        tree
+    }
+}
+
+impl From<std::process::Output> for Ended {
+    fn from(output: std::process::Output) -> Self {
+        Self {
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
+impl Ended {
+    /// The one JSON document that is all of standard output.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in {} and {}", self.stdout, self.stderr))
+    }
+
+    /// Asserts that standard error has each of some parts.
+    pub fn assert_says(&self, parts: &[&str]) {
+        for part in parts {
+            assert!(self.stderr.contains(part), "{part} is not in {}", self.stderr);
+        }
+    }
+}

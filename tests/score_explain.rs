@@ -1,0 +1,221 @@
+//! `stead score` and `stead explain` from outside, on the published case.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
+mod common;
+
+use common::{Bench, Ended, RUN};
+use serde_json::Value;
+use std::process::Stdio;
+
+/// Caro 2013, Table III, case 1: where our reference values were computed, independently of this program.
+const PLACE: [&str; 6] = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4"];
+const Q4: [&str; 2] = ["--q4", "0.9258"];
+
+/// The published grid of 3 deg.
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.replace(RUN, "beta_step_deg = 12.0", "beta_step_deg = 3.0");
+    bench
+}
+
+fn run(bench: &Bench, command: &str, more: &[&[&str]]) -> Ended {
+    bench.stead(&[&[command, RUN], &more.concat()[..]].concat())
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[track_caller]
+fn assert_near(found: &Value, expected: f64, tolerance: f64) {
+    assert!((number(found) - expected).abs() <= tolerance, "{found} and not {expected}");
+}
+
+#[test]
+fn score_has_the_reference_values() {
+    let bench = bench();
+    let before = bench.tree("");
+    let ended = run(&bench, "score", &[&PLACE, &Q4, &["--json"]]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!(bench.tree(""), before);
+    let document = ended.json();
+    assert_eq!(document["feasible"], true);
+    let keys = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"];
+    for (key, expected) in keys.iter().zip([2.2, -1643.5, -556.4, 0.9258, 135.5786]) {
+        assert_near(&document["placement"][key], expected, 5e-5);
+    }
+    assert_eq!(document["placement"].as_object().unwrap().len(), keys.len());
+    for (plan, mean) in [("best", 0.5357), ("worst", 0.594)] {
+        let plan = &document[plan];
+        assert_near(&plan["mean_mm"], mean, 0.01 * mean);
+        assert!(number(&plan["max_mm"]) > number(&plan["mean_mm"]));
+        let postures: Vec<u64> = plan["postures"].as_array().unwrap().iter().map(|p| p.as_u64().unwrap()).collect();
+        assert!(postures.len() == 5 && postures.iter().all(|p| (1..=8).contains(p)), "{postures:?}");
+    }
+
+    let table = run(&bench, "score", &[&PLACE, &Q4]);
+    assert_eq!((table.code, table.stderr.as_str()), (Some(0), ""));
+    for plan in ["best", "worst"] {
+        let row = table.stdout.lines().find(|line| line.starts_with(plan)).unwrap();
+        let mean = format!("{:.4}", number(&document[plan]["mean_mm"]));
+        assert_eq!(row.split_whitespace().nth(1), Some(mean.as_str()));
+    }
+}
+
+#[test]
+fn yaw_may_be_given_as_q4_or_in_degrees_of_any_turn() {
+    let bench = bench();
+    // Q4 is the sine of half the yaw.
+    let [by_q4, by_yaw, by_turn] = [["--q4", "-0.5"], ["--yaw-deg", "-60"], ["--yaw-deg", "300"]]
+        .map(|turn| run(&bench, "score", &[&PLACE, &turn, &["--json"]]));
+    assert_eq!((by_q4.code, by_yaw.code, by_turn.code), (Some(0), Some(0), Some(0)), "{}", by_q4.stderr);
+    assert_near(&by_yaw.json()["placement"]["q4"], -0.5, 1e-6);
+    assert_near(&by_turn.json()["placement"]["yaw_deg"], -60.0, 1e-4);
+    for other in [by_yaw, by_turn] {
+        for plan in ["best", "worst"] {
+            for key in ["mean_mm", "max_mm"] {
+                assert_near(&other.json()[plan][key], number(&by_q4.json()[plan][key]), 1.1e-7);
+            }
+        }
+    }
+}
+
+#[test]
+fn score_out_of_reach_says_which_constraint_fails_where() {
+    let bench = bench();
+    let far = ["--x-mm", "0", "--y-mm", "-4000", "--z-mm", "-400", "--yaw-deg", "0"];
+    let ended = run(&bench, "score", &[&far, &["--json"]]);
+    assert_eq!(ended.code, Some(1));
+    let document = ended.json();
+    assert_eq!(document["feasible"], false);
+    assert_eq!((&document["best"], &document["worst"]), (&Value::Null, &Value::Null));
+    let finding = &document["findings"][0];
+    assert_eq!((&finding["segment"], &finding["first_point"]), (&1.into(), &0.into()));
+    assert!(number(&finding["last_point"]) >= 20.0);
+    let parts =
+        ["note: this placement is outside the cell", "error: nothing is feasible at x = 0.0 mm, y = -4000.0 mm"];
+    ended.assert_says(&parts);
+    ended.assert_says(&["segment 1, points 0 to 20: no allowed state", " mm beyond the stretched arm"]);
+
+    let table = run(&bench, "score", &[&far]);
+    assert_eq!((table.code, table.stdout.as_str()), (Some(1), ""));
+    assert_eq!(table.stderr, ended.stderr);
+
+    // A constraint of the cell's own: every point can be reached, but never so well conditioned.
+    bench.replace(RUN, "min_inverse_condition = 0.2", "min_inverse_condition = 0.9");
+    let ended = run(&bench, "score", &[&PLACE, &Q4]);
+    assert_eq!(ended.code, Some(1));
+    ended.assert_says(&["1/kappa", " below 0.9", "segment 5, points 84 to 104"]);
+    assert!(!ended.stderr.contains("outside the cell"), "{}", ended.stderr);
+}
+
+#[test]
+fn explain_has_the_reference_state() {
+    let bench = bench();
+    let ended = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40", "--json"]]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let document = ended.json();
+    assert_eq!((&document["point"], number(&document["beta_deg"])), (&30.into(), 40.0));
+    let postures = document["postures"].as_array().unwrap();
+    let numbers: Vec<u64> = postures.iter().map(|p| p["posture"].as_u64().unwrap()).collect();
+    assert_eq!(numbers, [1, 2, 3, 4, 5, 6, 7, 8]);
+    let third = &postures[2];
+    let expected = [-92.6318, 27.4912, -150.7821, -178.7079, 101.6922, 1.5275];
+    for (joint, expected) in third["joints_deg"].as_array().unwrap().iter().zip(expected) {
+        assert_near(joint, expected, 5.01e-5);
+    }
+    assert_near(&third["normal_deflection_mm"], 0.839_242_8, 5.01e-8);
+    assert_near(&third["inverse_condition"], 0.479_182, 5.01e-7);
+    assert_eq!((&third["feasible"], &third["violations"]), (&true.into(), &Value::Array(vec![])));
+}
+
+/// Postures that break a limit say so with the amount; here the limits come from the robot file once more.
+#[test]
+fn explain_tells_what_each_refused_posture_breaks_and_by_how_much() {
+    let bench = bench();
+    let robot: toml::Table = toml::from_str(&bench.read("configs/robots/kuka-kr270-2.toml")).unwrap();
+    let joints = robot["joints"].as_array().unwrap();
+    let ended = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40", "--json"]]);
+    let (mut refused, mut unreachable) = (0, 0);
+    for posture in ended.json()["postures"].as_array().unwrap() {
+        let told: Vec<&str> = posture["violations"].as_array().unwrap().iter().map(|v| v.as_str().unwrap()).collect();
+        let mut expected = Vec::new();
+        let Some(angles) = posture["joints_deg"].as_array() else {
+            assert_eq!((posture["feasible"].as_bool(), told.len()), (Some(false), 1), "{posture}");
+            assert!(
+                told[0].starts_with("wrist centre ") && told[0].contains(" mm beyond the stretched arm"),
+                "{told:?}"
+            );
+            unreachable += 1;
+            continue;
+        };
+        for (number_, (angle, joint)) in (1..).zip(angles.iter().zip(joints)) {
+            let angle = number(angle);
+            let [min, max] = ["min_deg", "max_deg"].map(|key| joint[key].as_float().unwrap());
+            let (limit, side) = if angle > max { (max, "above") } else { (min, "below") };
+            if !(min..=max).contains(&angle) {
+                let by = (angle - limit).abs();
+                expected
+                    .push(format!("joint {number_} at {angle:.2} deg is {by:.2} deg {side} its limit {limit:.2} deg"));
+            }
+        }
+        let condition = number(&posture["inverse_condition"]);
+        if condition < 0.2 {
+            expected.push(format!("1/kappa {condition:.4} is {:.4} below 0.2", 0.2 - condition));
+        }
+        assert_eq!(told, expected);
+        assert_eq!(posture["feasible"], expected.is_empty());
+        refused += usize::from(!expected.is_empty());
+    }
+    assert_eq!((refused, unreachable), (2, 4));
+
+    let table = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40"]]);
+    assert_eq!((table.code, table.stderr.as_str()), (Some(0), ""));
+    let rows: Vec<&str> = table.stdout.lines().filter(|l| l.ends_with("allowed") || l.ends_with("refused")).collect();
+    assert_eq!(rows.len(), 8);
+    assert!(rows[2].ends_with("allowed") && rows[0].ends_with("refused"), "{}", table.stdout);
+    assert!(table.stdout.contains("posture 1: joint 2 at -31.66 deg is 31.66 deg below its limit 0.00 deg"));
+}
+
+#[test]
+fn explain_agrees_with_score_on_a_limit_of_the_deflection() {
+    let bench = bench();
+    bench.replace(RUN, "[criterion]", "max_deflection_mm = 0.8\n[criterion]");
+    let ended = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40", "--json"]]);
+    let third = &ended.json()["postures"][2];
+    assert_eq!(third["feasible"], false);
+    assert_eq!(third["violations"][0], "deflection 0.8392 mm is 0.0392 mm above c_max = 0.8 mm");
+    let ended = run(&bench, "score", &[&PLACE, &Q4]);
+    assert_eq!(ended.code, Some(1));
+    ended.assert_says(&["above c_max = 0.8 mm"]);
+}
+
+#[test]
+fn a_reader_that_has_gone_away_is_no_failure() {
+    let bench = bench();
+    let mut command = bench.command(&[&["score", RUN][..], &PLACE, &Q4].concat());
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn help_and_version_are_no_failures() {
+    let bench = Bench::new();
+    let version = bench.stead(&["--version"]);
+    assert_eq!(version.code, Some(0));
+    assert_eq!(version.stdout, format!("stead {}\n", env!("CARGO_PKG_VERSION")));
+    let help = bench.stead(&["--help"]);
+    assert_eq!(help.code, Some(0));
+    for command in ["place", "score", "explain"] {
+        assert!(help.stdout.lines().any(|line| line.trim_start().starts_with(command)), "{command}");
+        let own = bench.stead(&[command, "--help"]);
+        assert_eq!((own.code, own.stderr.as_str()), (Some(0), ""));
+        assert!(own.stdout.contains("<CONFIG>") && own.stdout.contains("--json"), "{}", own.stdout);
+    }
+    let nothing = bench.stead(&[]);
+    assert_eq!((nothing.code, nothing.stdout.as_str()), (Some(2), ""));
+    nothing.assert_says(&["Usage: stead <COMMAND>"]);
+}
