@@ -2,7 +2,7 @@
 
 use super::arguments::ExplainOptions;
 use super::score::mention_cell;
-use super::{Failure, print};
+use super::{Failure, print, say};
 use crate::config::read_run;
 use crate::placement::feasibility::explain;
 use crate::report::{evaluation, json};
@@ -18,6 +18,7 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
         )));
     }
     let placement = options.place.placement();
+    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     mention_cell(&run.problem, &placement);
     let beta = options.beta_deg.to_radians();
     let pose = [placement.x, placement.y, placement.z, placement.yaw];

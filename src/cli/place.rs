@@ -17,7 +17,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let mut search = run.search;
     search.seed = options.seed.unwrap_or(search.seed);
     // Before the long work: an output folder that cannot be written is found out now.
-    let folder = Folder::create(&out_dir(options)).map_err(Failure::Output)?;
+    let out = out_dir(options);
+    let is_new = !out.exists();
+    let folder = Folder::create(&out).map_err(Failure::Output)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
 
     let watcher = Watcher::start();
@@ -29,24 +31,32 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         if options.json {
             print(&json::bytes(&evaluation::infeasible_json(nothing)));
         }
+        if is_new {
+            // Goes only if it is empty, as it should be.
+            let _ = std::fs::remove_dir(&out);
+        }
         if watcher.should_stop() {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
 
     let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
-    write_placement(&folder, &run.problem, &outcome, &context).map_err(|e| Failure::Job(e.to_string()))?;
+    let written = write_placement(&folder, &run.problem, &outcome, &context);
+    // Whatever happened to the files, the result of a long search is shown.
     if options.json {
         print(&json::bytes(&json::place_json(&outcome, &context, &Timing { wall, threads })));
     } else {
         let table = text::placement_text(&run.problem, &outcome, &context);
-        let where_to = folder.path().display();
-        print(format!("{table}in {wall:.1} s on {threads} threads; results in {where_to}\n").as_bytes());
+        let where_to = match &written {
+            Ok(_) => format!("; results in {}", folder.path().display()),
+            Err(_) => String::new(),
+        };
+        print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
     }
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
-    Ok(())
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
 }
 
 /// The folder asked for, or `results/` and the name of the run file.

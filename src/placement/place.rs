@@ -72,6 +72,7 @@ pub fn place(
         }
     };
     let found = [search(Goal::Best)?, search(Goal::Worst)?];
+    let planner = Planner::finer(problem);
     let (solutions, refinements) = finish(&planner, &found, control)
         .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
     control.report(Progress::Finishing);
@@ -124,10 +125,10 @@ pub struct Score {
 /// # Errors
 /// [`NothingFeasible`] when it has no plan.
 pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, NothingFeasible> {
-    let planner = Planner::new(problem);
+    let planner = Planner::finer(problem);
     let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let mut workspace = planner.workspace();
-    let tube = fine::Tube::full(problem);
+    let tube = fine::Tube::full(planner.grid());
     let (Some(best), Ok(worst)) =
         (planned(&planner, &pose, None, tube, &mut workspace), worst_plan(&planner, &pose, None))
     else {
@@ -158,7 +159,7 @@ fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> O
         .filter_map(|(goal, individual)| {
             let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
             let refined = if control.should_stop() {
-                let tube = fine::Tube::full(planner.problem());
+                let tube = fine::Tube::full(planner.grid());
                 planned(planner, pose, scheme, tube, &mut planner.workspace()).map(|s| (s, None))
             } else {
                 refine(planner, pose, *goal, scheme).map(|(solution, report)| (solution, Some(report)))
@@ -191,12 +192,8 @@ fn worst_plan(
     pose: &[f64; 4],
     scheme: Option<&[Posture]>,
 ) -> Result<Vec<SegmentPlan>, super::redundancy::NoPlan> {
-    let problem = planner.problem();
-    let mut plans = planner.plan(pose, Extremum::Largest, scheme, &mut planner.workspace())?;
-    plans.par_iter_mut().for_each(|plan| {
-        fine::refine(problem, pose, Extremum::Largest, fine::Tube::full(problem), plan);
-    });
-    Ok(plans)
+    let tube = fine::Tube::full(planner.grid());
+    planner.plan_fine(pose, Extremum::Largest, scheme, tube, &mut planner.workspace())
 }
 
 fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> NothingFeasible {

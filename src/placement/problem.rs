@@ -144,6 +144,13 @@ impl Redundancy {
         TAU / self.beta_count as f64
     }
 
+    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `most`
+    /// (rad): every state of the old grid is one of the new.
+    pub fn divided(&self, most: f64) -> Self {
+        let parts = (self.beta_step() / most - 1e-9).ceil().max(1.0) as usize;
+        Self { beta_count: self.beta_count * parts, ..*self }
+    }
+
     /// Grid value of beta, from -pi upwards. rad
     pub fn beta(&self, index: usize) -> f64 {
         -PI + self.beta_step() * index as f64
@@ -228,5 +235,14 @@ mod tests {
         let free = Cell { yaw: Interval { min: -PI, max: PI }, ..cell };
         assert!(free.is_yaw_free() && free.contains(&at(9.0)));
         assert_eq!(free.clamp(&at(0.5)), at(0.5));
+    }
+
+    #[test]
+    fn a_divided_grid_has_the_old_values_in_it() {
+        let coarse = Redundancy { beta_count: 30, feed: 1.0, max_beta_rate: 1.0 };
+        let fine = coarse.divided(1.0_f64.to_radians());
+        assert_eq!(fine.beta_count, 360);
+        assert!((0..30).all(|k| (coarse.beta(k) - fine.beta(12 * k)).abs() < 1e-12));
+        assert_eq!(fine.divided(1.0_f64.to_radians()), fine);
     }
 }

@@ -15,7 +15,7 @@ mod wrist;
 
 pub use states::{States, StatesView};
 
-use super::problem::{Problem, base_from_workpiece};
+use super::problem::{Problem, Redundancy, base_from_workpiece};
 use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use lanes::{Lanes, Mask, WIDTH};
 use nalgebra::Vector3;
@@ -117,11 +117,16 @@ struct PointGeometry {
 }
 
 impl<'a> Kernel<'a> {
-    /// Prepares the evaluation of a problem.
+    /// Prepares the evaluation of a problem on its grid of beta.
     pub fn new(problem: &'a Problem) -> Self {
-        let count = problem.redundancy.beta_count;
+        Self::on_grid(problem, &problem.redundancy)
+    }
+
+    /// Prepares the evaluation of a problem on another grid of beta.
+    pub fn on_grid(problem: &'a Problem, grid: &Redundancy) -> Self {
+        let count = grid.beta_count;
         let padded = count.next_multiple_of(WIDTH);
-        let angle = |k: usize| libm::sincos(problem.redundancy.beta(k % count));
+        let angle = |k: usize| libm::sincos(grid.beta(k % count));
         let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
         Self {
             problem,

@@ -61,7 +61,7 @@ impl Planner<'_> {
         workspace: &mut Workspace,
         count_only: bool,
     ) -> Sweep {
-        let count = self.problem.redundancy.beta_count;
+        let count = self.grid.beta_count;
         let mut sweep = Sweep { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
         let Workspace { scratch, before, now, came_from } = workspace;
         for (place, point) in span.enumerate() {
@@ -114,7 +114,7 @@ impl Planner<'_> {
         sweep: &Sweep,
         workspace: &Workspace,
     ) -> Vec<usize> {
-        let count = self.problem.redundancy.beta_count;
+        let count = self.grid.beta_count;
         let mut beta = sweep.ends[class.index()].map_or(0, |(_, end)| end);
         let mut betas = vec![beta; span.len()];
         for place in (1..span.len()).rev() {

@@ -51,7 +51,7 @@ fn one_posture(
     posture: Posture,
     workspace: &mut Workspace,
 ) -> Option<Choice> {
-    let count = planner.problem.redundancy.beta_count;
+    let count = planner.grid.beta_count;
     let mut layers: Vec<Vec<Node>> = Vec::with_capacity(span.len());
     for point in span.clone() {
         let mut layer = nodes(planner, point, pose, posture, workspace);
@@ -74,7 +74,7 @@ fn one_posture(
     let mut joints = Vec::with_capacity(span.len());
     for layer in layers.iter().rev() {
         let node = &layer[index];
-        betas.push(planner.problem.redundancy.beta(node.beta));
+        betas.push(planner.grid.beta(node.beta));
         joints.push(node.joints);
         index = node.from;
     }
@@ -90,11 +90,11 @@ fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture,
     planner.kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
-    for beta in 0..problem.redundancy.beta_count {
+    for beta in 0..planner.grid.beta_count {
         if !space.now.inner_scores(class)[beta].is_finite() {
             continue;
         }
-        let Ok(state) = criterion::state(problem, point, pose, problem.redundancy.beta(beta), posture) else {
+        let Ok(state) = criterion::state(problem, point, pose, planner.grid.beta(beta), posture) else {
             continue;
         };
         if !is_allowed(problem, &state) {

@@ -5,7 +5,7 @@
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
 use super::super::criterion;
-use super::super::problem::Problem;
+use super::super::problem::{Problem, Redundancy};
 use super::turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
 use super::{Extremum, SegmentPlan};
 
@@ -27,9 +27,9 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// From half the grid step down to a thousandth of a degree.
-    pub fn full(problem: &Problem) -> Self {
-        Self { first: problem.redundancy.beta_step() / 2.0, last: 1.7e-5 }
+    /// From half the step of a grid down to a thousandth of a degree.
+    pub fn full(grid: &Redundancy) -> Self {
+        Self { first: grid.beta_step() / 2.0, last: 1.7e-5 }
     }
 }
 

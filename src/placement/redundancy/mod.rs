@@ -18,7 +18,7 @@ pub mod fine;
 mod turns;
 
 use super::kernel::{Kernel, Scratch, States};
-use super::problem::Problem;
+use super::problem::{Problem, Redundancy};
 use crate::robot::{Posture, PostureClass, turns::Range};
 use std::ops::Range as Span;
 
@@ -94,6 +94,7 @@ pub struct NoPlan {
 #[derive(Debug, Clone)]
 pub struct Planner<'a> {
     problem: &'a Problem,
+    grid: Redundancy,
     kernel: Kernel<'a>,
     reaches: Vec<usize>,
     steps: Vec<[f64; 6]>,
@@ -113,21 +114,31 @@ pub struct Workspace {
 const STEP_ROUNDING: f64 = 1e-9;
 
 impl<'a> Planner<'a> {
-    /// Prepares the planning of a problem.
+    /// Prepares the planning of a problem on its grid of beta: for the search.
     pub fn new(problem: &'a Problem) -> Self {
+        Self::on_grid(problem, problem.redundancy)
+    }
+
+    /// Prepares the planning on a grid of beta divided until its step is at most a degree: for what is refined and printed.
+    pub fn finer(problem: &'a Problem) -> Self {
+        Self::on_grid(problem, problem.redundancy.divided(FINER_STEP))
+    }
+
+    fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
         let count = problem.task.points().len();
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
-        let step = problem.redundancy.beta_step();
+        let step = grid.beta_step();
         let reach = |point: usize| {
-            let most = problem.redundancy.beta_count / 2;
+            let most = grid.beta_count / 2;
             let steps = problem.beta_step_limit(point) / step + STEP_ROUNDING;
             if steps >= most as f64 { most } else { steps as usize }
         };
         let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
         Self {
             problem,
-            kernel: Kernel::new(problem),
+            grid,
+            kernel: Kernel::on_grid(problem, &grid),
             reaches: (0..count).map(|p| if is_start(&p) { 0 } else { reach(p) }).collect(),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
@@ -141,6 +152,11 @@ impl<'a> Planner<'a> {
         self.problem
     }
 
+    /// The grid of beta that is planned on.
+    pub fn grid(&self) -> &Redundancy {
+        &self.grid
+    }
+
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
         self.reaches.iter().copied().max().unwrap_or(0)
@@ -148,7 +164,7 @@ impl<'a> Planner<'a> {
 
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
-        let count = self.problem.redundancy.beta_count;
+        let count = self.grid.beta_count;
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
@@ -177,7 +193,7 @@ impl<'a> Planner<'a> {
             if points + segments > 0 {
                 continue;
             }
-            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace) {
+            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace, 0.0).first() {
                 Some(choice) => sum += choice.cost,
                 None => segments += 1,
             }
@@ -200,21 +216,77 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoPlan> {
+        let choices = self.choices(pose, extremum, scheme, workspace, 0.0)?;
+        Ok(turns::settle(self.problem, choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect()))
+    }
+
+    /// The best or worst plan with beta off the grid, one entry per segment.
+    ///
+    /// Beta is refined in every posture class that comes within a fifth of the best one on the grid, so that a coarse grid
+    /// does not settle the posture.
+    ///
+    /// # Errors
+    /// [`NoPlan`] when some point or segment has no plan on the grid.
+    pub fn plan_fine(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        tube: fine::Tube,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<SegmentPlan>, NoPlan> {
+        let choices = self.choices(pose, extremum, scheme, workspace, CLOSE)?;
+        let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
+            let only = scheme.map(|s| s[segment]);
+            let plans = classes.into_iter().filter_map(|choice| {
+                let mut plan = turns::settle(self.problem, vec![choice]).pop()?;
+                fine::refine(self.problem, pose, extremum, tube, &mut plan);
+                Some(plan)
+            });
+            let sign = extremum.sign();
+            let plan = plans.min_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)))?;
+            // The refined betas may be driven in other flips and turns just as well.
+            let postures = match only {
+                Some(posture) => vec![posture],
+                None => plan.posture.class().postures().to_vec(),
+            };
+            let span = plan.points.clone();
+            let again = turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
+            Some(again.unwrap_or_else(|| turns::Choice::of(plan)))
+        });
+        Ok(turns::settle(self.problem, refined.collect()))
+    }
+
+    /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
+    /// cheapest, cheapest first.
+    fn choices(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+        margin: f64,
+    ) -> Result<Vec<Vec<turns::Choice>>, NoPlan> {
         let mut failure = NoPlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
-        let mut choices = Vec::new();
+        let mut all = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
             let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, false);
-            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace) {
-                Some(choice) => choices.push(choice),
-                None if outcome.blocked.is_empty() => failure.broken_segments.push((index, outcome.farthest())),
-                None => failure.blocked_points.extend(&outcome.blocked),
+            let choices = self.choose(span.clone(), pose, extremum, only, &outcome, workspace, margin);
+            if !choices.is_empty() {
+                all.push(choices);
+            } else if outcome.blocked.is_empty() {
+                failure.broken_segments.push((index, outcome.farthest()));
+            } else {
+                failure.blocked_points.extend(&outcome.blocked);
             }
         }
-        if choices.len() == self.problem.task.segments().len() { Ok(turns::settle(choices)) } else { Err(failure) }
+        if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
     }
 
-    /// The cheapest plan of one segment whose class and turns keep every joint inside its limits.
+    /// The plans of one segment whose classes and turns keep every joint inside its limits: the cheapest, and those that cost
+    /// at most `margin` (relative) more, cheapest first.
+    #[expect(clippy::too_many_arguments, reason = "one step of the two callers above, with all they have")]
     fn choose(
         &self,
         span: Span<usize>,
@@ -223,33 +295,44 @@ impl<'a> Planner<'a> {
         only: Option<Posture>,
         outcome: &band::Sweep,
         workspace: &mut Workspace,
-    ) -> Option<turns::Choice> {
+        margin: f64,
+    ) -> Vec<turns::Choice> {
         // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut best: Option<turns::Choice> = None;
+        let sign = extremum.sign();
+        let mut found: Vec<turns::Choice> = Vec::new();
+        let limit = |found: &[turns::Choice]| found.first().map(|best| best.cost * sign + margin * best.cost.abs());
         for (cost, class) in order {
-            if best.as_ref().is_some_and(|b| b.cost * extremum.sign() <= cost) {
+            if limit(&found).is_some_and(|limit| cost >= limit) {
                 break;
             }
             let postures: Vec<Posture> =
                 class.postures().into_iter().filter(|posture| only.is_none_or(|p| p == *posture)).collect();
             let betas = self.trace(&span, class, outcome, workspace);
-            let path: Vec<f64> = betas.iter().map(|k| self.problem.redundancy.beta(*k)).collect();
-            let found = turns::unwind(self.problem, &span, pose, &path, &postures, cost * extremum.sign(), &self.steps)
-                .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace));
-            if let Some(choice) = found
-                && best.as_ref().is_none_or(|b| choice.cost * extremum.sign() < b.cost * extremum.sign())
-            {
-                best = Some(choice);
-            }
+            let path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
+            found.extend(
+                turns::unwind(self.problem, &span, pose, &path, &postures, cost * sign, &self.steps)
+                    .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace)),
+            );
+            found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
         }
-        best
+        if let Some(limit) = limit(&found) {
+            let best = found[0].cost;
+            found.retain(|choice| choice.cost == best || choice.cost * sign <= limit);
+        }
+        found
     }
 }
+
+/// Widest step of the grid that final plans are made on. rad
+const FINER_STEP: f64 = std::f64::consts::PI / 180.0;
+
+/// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.
+const CLOSE: f64 = 0.2;
 
 #[cfg(test)]
 mod tests;

@@ -132,7 +132,7 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
         let mut plans = planner.plan(&pose, extremum, None, &mut planner.workspace()).unwrap();
         let before: f64 = plans.iter().map(|p| p.cost).sum();
         for plan in &mut plans {
-            fine::refine(&problem, &pose, extremum, fine::Tube::full(&problem), plan);
+            fine::refine(&problem, &pose, extremum, fine::Tube::full(&problem.redundancy), plan);
             let replayed = fine::replay(&problem, &pose, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }

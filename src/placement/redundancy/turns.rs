@@ -17,6 +17,14 @@ pub(super) struct Choice {
     pub ways: Vec<Way>,
 }
 
+impl Choice {
+    /// A plan that can be driven as it is, and in no other way.
+    pub fn of(plan: SegmentPlan) -> Self {
+        let way = Way { posture: plan.posture, joints: plan.joints };
+        Self { points: plan.points, betas: plan.betas, cost: plan.cost, ways: vec![way] }
+    }
+}
+
 /// One way to drive a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Way {
@@ -90,11 +98,11 @@ fn combine(posture: Posture, tracks: &[Vec<Vec<f64>>; 6], length: usize, ways: &
     }
 }
 
-/// Takes one way for each segment, so that the moves between segments are short: the least sum of largest joint travels,
-/// by dynamic programming over the segments. Of equal sums the one nearest to the middle of the numbering is not sought:
-/// the first in order is taken.
-pub(super) fn settle(choices: Vec<Choice>) -> Vec<SegmentPlan> {
-    let mut sums: Vec<f64> = vec![0.0; choices.first().map_or(0, |c| c.ways.len())];
+/// Takes one way for each segment, so that the moves between segments are short: the least sum of the moves' lengths, by
+/// dynamic programming over the segments. Of equal sums (to a millionth) the first in order is taken: the lowest posture
+/// number, then the lowest turns.
+pub(super) fn settle(problem: &Problem, choices: Vec<Choice>) -> Vec<SegmentPlan> {
+    let mut sums: Vec<i64> = vec![0; choices.first().map_or(0, |c| c.ways.len())];
     let mut back: Vec<Vec<usize>> = Vec::new();
     for pair in choices.windows(2) {
         let mut next = Vec::new();
@@ -104,9 +112,9 @@ pub(super) fn settle(choices: Vec<Choice>) -> Vec<SegmentPlan> {
                 .ways
                 .iter()
                 .zip(&sums)
-                .map(|(old, sum)| sum + travel(old.joints.last(), way.joints.first()))
+                .map(|(old, sum)| sum.saturating_add(length(problem, old.joints.last(), way.joints.first())))
                 .enumerate()
-                .fold((0, f64::INFINITY), |best, item| if item.1 < best.1 { item } else { best });
+                .fold((0, i64::MAX), |best, item| if item.1 < best.1 { item } else { best });
             next.push(cost);
             from.push(best);
         }
@@ -135,12 +143,17 @@ pub(super) fn settle(choices: Vec<Choice>) -> Vec<SegmentPlan> {
         .collect()
 }
 
-/// Largest joint travel between two configurations. rad
-fn travel(from: Option<&[f64; 6]>, to: Option<&[f64; 6]>) -> f64 {
-    match (from, to) {
-        (Some(from), Some(to)) => from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
-        _ => 0.0,
-    }
+/// Length of a joint move in millionths: of a second at full speed of the slowest joint, where every speed is known, else of
+/// a radian of the largest travel. Whole numbers, so that rounding does not tell equal moves apart.
+fn length(problem: &Problem, from: Option<&[f64; 6]>, to: Option<&[f64; 6]>) -> i64 {
+    let (Some(from), Some(to)) = (from, to) else { return 0 };
+    let joints = problem.robot.joints();
+    let timed = joints.iter().all(|joint| joint.max_speed.is_some());
+    let share = |j: usize| {
+        let travel = (from[j] - to[j]).abs();
+        if timed { travel / joints[j].max_speed.unwrap_or(1.0) } else { travel }
+    };
+    ((0..6).map(share).fold(0.0, f64::max) * 1e6).round() as i64
 }
 
 /// The same angles without jumps of a turn. rad

@@ -25,7 +25,7 @@ const LEAST_PROMISE: f64 = 1e-6;
 /// Climbs from a solution; never returns a lower one.
 pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Run {
     let problem = planner.problem();
-    let tube = fine::Tube::full(problem);
+    let tube = fine::Tube::full(planner.grid());
     let mut best = start.clone();
     let mut iterations = 0;
     let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
@@ -109,7 +109,7 @@ pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&
             }
             let mut pose = solution.pose;
             pose[k] += side * SAMPLING * UNITS[k];
-            let near = planned(planner, &pose, scheme, fine::Tube::full(problem), &mut workspace);
+            let near = planned(planner, &pose, scheme, fine::Tube::full(planner.grid()), &mut workspace);
             gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
         }
     }

@@ -65,10 +65,7 @@ pub fn planned(
     tube: fine::Tube,
     workspace: &mut Workspace,
 ) -> Option<Solution> {
-    let mut plans = planner.plan(pose, Extremum::Smallest, scheme, workspace).ok()?;
-    for plan in &mut plans {
-        fine::refine(planner.problem(), pose, Extremum::Smallest, tube, plan);
-    }
+    let plans = planner.plan_fine(pose, Extremum::Smallest, scheme, tube, workspace).ok()?;
     Some(Solution { pose: *pose, plans })
 }
 
@@ -82,7 +79,7 @@ pub fn refine(
 ) -> Option<(Solution, Refinement)> {
     let problem = planner.problem();
     let mut workspace = planner.workspace();
-    let tube = fine::Tube::full(problem);
+    let tube = fine::Tube::full(planner.grid());
     let mut best = planned(planner, start, scheme, tube, &mut workspace)?;
     let mut report = Refinement {
         goal,
@@ -151,7 +148,7 @@ fn poll(
     workspace: &mut Workspace,
 ) -> Option<Solution> {
     let problem = planner.problem();
-    let tube = fine::Tube::full(problem);
+    let tube = fine::Tube::full(planner.grid());
     let sign = match goal {
         Goal::Best => 1.0,
         Goal::Worst => -1.0,

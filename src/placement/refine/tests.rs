@@ -24,7 +24,7 @@ fn assert_allowed(problem: &Problem, solution: &Solution) {
 #[test]
 fn best_gets_better_and_stays_allowed() {
     let problem = five_segments();
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     for start in [published_optimum(), [0.0, -1.7, -0.4, 0.7]] {
         let (solution, report) = refine(&planner, &start, Goal::Best, None).unwrap();
         assert_allowed(&problem, &solution);
@@ -41,7 +41,7 @@ fn best_gets_better_and_stays_allowed() {
                 if !problem.cell.contains(&Placement { x, y, z, yaw }) {
                     continue;
                 }
-                let near = planned(&planner, &pose, None, fine::Tube::full(&problem), &mut workspace);
+                let near = planned(&planner, &pose, None, fine::Tube::full(planner.grid()), &mut workspace);
                 assert!(near.is_none_or(|n| n.mean() > solution.mean() * (1.0 - 2e-5)), "variable {k} {side}");
             }
         }
@@ -51,7 +51,7 @@ fn best_gets_better_and_stays_allowed() {
 #[test]
 fn worst_gets_worse_and_stays_allowed() {
     let problem = five_segments();
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     let (solution, report) = refine(&planner, &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
@@ -60,7 +60,7 @@ fn worst_gets_worse_and_stays_allowed() {
 #[test]
 fn a_start_without_a_plan_is_refused() {
     let problem = five_segments();
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     assert_eq!(refine(&planner, &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
 }
 
@@ -70,7 +70,7 @@ fn constraints_bind_and_hold() {
     problem.cell.yaw = Interval { min: 0.5, max: 0.9 };
     problem.constraints.min_inverse_condition = 0.4;
     problem.constraints.max_deflection = Some(1.5e-3);
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
@@ -79,7 +79,7 @@ fn constraints_bind_and_hold() {
 #[test]
 fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
     let problem = five_segments();
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     let mut workspace = planner.workspace();
     let tube = fine::Tube { first: 0.026, last: 1e-7 };
     let pose = [0.2, -2.1, -0.3, -2.2];
@@ -100,8 +100,8 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
 #[test]
 fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
     let problem = five_segments();
-    let planner = Planner::new(&problem);
-    let tube = fine::Tube::full(&problem);
+    let planner = Planner::finer(&problem);
+    let tube = fine::Tube::full(planner.grid());
     let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
     let locals = linearise::linearise(&problem, &here).unwrap();
     for plan in &here.plans {
@@ -129,7 +129,7 @@ fn a_cell_without_room_is_refined_in_beta_alone() {
     let pose = published_optimum();
     problem.cell.position = [pose[0], pose[1], pose[2]].map(|v| Interval { min: v, max: v });
     problem.cell.yaw = Interval { min: pose[3], max: pose[3] };
-    let planner = Planner::new(&problem);
+    let planner = Planner::finer(&problem);
     for goal in [Goal::Best, Goal::Worst] {
         let (solution, report) = refine(&planner, &pose, goal, None).unwrap();
         assert_allowed(&problem, &solution);
@@ -153,8 +153,8 @@ fn argmin_observers_see_every_iteration() {
     }
 
     let problem = five_segments();
-    let planner = Planner::new(&problem);
-    let tube = fine::Tube::full(&problem);
+    let planner = Planner::finer(&problem);
+    let tube = fine::Tube::full(planner.grid());
     let start = planned(&planner, &[0.0, -1.7, -0.4, 0.7], None, tube, &mut planner.workspace()).unwrap();
     let costs = Arc::new(Mutex::new(Vec::new()));
     let observer = Costs(Arc::clone(&costs));
