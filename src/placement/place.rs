@@ -147,6 +147,10 @@ struct Refined {
     scheme: Option<Vec<Posture>>,
 }
 
+/// Basins whose means differ by less than this (relative) are equal: the one that the search ranked higher is taken, so
+/// that rounding does not choose between mirror images.
+const TIE: f64 = 1e-5;
+
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
 /// when nothing feasible went in.
 fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> Option<([Refined; 2], Vec<Refinement>)> {
@@ -176,8 +180,8 @@ fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> O
         refinements.extend(report);
         let slot = &mut chosen[usize::from(goal == Goal::Worst)];
         let better = slot.as_ref().is_none_or(|known| match goal {
-            Goal::Best => refined.solution.mean() < known.solution.mean(),
-            Goal::Worst => refined.solution.mean() > known.solution.mean(),
+            Goal::Best => refined.solution.mean() < known.solution.mean() * (1.0 - TIE),
+            Goal::Worst => refined.solution.mean() > known.solution.mean() * (1.0 + TIE),
         });
         if better {
             *slot = Some(refined);
