@@ -14,8 +14,8 @@
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
 //! | 3 | [`placement`] | the job: criterion, redundancy planning, search, refinement |
-//! | 2 | [`stiffness`] | how the arm yields |
-//! | 1 | [`robot`], [`task`], [`cutting`] | what the arm is, what is to be cut, what pushes |
+//! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |
+//! | 1 | [`robot`], [`task`] | what the arm is, what is to be cut |
 //! | 0 | [`input`] | the one error for anything that a file can get wrong |
 //!
 //! # From a file to a result
