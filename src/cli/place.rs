@@ -2,6 +2,7 @@
 
 use super::arguments::PlaceOptions;
 use super::progress::Watcher;
+use super::score::mention_cancellation;
 use super::{Failure, on_threads, print, say};
 use crate::config::read_run;
 use crate::placement::control::Control;
@@ -53,6 +54,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         };
         print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
     }
+    mention_cancellation(&run.problem, outcome.cases[0].plan.mean);
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
     }

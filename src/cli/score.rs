@@ -3,6 +3,7 @@
 use super::arguments::ScoreOptions;
 use super::{Failure, print, say};
 use crate::config::read_run;
+use crate::placement::outcome::CANCELLED;
 use crate::placement::place::score;
 use crate::placement::problem::{Placement, Problem};
 use crate::report::{evaluation, json};
@@ -20,10 +21,21 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         };
         print(&json::bytes(&document));
     } else if let Ok(score) = &scored {
+        mention_cancellation(&run.problem, score.best.mean);
         print(evaluation::score_text(score).as_bytes());
     }
     scored?;
     Ok(())
+}
+
+/// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
+pub(super) fn mention_cancellation(problem: &Problem, mean: f64) {
+    if mean <= CANCELLED && problem.criterion.force_uncertainty == 0.0 {
+        say(
+            "note: the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
+             makes the score the worst case over force errors",
+        );
+    }
 }
 
 /// A placement outside the cell is evaluated all the same, but not silently.

@@ -70,7 +70,8 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let robot = robot_from(&robot_source)?;
     let task_file = task.named_file()?;
     let imported = parse_csv(&task_file.file, &task_file.bytes)?;
-    let notes = [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
+    let mut notes: Vec<String> =
+        [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
     let inputs = vec![
         InputFile {
             role: "config",
@@ -82,6 +83,8 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     ];
     let task = task_from(imported, &task_file, &task, &cutting)?;
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    notes.extend(density_note(&problem));
+    notes.extend(direction_note(&problem.task));
     Ok(Run { problem, search, transfer, inputs, reference, notes })
 }
 
@@ -116,6 +119,36 @@ fn tilt_note(path: &ToolPath, lines: &[usize]) -> Option<String> {
              the wall normal is axis x feed"
         )
     })
+}
+
+/// Points so near to each other that beta cannot change by a step of its grid between them.
+fn density_note(problem: &Problem) -> Option<String> {
+    let step = problem.redundancy.beta_step();
+    let inner = || problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let stuck = inner().filter(|point| problem.beta_step_limit(*point) < step * (1.0 - 1e-9)).count();
+    (stuck > 0).then(|| {
+        format!(
+            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: the search keeps \
+             beta there, and only the final plans use the rate; a finer grid or a thinner path lets the search use it too",
+            inner().count()
+        )
+    })
+}
+
+/// A feed that points away from the next point by more than this is suspicious. deg
+const FEED_TO_PATH_DEG: f64 = 60.0;
+
+/// The first point whose feed does not point along the path.
+fn direction_note(task: &Task) -> Option<String> {
+    let points = task.points();
+    let off = |point: &usize| {
+        let (feed, chord) = (points[point - 1].feed, points[*point].position - points[point - 1].position);
+        libm::acos((feed.dot(&chord) / chord.norm()).clamp(-1.0, 1.0)).to_degrees()
+    };
+    let mut inner = task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let first = inner.find(|point| off(point) > FEED_TO_PATH_DEG)?;
+    let (from, angle) = (first - 1, off(&first));
+    Some(format!("at point {from} the feed is {angle:.0} deg off the way to the next point: check the signs of feed_*"))
 }
 
 /// The joints whose speed is not known, where there are some.

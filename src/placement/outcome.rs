@@ -82,6 +82,22 @@ pub struct Transfer {
     pub travel: f64,
 }
 
+/// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
+/// nothing. m
+pub const CANCELLED: f64 = 1e-9;
+
+impl Outcome {
+    /// Mean deflection of a case (from 0) over that of case 1; `None` where case 1 is a cancellation.
+    pub fn ratio(&self, index: usize) -> Option<f64> {
+        ratio(&self.cases, index)
+    }
+}
+
+/// Mean deflection of a case (from 0) over that of the first; `None` where the first is a cancellation.
+pub fn ratio(cases: &[Case; 4], index: usize) -> Option<f64> {
+    (cases[0].plan.mean > CANCELLED).then(|| cases[index].plan.mean / cases[0].plan.mean)
+}
+
 impl Cycle {
     /// Cutting and moves together; `None` where a move's time is not known. s
     pub fn total(&self) -> Option<f64> {

@@ -42,7 +42,11 @@ impl std::fmt::Display for NothingFeasible {
             self.placement.q4(),
             self.placement.yaw.to_degrees()
         )?;
-        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))
+        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
+        if self.searched {
+            write!(f, "\na search may miss a small feasible region: more population and generations look closer")?;
+        }
+        Ok(())
     }
 }
 
@@ -62,16 +66,17 @@ pub fn place(
     control: &dyn Control,
 ) -> Result<Outcome, NothingFeasible> {
     let planner = Planner::new(problem);
-    let search = |goal| {
-        let found = genetic::search(&planner, settings, goal, control);
-        match &found.basins[..] {
-            [nearest, ..] if nearest.worth.mean().is_none() => {
-                Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true))
-            }
-            _ => Ok(found),
+    let mut found = [Goal::Best, Goal::Worst].map(|goal| genetic::search(&planner, settings, goal, control));
+    // A search that met nothing feasible goes on from what the other met.
+    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.worth.mean().is_some())) {
+        [true, true] => {}
+        [true, false] => found[1].basins = found[0].basins.clone(),
+        [false, true] => found[0].basins = found[1].basins.clone(),
+        [false, false] => {
+            let nearest = &found[0].basins[0];
+            return Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true));
         }
-    };
-    let found = [search(Goal::Best)?, search(Goal::Worst)?];
+    }
     let planner = Planner::finer(problem);
     let (solutions, refinements) = finish(&planner, &found, control)
         .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;

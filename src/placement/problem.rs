@@ -157,6 +157,9 @@ impl Redundancy {
     }
 }
 
+/// A joint step is never as large as half a turn. rad
+const MOST_STEP: f64 = PI - 1e-6;
+
 /// Everything that defines the placement problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
@@ -209,10 +212,11 @@ impl Problem {
         (points[point].position - points[point - 1].position).norm()
     }
 
-    /// Largest step of each joint from path point `point - 1` to `point`, infinite where no speed is known. rad
+    /// Largest step of each joint from path point `point - 1` to `point`: what its speed allows at the feed, and in any case
+    /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path. rad
     pub fn joint_steps(&self, point: usize) -> [f64; 6] {
         let time = self.step_time(point);
-        std::array::from_fn(|j| self.robot.joints()[j].max_speed.map_or(f64::INFINITY, |speed| speed * time))
+        std::array::from_fn(|j| self.robot.joints()[j].max_speed.map_or(MOST_STEP, |speed| MOST_STEP.min(speed * time)))
     }
 
     /// Largest step of beta from path point `point - 1` to `point`. rad

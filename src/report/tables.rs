@@ -4,7 +4,7 @@ use super::number::{Unit, fixed};
 use super::output::ReportError;
 use super::words;
 use crate::input::Reference;
-use crate::placement::outcome::{Case, DeflectionMap, Generation, Plan, PlanPoint, Refinement};
+use crate::placement::outcome::{Case, DeflectionMap, Generation, Plan, PlanPoint, Refinement, ratio};
 use crate::placement::problem::{Placement, Problem};
 use crate::robot::turns::turns;
 use crate::task::ToolPath;
@@ -63,7 +63,8 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
     row
 }
 
-/// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none.
+/// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
+/// the ratio where case 1 is a cancellation.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -89,7 +90,7 @@ pub fn placements(cases: &[Case; 4], reference: Option<&Reference>) -> Result<Ve
         row.extend(placement(&case.placement, true));
         row.push(words::postures(&case.plan.postures));
         row.extend([case.plan.mean, case.plan.max].map(|value| Unit::DEFLECTION_MM.text(value)));
-        row.push(Unit::PLAIN.text(case.plan.mean / cases[0].plan.mean));
+        row.push(Unit::PLAIN.text_or_empty(ratio(cases, index)));
         row.push(reference.map_or_else(String::new, |reference| reference.case_mm[index].to_string()));
         row.push(Unit::TIME_S.text(case.cycle.cutting));
         let total = case.cycle.total();

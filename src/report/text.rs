@@ -14,7 +14,9 @@ const POSTURES_WIDTH: usize = 40;
 /// and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
     let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
-    let mut text = format!("{}: {points} points in {segments} segments\n\n", problem.robot.name());
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let (points, segments) = (count(points, "point"), count(segments, "segment"));
+    let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
     text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
     text.push('\n');
     text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
@@ -52,11 +54,10 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
     }
     header.extend(["cutting s", "moves s", "cycle s"]);
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    let first = outcome.cases[0].plan.mean;
     for (index, case) in outcome.cases.iter().enumerate() {
         let mut row = vec![case.number.to_string()];
         row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
-        row.push(fixed(case.plan.mean / first, 2));
+        row.push(outcome.ratio(index).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
         if let Some(Reference { case_mm, .. }) = reference {
             row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
         }

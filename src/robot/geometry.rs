@@ -111,7 +111,7 @@ impl Geometry {
 fn right_angle(joints: &[Joint; 6], number: usize, rule: &str) -> Result<f64, RobotError> {
     let (sine, cosine) = libm::sincos(joints[number - 1].alpha);
     if cosine.abs() > TWIST_TOLERANCE {
-        let found = joints[number - 1].alpha.to_degrees();
+        let found = (joints[number - 1].alpha.to_degrees() * 1e6).round() / 1e6;
         let reason = format!("{rule}, which needs alpha_{number} = 90 or -90 deg and not {found} deg");
         return Err(RobotError::Geometry { joint: number, field: "alpha", reason });
     }
@@ -122,7 +122,7 @@ fn right_angle(joints: &[Joint; 6], number: usize, rule: &str) -> Result<f64, Ro
 fn straight_angle(joints: &[Joint; 6], number: usize) -> Result<f64, RobotError> {
     let (sine, cosine) = libm::sincos(joints[number - 1].alpha);
     if sine.abs() > TWIST_TOLERANCE {
-        let found = joints[number - 1].alpha.to_degrees();
+        let found = (joints[number - 1].alpha.to_degrees() * 1e6).round() / 1e6;
         let reason = format!(
             "axis {number} must be parallel to axis 2, which needs alpha_{number} = 0 or 180 deg and not {found} deg"
         );

@@ -62,6 +62,9 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     Ok(Imported { path, wrenches, lines })
 }
 
+/// No length, direction, force or moment is larger than this in its unit.
+const LARGEST: f64 = 1e9;
+
 /// Where each column of the contract stands in this file.
 struct Columns {
     required: [usize; 10],
@@ -165,8 +168,8 @@ impl Row<'_> {
 
     fn number(&self, column: usize) -> Result<f64, InputError> {
         match self.record[column].parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.fail(column, "not a finite number", "a finite decimal number")),
+            Ok(value) if value.abs() <= LARGEST => Ok(value),
+            _ => Err(self.fail(column, "not a finite number", "a finite decimal number of at most 1e9")),
         }
     }
 

@@ -10,7 +10,7 @@ use super::super::kernel::{
 };
 use super::{Extremum, Planner, STEP_ROUNDING, Workspace};
 use crate::robot::{Posture, PostureClass};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::ops::Range as Span;
 
 /// What one pass over a segment found.
@@ -25,9 +25,15 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// The first point that the class that gets farthest cannot get to.
-    pub fn farthest(&self) -> usize {
-        self.stuck.iter().flatten().copied().max().unwrap_or(0)
+    /// The first point that the class that gets farthest cannot get to: the last one, where a class gets through but for
+    /// the turns of its joints.
+    pub fn farthest(&self, span: &Span<usize>) -> usize {
+        let last = span.end - 1;
+        if self.ends.iter().any(Option::is_some) {
+            last
+        } else {
+            self.stuck.iter().flatten().copied().max().unwrap_or(last)
+        }
     }
 }
 
@@ -153,7 +159,7 @@ pub fn advance(before: &States, now: &mut States, class: PostureClass, step: &St
         // The cheapest predecessors, joint steps not looked at. Mostly they are within every step, and then they are the
         // cheapest of those that are.
         let (mut best, mut from) = cheapest(before, class, step.reach, here, |_, better| better);
-        let chosen = from.0.map(|shift| here.wrapping_add_signed(shift as isize));
+        let chosen: [usize; WIDTH] = std::array::from_fn(|k| (here + k).wrapping_add_signed(from.0[k] as isize));
         let known = allowed & best.less(infinity);
         if !within_steps(before, now, class, step, here, |k| chosen[k]).covers(known) {
             (best, from) = cheapest(before, class, step.reach, here, |place, better| {
@@ -215,7 +221,7 @@ fn within_steps(
     let mut within = Mask::splat(true);
     for j in 0..6 {
         let limit = step.limits[j] + STEP_ROUNDING;
-        if !limit.is_finite() {
+        if step.modulo[j] && limit >= PI {
             continue;
         }
         let old = before.joint(class, j);

@@ -35,8 +35,8 @@ pub(super) fn plan(
         let Some(choice) = one_posture(planner, span, pose, extremum, *posture, workspace) else { continue };
         let sign = extremum.sign();
         match &mut best {
-            Some(known) if known.cost * sign < choice.cost * sign => {}
             Some(known) if known.cost == choice.cost && known.betas == choice.betas => known.ways.extend(choice.ways),
+            Some(known) if known.cost * sign <= choice.cost * sign => {}
             _ => best = Some(choice),
         }
     }

@@ -65,7 +65,7 @@ pub enum Worth {
     Infeasible {
         /// Path points without an allowed state.
         points: usize,
-        /// Segments without a plan.
+        /// Segments without a plan; not counted when there are such points.
         segments: usize,
     },
 }
@@ -119,9 +119,13 @@ impl<'a> Planner<'a> {
         Self::on_grid(problem, problem.redundancy)
     }
 
-    /// Prepares the planning on a grid of beta divided until its step is at most a degree: for what is refined and printed.
+    /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
+    /// degree, and, down to an eighth of a degree, at most what the rate of beta allows between any two points.
     pub fn finer(problem: &'a Problem) -> Self {
-        Self::on_grid(problem, problem.redundancy.divided(FINER_STEP))
+        let segments = problem.task.segments().iter();
+        let steps = segments.flat_map(|span| span.clone().skip(1)).map(|point| problem.beta_step_limit(point));
+        let narrowest = steps.fold(WIDEST_STEP, f64::min).max(NARROWEST_STEP);
+        Self::on_grid(problem, problem.redundancy.divided(narrowest))
     }
 
     fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
@@ -188,9 +192,9 @@ impl<'a> Planner<'a> {
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, points + segments > 0);
+            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, points > 0);
             points += outcome.blocked.len();
-            if points + segments > 0 {
+            if points > 0 {
                 continue;
             }
             match self.choose(span.clone(), pose, extremum, only, &outcome, workspace, 0.0).first() {
@@ -198,7 +202,9 @@ impl<'a> Planner<'a> {
                 None => segments += 1,
             }
         }
-        if points + segments > 0 {
+        if points > 0 {
+            Worth::Infeasible { points, segments: 0 }
+        } else if segments > 0 {
             Worth::Infeasible { points, segments }
         } else {
             Worth::Feasible(sum / self.problem.task.points().len() as f64)
@@ -276,7 +282,7 @@ impl<'a> Planner<'a> {
             if !choices.is_empty() {
                 all.push(choices);
             } else if outcome.blocked.is_empty() {
-                failure.broken_segments.push((index, outcome.farthest()));
+                failure.broken_segments.push((index, outcome.farthest(span)));
             } else {
                 failure.blocked_points.extend(&outcome.blocked);
             }
@@ -329,7 +335,9 @@ impl<'a> Planner<'a> {
 }
 
 /// Widest step of the grid that final plans are made on. rad
-const FINER_STEP: f64 = std::f64::consts::PI / 180.0;
+const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
+/// Narrowest step that the rate of beta may ask for. rad
+const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
 
 /// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.
 const CLOSE: f64 = 0.2;

@@ -50,6 +50,7 @@ fn assert_sound(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) {
                 if place > 0 {
                     let step = (real - plan.joints[place - 1][j]).abs();
                     assert!(step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
+                    assert!(step < std::f64::consts::PI, "joint {} steps {step}", j + 1);
                 }
             }
             if place > 0 {
@@ -86,7 +87,9 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
     .into_iter()
     .enumerate()
     {
-        let mut problem = with_wrist(five_segments(), ranges);
+        // With and without joint speeds that bind.
+        let arm = if index % 2 == 0 { five_segments() } else { with_prototype_steps(five_segments()) };
+        let mut problem = with_wrist(arm, ranges);
         problem.redundancy.beta_count = 40;
         // So fast that plans swing around and meet the limits of the turns.
         problem.redundancy.max_beta_rate *= 4.0;
@@ -121,6 +124,39 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         }
     }
     assert!(compared == 192 && feasible > 40, "{compared} {feasible}");
+}
+
+#[test]
+fn with_turns_to_spare_the_band_alone_is_exact() {
+    let wide = [(-2000.0, 2000.0), (-125.0, 125.0), (-2000.0, 2000.0)];
+    let mut compared = 0;
+    for share in [1.0, 0.3] {
+        let mut problem = with_wrist(with_prototype_steps(five_segments()), wide);
+        problem.redundancy.beta_count = 60;
+        problem.redundancy.max_beta_rate *= 3.0;
+        problem.redundancy.feed /= share;
+        let planner = Planner::new(&problem);
+        let mut workspace = planner.workspace();
+        for k in 0..6 {
+            let f = f64::from(k);
+            let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
+            for span in problem.task.segments() {
+                let sweep = planner.sweep(span.clone(), &pose, Extremum::Smallest, None, &mut workspace, false);
+                for class in PostureClass::ALL {
+                    let postures = class.postures();
+                    let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);
+                    let (found, expected) =
+                        (sweep.ends[class.index()].map(|end| end.0), judge.map(|choice| choice.cost));
+                    assert_eq!(found.is_some(), expected.is_some(), "{class:?} {span:?} {pose:?}");
+                    if let (Some(found), Some(expected)) = (found, expected) {
+                        compared += 1;
+                        assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected} {class:?} {span:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared > 40, "{compared}");
 }
 
 #[test]

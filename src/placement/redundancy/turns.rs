@@ -3,7 +3,11 @@
 use super::super::criterion;
 use super::super::problem::Problem;
 use super::{STEP_ROUNDING, SegmentPlan};
-use crate::robot::{Posture, angles::wrap, turns::Range};
+use crate::robot::{
+    Posture,
+    angles::{ANGLE_ROUNDING, wrap},
+    turns::Range,
+};
 use std::ops::Range as Span;
 
 /// A segment's plan with every flip and turn that it can be driven with, all of the same cost.
@@ -64,7 +68,7 @@ pub(super) fn unwind(
 
 /// Every continuous track of one joint that stays in its range; at most one per start.
 fn tracks(range: Range, angles: &[f64], limits: &[f64]) -> Vec<Vec<f64>> {
-    let inside = |real: f64| range.nearest(real).1 == 0.0 && real >= range.min - 1e-9 && real <= range.max + 1e-9;
+    let inside = |real: f64| real >= range.min - ANGLE_ROUNDING && real <= range.max + ANGLE_ROUNDING;
     range
         .real_angles(angles[0])
         .filter_map(|start| {
@@ -175,8 +179,12 @@ pub(super) fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
 
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
-    let rounding = crate::robot::angles::ANGLE_ROUNDING;
-    problem.robot.joints().iter().zip(joints).all(|(joint, q)| *q >= joint.min - rounding && *q <= joint.max + rounding)
+    problem
+        .robot
+        .joints()
+        .iter()
+        .zip(joints)
+        .all(|(joint, q)| *q >= joint.min - ANGLE_ROUNDING && *q <= joint.max + ANGLE_ROUNDING)
 }
 
 /// Whether every joint's step is within its limit. rad

@@ -22,7 +22,7 @@ pub mod linearise;
 pub mod solver;
 pub mod subproblem;
 
-use super::outcome::{Goal, Refinement};
+use super::outcome::{CANCELLED, Goal, Refinement};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, Workspace, fine};
 use crate::robot::Posture;
@@ -92,7 +92,11 @@ pub fn refine(
         kkt_residual: f64::INFINITY,
         statuses: Vec::new(),
     };
-    while report.rounds < ROUNDS {
+    let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLED;
+    if is_cancelled(&best) {
+        report.statuses.push("converged: the deflection is cancelled".to_owned());
+    }
+    while report.rounds < ROUNDS && !is_cancelled(&best) {
         report.rounds += 1;
         let before = best.mean();
         let signature = signature(&best);
@@ -128,6 +132,8 @@ pub fn refine(
         }
     }
     report.kkt_residual = match goal {
+        // Nothing is smaller than nothing.
+        _ if is_cancelled(&best) => 0.0,
         Goal::Best => subproblem::kkt_residual(problem, &best),
         Goal::Worst => ascent::kkt_residual(planner, &best, scheme),
     };

@@ -119,9 +119,6 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
             rows.add_between(&row, -limit - turned, limit - turned, swing(&row));
             let limits = problem.joint_steps(i);
             for j in 0..6 {
-                if !limits[j].is_finite() {
-                    continue;
-                }
                 let (here, there) = (&locals[i].state.joints[j].gradient, &locals[i - 1].state.joints[j].gradient);
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
                 row.extend([(beta + i, here[4]), (beta + i - 1, -there[4])]);

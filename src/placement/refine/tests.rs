@@ -77,6 +77,31 @@ fn constraints_bind_and_hold() {
 }
 
 #[test]
+fn joint_speeds_bind_and_hold() {
+    let mut problem = five_segments();
+    let slow = |problem: &Problem, factor: f64| {
+        let mut joints = problem.robot.joints().clone();
+        joints.iter_mut().for_each(|j| j.max_speed = Some(factor));
+        crate::robot::Robot::new("slow", joints).unwrap()
+    };
+    problem.robot = slow(&problem, 0.25);
+    let planner = Planner::finer(&problem);
+    let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean <= report.start_mean);
+    let used = solution.plans.iter().flat_map(|plan| {
+        plan.points.clone().skip(1).enumerate().map(|(place, point)| {
+            let limits = problem.joint_steps(point);
+            let (a, b) = (plan.joints[place], plan.joints[place + 1]);
+            (0..6).map(|j| (b[j] - a[j]).abs() / limits[j]).fold(0.0, f64::max)
+        })
+    });
+    let used: Vec<f64> = used.collect();
+    assert!(used.iter().all(|share| *share <= 1.0 + 1e-6));
+    assert!(used.iter().any(|share| *share > 0.99), "no joint step is at its limit");
+}
+
+#[test]
 fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
