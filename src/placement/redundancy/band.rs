@@ -233,3 +233,64 @@ fn within_steps(
     }
     within
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const CLASS: PostureClass = PostureClass::ALL[0];
+
+    /// States with random scores and angles, some not allowed.
+    fn random_states(count: usize, pad: usize, random: &mut ChaCha8Rng) -> States {
+        let mut states = States::new(count, pad);
+        for beta in 0..count {
+            if random.random::<f64>() < 0.8 {
+                let joints = std::array::from_fn(|_| random.random_range(-3.1..3.1));
+                states.class_mut(CLASS).set(beta, random.random::<f64>(), joints);
+            }
+        }
+        states.wrap_around(CLASS);
+        states
+    }
+
+    proptest! {
+        #[test]
+        fn advance_agrees_with_plain_loops(
+            seed in any::<u64>(), count in 9..40_usize, reach in 0..4_usize, limit in 0.3..3.2_f64, largest in any::<bool>()
+        ) {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let before = random_states(count, reach, &mut random);
+            let now = random_states(count, reach, &mut random);
+            let modulo = [true, false, false, true, false, true];
+            let sign = if largest { -1.0 } else { 1.0 };
+            let step = Step { reach, limits: &[limit; 6], modulo: &modulo, sign };
+            let within = |here: usize, there: usize| (0..6).all(|j| {
+                let turned = now.joint(CLASS, j)[reach + here] - before.joint(CLASS, j)[reach + there];
+                let turned = if modulo[j] { crate::robot::angles::wrap(turned) } else { turned };
+                turned.abs() <= limit
+            });
+            let mut advanced = now.clone();
+            let mut way = vec![0; count];
+            advance(&before, &mut advanced, CLASS, &step, &mut way);
+            for here in 0..count {
+                let shifts = -(reach as isize)..=reach as isize;
+                let from = |shift: isize| (here as isize + shift).rem_euclid(count as isize) as usize;
+                let ways = shifts.filter(|shift| within(here, from(*shift)));
+                let cheapest = ways.map(|shift| before.inner_scores(CLASS)[from(shift)]).fold(f64::INFINITY, f64::min);
+                let expected = cheapest + sign * now.inner_scores(CLASS)[here];
+                let found = advanced.inner_scores(CLASS)[here];
+                if expected.is_finite() {
+                    prop_assert_eq!(found, expected);
+                    let predecessor = from(isize::from(way[here]));
+                    prop_assert!(within(here, predecessor));
+                    prop_assert_eq!(before.inner_scores(CLASS)[predecessor], cheapest);
+                } else {
+                    prop_assert!(found == f64::INFINITY);
+                }
+            }
+        }
+    }
+}
