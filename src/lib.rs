@@ -11,6 +11,7 @@
 //!
 //! | floor | rooms | what they hold |
 //! |---|---|---|
+//! | 6 | the binary | starts the command line, returns its exit code |
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
 //! | 3 | [`placement`] | the job: criterion, redundancy planning, search, refinement |
