@@ -15,7 +15,7 @@ const Q4: [&str; 2] = ["--q4", "0.9258"];
 /// The published grid of 3 deg.
 fn bench() -> Bench {
     let bench = Bench::new();
-    bench.replace(RUN, "beta_step_deg = 12.0", "beta_step_deg = 3.0");
+    bench.replace(RUN, "beta_step_deg = 7.2", "beta_step_deg = 3.0");
     bench
 }
 

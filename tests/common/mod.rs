@@ -39,7 +39,7 @@ impl Bench {
         }
         bench.replace(RUN, "population = 120\n", "population = 16\n");
         bench.replace(RUN, "generations = 51\n", "generations = 3\nbasins = 2\n");
-        bench.replace(RUN, "beta_step_deg = 3.0\n", "beta_step_deg = 12.0\n");
+        bench.replace(RUN, "beta_step_deg = 3.0", "beta_step_deg = 7.2");
         bench
     }
 

@@ -79,12 +79,9 @@ fn constraints_bind_and_hold() {
 #[test]
 fn joint_speeds_bind_and_hold() {
     let mut problem = five_segments();
-    let slow = |problem: &Problem, factor: f64| {
-        let mut joints = problem.robot.joints().clone();
-        joints.iter_mut().for_each(|j| j.max_speed = Some(factor));
-        crate::robot::Robot::new("slow", joints).unwrap()
-    };
-    problem.robot = slow(&problem, 0.25);
+    let mut joints = problem.robot.joints().clone();
+    joints.iter_mut().for_each(|j| j.max_speed = Some(0.25));
+    problem.robot = crate::robot::Robot::new("slow", joints).unwrap();
     let planner = Planner::finer(&problem);
     let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
     assert_allowed(&problem, &solution);
