@@ -86,13 +86,6 @@ pub struct Transfer {
 /// nothing. m
 pub const CANCELLED: f64 = 1e-9;
 
-impl Outcome {
-    /// Mean deflection of a case (from 0) over that of case 1; `None` where case 1 is a cancellation.
-    pub fn ratio(&self, index: usize) -> Option<f64> {
-        ratio(&self.cases, index)
-    }
-}
-
 /// Mean deflection of a case (from 0) over that of the first; `None` where the first is a cancellation.
 pub fn ratio(cases: &[Case; 4], index: usize) -> Option<f64> {
     (cases[0].plan.mean > CANCELLED).then(|| cases[index].plan.mean / cases[0].plan.mean)

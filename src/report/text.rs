@@ -3,7 +3,7 @@
 use super::number::fixed;
 use super::{Context, words};
 use crate::input::Reference;
-use crate::placement::outcome::Outcome;
+use crate::placement::outcome::{Outcome, ratio};
 use crate::placement::problem::Problem;
 
 /// Widest posture scheme that is written in full.
@@ -57,7 +57,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
     for (index, case) in outcome.cases.iter().enumerate() {
         let mut row = vec![case.number.to_string()];
         row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
-        row.push(outcome.ratio(index).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
+        row.push(ratio(&outcome.cases, index).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
         if let Some(Reference { case_mm, .. }) = reference {
             row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
         }

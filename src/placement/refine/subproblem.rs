@@ -12,7 +12,8 @@ use crate::robot::angles::wrap;
 use crate::robot::scalar::Dual;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT, ZeroConeT,
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
+    ZeroConeT,
 };
 use nalgebra::{Matrix4, Vector4};
 
@@ -145,14 +146,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
     let matrix = CscMatrix::new_from_triplets(rows.bound.len(), variables, rows.row, rows.column, rows.value);
     let inequalities = rows.bound.len() - equalities;
     let cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
-    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver = DefaultSolver::new(&curvature, &linear, &matrix, &rows.bound, &cones, settings)
-        .map_err(|e| format!("clarabel refused the subproblem: {e}"))?;
-    solver.solve();
-    let found = &solver.solution;
-    if !matches!(found.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-        return Err(format!("clarabel: {:?}", found.status));
-    }
+    let found = programme(&curvature, &linear, &matrix, &rows.bound, &cones)?;
     let mut pose = [0.0; 4];
     let mut pose_gradient = [0.0; 4];
     for k in 0..4 {
@@ -167,6 +161,24 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
         promised: ((1.0 - found.obj_val) * unit).max(0.0),
         pose_gradient,
     })
+}
+
+/// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
+fn programme(
+    quadratic: &CscMatrix<f64>,
+    linear: &[f64],
+    matrix: &CscMatrix<f64>,
+    bound: &[f64],
+    cones: &[SupportedConeT<f64>],
+) -> Result<DefaultSolution<f64>, String> {
+    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
+    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings)
+        .map_err(|e| format!("clarabel refused the subproblem: {e}"))?;
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
+        status => Err(format!("clarabel: {status:?}")),
+    }
 }
 
 /// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
@@ -192,12 +204,8 @@ pub fn pose_step(
         rows.add([(k, -1.0)], (-bound.min).min(trust));
     }
     let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
-    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver =
-        DefaultSolver::new(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)], settings).ok()?;
-    solver.solve();
-    matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved)
-        .then(|| Vector4::from_fn(|k, _| bounds[k].clamp(solver.solution.x[k])))
+    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)]).ok()?;
+    Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
 }
 
 /// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
@@ -225,16 +233,9 @@ pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
         rows.add([(k, -1.0)], 0.0);
     }
     let matrix = CscMatrix::new_from_triplets(n + 1, n, rows.row, rows.column, rows.value);
-    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
     let cones = [ZeroConeT(1), NonnegativeConeT(n)];
-    let Ok(mut solver) = DefaultSolver::new(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones, settings) else {
-        return f64::INFINITY;
-    };
-    solver.solve();
-    if !matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-        return f64::INFINITY;
-    }
-    let sum = columns.iter().zip(&solver.solution.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
+    let Ok(found) = programme(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones) else { return f64::INFINITY };
+    let sum = columns.iter().zip(&found.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
     sum.norm() * unit
 }
 
