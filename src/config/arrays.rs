@@ -7,6 +7,11 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 impl<'a> Field<'a> {
+    /// Whether the value is an array.
+    pub fn is_array(&self) -> bool {
+        matches!(self.value.map(Spanned::get_ref), Some(DeValue::Array(_)))
+    }
+
     /// An array of `N` finite numbers that all pass a test; `allowed` says what the array must be.
     ///
     /// # Errors

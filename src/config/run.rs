@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(run.notes, Vec::<String>::new());
 
         let softer = shipped("caro-2013-k1-0.8.toml");
-        assert_eq!(softer.problem.robot.compliances()[0], 1e-6 / 0.8);
+        assert_eq!(softer.problem.robot.joints()[0].compliance, (1e-6 / 0.8).into());
         assert_eq!(softer.problem.task, testing.task);
     }
 

@@ -55,7 +55,7 @@ pub fn state<T: Scalar>(
     let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
     let force = workpiece.rotation * cast(&wrench.force);
     let moment = workpiece.rotation * cast(&wrench.moment);
-    let compliances = problem.robot.compliances();
+    let compliances = problem.robot.compliances_at(&joints);
     let deflection = displacement(&frames, &tip, &compliances, &force, &moment).linear;
     let normal = axes.column(1).into_owned();
     let uncertainty = if problem.criterion.force_uncertainty > 0.0 {
@@ -144,7 +144,7 @@ mod tests {
                 let tip = workpiece.point(&problem.task.points()[point].position);
                 prop_assert!((frames.base_from_flange.point(&problem.spindle.flange_from_tool.translation) - tip).norm() < 1e-9);
                 let jacobian = frames.jacobian(&tip);
-                let joint = Matrix6::from_diagonal(&Vector6::from(problem.robot.compliances().map(|c| 1.0 / c)));
+                let joint = Matrix6::from_diagonal(&Vector6::from(problem.robot.compliances_at(&found.joints).map(|c| 1.0 / c)));
                 let Some(inverse) = jacobian.try_inverse() else { continue };
                 let stiffness = inverse.transpose() * joint * inverse;
                 let force = workpiece.rotation * problem.task.wrenches()[point].force;

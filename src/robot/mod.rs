@@ -12,7 +12,7 @@
 //! let rows = [(0.0, 0.0, 0.0), (90.0, 0.35, 0.0), (0.0, 1.25, 0.0), (-90.0, 0.055, 1.1), (90.0, 0.0, 0.0), (-90.0, 0.0, 0.0)];
 //! let joints = rows.map(|(alpha, a, d): (f64, f64, f64)| Joint {
 //!     alpha: alpha.to_radians(), a, d, min: -6.0, max: 6.0,
-//!     max_speed: None, max_acceleration: None, max_jerk: None, compliance: 1e-6,
+//!     max_speed: None, max_acceleration: None, max_jerk: None, compliance: 1e-6.into(),
 //! });
 //! let robot = Robot::new("example", joints)?;
 //! let theta = [0.1, 0.9, -1.8, 0.3, 0.7, -0.2];
@@ -24,20 +24,24 @@
 //! ```
 
 pub mod angles;
+mod compliance;
 pub mod conditioning;
+mod data_sheet;
 mod forward;
 mod geometry;
 mod inverse;
 pub mod posture;
 pub mod scalar;
+mod spindle;
 pub mod turns;
 
+pub use compliance::{Compensator, Compliance};
+pub use data_sheet::DataSheet;
 pub use forward::{Frames, Pose, cast};
 pub use geometry::Geometry;
 pub use inverse::Unreachable;
 pub use posture::{Posture, PostureClass};
-
-use nalgebra::{Matrix3, Vector3};
+pub use spindle::Spindle;
 
 /// One row of the arm, base first: modified Denavit-Hartenberg parameters, limits, compliance.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,8 +62,8 @@ pub struct Joint {
     pub max_acceleration: Option<f64>,
     /// Largest joint jerk, where known. rad/s^3
     pub max_jerk: Option<f64>,
-    /// Compliance of joint and drive about the axis (the inverse of the joint stiffness). rad/(N m)
-    pub compliance: f64,
+    /// Compliance of joint and drive about the axis (the inverse of the joint stiffness), a number or a law.
+    pub compliance: Compliance,
 }
 
 /// A checked six-axis arm with a spherical wrist.
@@ -68,6 +72,7 @@ pub struct Robot {
     name: String,
     joints: [Joint; 6],
     geometry: Geometry,
+    data_sheet: DataSheet,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -103,6 +108,44 @@ pub enum RobotError {
         /// What was found.
         value: f64,
     },
+    /// The compliance is a range over the joint angle, but one wrapped angle has several real ones.
+    #[error(
+        "joint {joint}: a compliance that changes from limit to limit needs limits less than 360 deg apart, and not {range_deg} deg"
+    )]
+    AmbiguousRange {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// Upper limit less lower limit, in degrees.
+        range_deg: f64,
+    },
+    /// The two ends of a compensator's spring meet at an angle within the limits.
+    #[error("joint {joint}: the two ends of the compensator's spring meet at {angle_deg} deg")]
+    SpringVanishes {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// Where, in degrees.
+        angle_deg: f64,
+    },
+    /// With its compensator a joint has no positive stiffness at an angle within the limits.
+    #[error(
+        "joint {joint}: with its compensator the stiffness at {angle_deg} deg is {stiffness} N m/rad, but must be above zero"
+    )]
+    GivesWay {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// Where, in degrees.
+        angle_deg: f64,
+        /// The sum of the stiffnesses of joint and spring there. N m/rad
+        stiffness: f64,
+    },
+    /// A figure of the data sheet that is not a finite number above zero.
+    #[error("data sheet: {field} is {value}, but must be a finite number above zero")]
+    DataSheet {
+        /// Which figure.
+        field: &'static str,
+        /// What was found.
+        value: f64,
+    },
     /// The geometry is not that of an elbow arm with a spherical wrist.
     #[error("joint {joint}: {reason}")]
     Geometry {
@@ -127,7 +170,7 @@ impl Robot {
             check_joint(index + 1, joint)?;
         }
         let geometry = Geometry::new(&joints)?;
-        Ok(Self { name: name.into(), joints, geometry })
+        Ok(Self { name: name.into(), joints, geometry, data_sheet: DataSheet::default() })
     }
 
     /// The name given by the robot file.
@@ -144,45 +187,26 @@ impl Robot {
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
-
-    /// The six joint compliances. rad/(N m)
-    pub fn compliances(&self) -> [f64; 6] {
-        std::array::from_fn(|j| self.joints[j].compliance)
-    }
-
-    /// The same arm with other joint compliances (rad/(N m)), as from an identification.
-    ///
-    /// # Errors
-    /// [`RobotError::NotPositive`] or [`RobotError::NotFinite`] for a compliance that is none.
-    pub fn with_compliances(&self, compliances: [f64; 6]) -> Result<Self, RobotError> {
-        let mut joints = self.joints.clone();
-        for (joint, compliance) in joints.iter_mut().zip(compliances) {
-            joint.compliance = compliance;
-        }
-        Self::new(self.name.clone(), joints)
-    }
 }
 
 fn check_joint(number: usize, joint: &Joint) -> Result<(), RobotError> {
-    let finite = [
-        ("alpha", joint.alpha),
-        ("a", joint.a),
-        ("d", joint.d),
-        ("min", joint.min),
-        ("max", joint.max),
-        ("compliance", joint.compliance),
-        ("max_speed", joint.max_speed.unwrap_or(1.0)),
-        ("max_acceleration", joint.max_acceleration.unwrap_or(1.0)),
-        ("max_jerk", joint.max_jerk.unwrap_or(1.0)),
-    ];
-    for (field, value) in finite {
+    let finite =
+        [("alpha", joint.alpha), ("a", joint.a), ("d", joint.d), ("min", joint.min), ("max", joint.max)].into_iter();
+    let speeds =
+        [("max_speed", joint.max_speed), ("max_acceleration", joint.max_acceleration), ("max_jerk", joint.max_jerk)];
+    let positive: Vec<_> = speeds
+        .into_iter()
+        .filter_map(|(field, value)| value.map(|value| (field, value)))
+        .chain(joint.compliance.positive())
+        .collect();
+    for (field, value) in finite.chain(joint.compliance.finite()).chain(positive.iter().copied()) {
         if !value.is_finite() {
             return Err(RobotError::NotFinite { joint: number, field, value });
         }
     }
-    for (field, value) in &finite[5..] {
-        if *value <= 0.0 {
-            return Err(RobotError::NotPositive { joint: number, field, value: *value });
+    for (field, value) in positive {
+        if value <= 0.0 {
+            return Err(RobotError::NotPositive { joint: number, field, value });
         }
     }
     if joint.min >= joint.max {
@@ -192,56 +216,7 @@ fn check_joint(number: usize, joint: &Joint) -> Result<(), RobotError> {
             max_deg: joint.max.to_degrees(),
         });
     }
-    Ok(())
-}
-
-/// The spindle as mounted: the rigid transform from the tool frame (7, at the tool centre point, z along the tool axis
-/// out of the spindle) to the flange frame (6) of the arm (Caro 2013, eq. 9).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spindle {
-    /// Coordinates in frame 7 to coordinates in frame 6.
-    pub flange_from_tool: Pose<f64>,
-}
-
-impl Spindle {
-    /// How far a given rotation matrix may be from orthonormal: eight printed digits.
-    pub const ROTATION_TOLERANCE: f64 = 1e-6;
-
-    /// Takes a rotation matrix as printed (rows) and a translation in m; the rotation is made orthonormal to rounding.
-    ///
-    /// # Errors
-    /// A sentence that says what is wrong with the matrix: not finite, columns not of unit length, not at right angles,
-    /// or left-handed.
-    pub fn new(rotation: Matrix3<f64>, translation: Vector3<f64>) -> Result<Self, String> {
-        if rotation.iter().chain(translation.iter()).any(|v| !v.is_finite()) {
-            return Err("must be made of finite numbers".to_owned());
-        }
-        let tolerance = Self::ROTATION_TOLERANCE;
-        let x = rotation.column(0).into_owned();
-        let y = rotation.column(1).into_owned();
-        let z = rotation.column(2).into_owned();
-        for (name, column) in [("first", x), ("second", y), ("third", z)] {
-            if (column.norm() - 1.0).abs() > tolerance {
-                return Err(format!("is no rotation: its {name} column has length {:.6} and not 1", column.norm()));
-            }
-        }
-        for (names, dot) in
-            [("first and second", x.dot(&y)), ("second and third", y.dot(&z)), ("third and first", z.dot(&x))]
-        {
-            if dot.abs() > tolerance {
-                return Err(format!(
-                    "is no rotation: its {names} columns are not at right angles (dot product {dot:.6})"
-                ));
-            }
-        }
-        if x.cross(&y).dot(&z) < 0.0 {
-            return Err("is no rotation but a reflection: its determinant is -1".to_owned());
-        }
-        let z = z.normalize();
-        let x = (x - z * z.dot(&x)).normalize();
-        let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
-        Ok(Self { flange_from_tool: Pose { rotation, translation } })
-    }
+    Compliance::check(number, joint)
 }
 
 #[cfg(test)]
@@ -261,7 +236,7 @@ pub(crate) mod testing {
             max_speed: None,
             max_acceleration: None,
             max_jerk: None,
-            compliance: 1e-6 / stiffness,
+            compliance: (1e-6 / stiffness).into(),
         });
         Robot::new("test", joints).unwrap_or_else(|e| unreachable!("{e}"))
     }
@@ -308,13 +283,12 @@ pub(crate) mod testing {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Matrix3, matrix, vector};
 
     #[test]
     fn rejects_what_is_no_arm() {
         let good = testing::kr270();
         let mut joints = good.joints().clone();
-        joints[2].compliance = -1.0;
+        joints[2].compliance = (-1.0).into();
         assert!(matches!(Robot::new("x", joints), Err(RobotError::NotPositive { joint: 3, field: "compliance", .. })));
         let mut joints = good.joints().clone();
         joints[4].a = f64::NAN;
@@ -325,21 +299,5 @@ mod tests {
         let mut joints = good.joints().clone();
         joints[4].d = 0.1;
         assert!(matches!(Robot::new("x", joints), Err(RobotError::Geometry { joint: 5, field: "d", .. })));
-    }
-
-    #[test]
-    fn spindle_refuses_what_is_no_rotation() {
-        let here = vector![0.0, 0.0, 0.0];
-        assert!(Spindle::new(Matrix3::identity() * 1.01, here).is_err());
-        assert!(Spindle::new(Matrix3::from_diagonal(&vector![1.0, 1.0, -1.0]), here).is_err());
-        let shear = matrix![1.0, 0.1, 0.0; 0.0, 0.995, 0.0; 0.0, 0.0, 1.0];
-        assert!(Spindle::new(shear, here).is_err());
-        assert!(Spindle::new(Matrix3::identity(), vector![f64::NAN, 0.0, 0.0]).is_err());
-        // Half the square root of two, as printed with eight digits.
-        let h = 70_710_678.0 / 1e8;
-        let printed = matrix![0.0, -h, h; 1.0, 0.0, 0.0; 0.0, h, h];
-        let rotation = Spindle::new(printed, here).map(|s| s.flange_from_tool.rotation);
-        let error = rotation.map(|r| (r * r.transpose() - Matrix3::identity()).abs().max());
-        assert!(error.is_ok_and(|e| e < 1e-15));
     }
 }

@@ -17,11 +17,11 @@ pub struct Displacement<T: Scalar> {
 }
 
 /// The displacement at `point` (m) under `force` (N) and `moment` (N m) acting there, all in the base frame, for joint
-/// compliances in rad/(N m).
+/// compliances at the pose in rad/(N m) ([`Robot::compliances_at`](crate::robot::Robot::compliances_at)).
 pub fn displacement<T: Scalar>(
     frames: &Frames<T>,
     point: &Vector3<T>,
-    compliances: &[f64; 6],
+    compliances: &[T; 6],
     force: &Vector3<T>,
     moment: &Vector3<T>,
 ) -> Displacement<T> {
@@ -29,7 +29,7 @@ pub fn displacement<T: Scalar>(
     let mut angular = Vector3::zeros();
     for (j, compliance) in compliances.iter().enumerate() {
         let (velocity, axis) = frames.twist(j, point);
-        let yielding = (velocity.dot(force) + axis.dot(moment)).scale(*compliance);
+        let yielding = (velocity.dot(force) + axis.dot(moment)) * *compliance;
         linear += velocity * yielding;
         angular += axis * yielding;
     }
@@ -69,11 +69,12 @@ mod tests {
             let frames = Frames::new(robot, &theta);
             let point = frames.base_from_flange.point(&vector![0.1, -0.3, 0.2]);
             let jacobian = frames.jacobian(&point);
-            let stiffness = Matrix6::from_diagonal(&Vector6::from(robot.compliances().map(|c| 1.0 / c)));
+            let compliances = robot.compliances_at(&theta);
+            let stiffness = Matrix6::from_diagonal(&Vector6::from(compliances.map(|c| 1.0 / c)));
             let wrench = Vector6::from(wrench);
             let expected = jacobian * stiffness.try_inverse().unwrap() * jacobian.transpose() * wrench;
             let (force, moment) = (wrench.fixed_rows::<3>(0).into_owned(), wrench.fixed_rows::<3>(3).into_owned());
-            let found = displacement(&frames, &point, &robot.compliances(), &force, &moment);
+            let found = displacement(&frames, &point, &compliances, &force, &moment);
             prop_assert!((found.linear - expected.fixed_rows::<3>(0)).norm() < 1e-12);
             prop_assert!((found.angular - expected.fixed_rows::<3>(3)).norm() < 1e-12);
         }

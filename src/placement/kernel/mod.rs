@@ -10,6 +10,7 @@
 //! and what the first three joints rule out never reaches the wrist.
 
 pub mod lanes;
+mod laws;
 mod states;
 mod wrist;
 
@@ -18,6 +19,7 @@ pub use states::{States, StatesView};
 use super::problem::{Problem, Redundancy, base_from_workpiece};
 use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use lanes::{Lanes, Mask, WIDTH};
+use laws::Laws;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
@@ -29,7 +31,7 @@ pub struct Kernel<'a> {
     cosine: Vec<f64>,
     sine: Vec<f64>,
     limits: [Limit; 6],
-    compliances: [f64; 6],
+    laws: Laws,
     forearm_sin_cos: (f64, f64),
 }
 
@@ -134,7 +136,7 @@ impl<'a> Kernel<'a> {
             cosine: (0..padded).map(|k| angle(k).1).collect(),
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
-            compliances: problem.robot.compliances(),
+            laws: Laws::new(&problem.robot),
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
         }
     }

@@ -172,18 +172,19 @@ impl Kernel<'_> {
         let constant = |v: &nalgebra::Vector3<f64>| turned([v.x, v.y, v.z].map(Lanes::splat), sin1, cos1);
         let (normal, force, moment) =
             (constant(&geometry.normal), constant(&geometry.force), constant(&geometry.moment));
-        let score = pose.score::<UNCERTAIN>(g.lateral, &self.compliances, normal, force, moment, geometry.uncertainty);
+        let elbow = if delta_negative { -1.0 } else { 1.0 };
+        let (sin_delta, cos_delta) = (column(column::SIN_DELTA) * elbow, column(column::COS_DELTA));
+        let (theta2, _) = self.limits[1].canonical(s2.atan2(c2));
+        let (theta3, _) = self.limits[2].canonical(sin_delta.atan2(cos_delta) - g.forearm_angle);
+        let joints = [theta1, theta2, theta3, theta4, theta5, theta6];
+        let compliances = self.laws.constants().unwrap_or_else(|| self.laws.at(&joints));
+        let score = pose.score::<UNCERTAIN>(g.lateral, &compliances, normal, force, moment, geometry.uncertainty);
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(limit));
         }
-        let elbow = if delta_negative { -1.0 } else { 1.0 };
-        let delta = (column(column::SIN_DELTA) * elbow).atan2(column(column::COS_DELTA));
-        let (theta2, _) = self.limits[1].canonical(s2.atan2(c2));
-        let (theta3, _) = self.limits[2].canonical(delta - g.forearm_angle);
         for k in 0..filled {
             if allowed.lane(k) {
-                let joints = [theta1, theta2, theta3, theta4, theta5, theta6].map(|theta| theta.0[k]);
-                states.set(index[k], score.0[k], joints);
+                states.set(index[k], score.0[k], joints.map(|theta| theta.0[k]));
             }
         }
     }
@@ -263,7 +264,7 @@ impl Pose {
     fn score<const UNCERTAIN: bool>(
         &self,
         lateral: f64,
-        compliances: &[f64; 6],
+        compliances: &[Lanes; 6],
         normal: Vector,
         force: Vector,
         moment: Vector,
