@@ -27,11 +27,13 @@
 //! `a_p` times the force. There are no edge forces, and the feed turns into the chip as if the teeth ran on circles.
 //!
 //! **The published case.** With R = 5 mm, z = 3, kappa = 90 deg, gamma_0 = 7 deg, lambda_s = 45 deg, f_z = 0.08 mm, a_p = 5 mm
-//! and K_n = 750 MPa the paper prints F = (-440, -1370, -635) N and M = (0, 3, 10.5) N m in a full slot (section 5), and does not
-//! print k_f. No k_f gives that: at these angles |F_y / F_z| is pi / 4 for any, and k_f = 0.4 gives F = (-61.9, 165.7, -210.9) N
-//! and M = (0, 0.83, 1.05) N m. All printed digits, but for the sign of F_y, come out with lambda_s = 20 deg, gamma_0 = 5 deg,
-//! k_f = 0.4 and R = 6 mm if the factor 1 / (2 pi) of eq. 4 to 7 is left out. So the printed force is probably that of another
-//! cutter, and 2 pi times its mean. By eq. 8, F_y has the sign of M_z wherever M_x is 0, M_y positive and F_z negative.
+//! and K_n = 750 MPa the paper prints F = (-440, -1370, -635) N and M = (0, 3, 10.5) N m in a full slot (section 5.1), and does
+//! not print k_f. No k_f gives that: at these angles |F_y / F_z| is pi / 4 for any, and k_f = 0.4 gives
+//! F = (-61.9, 165.7, -210.9) N and M = (0, 0.83, 1.05) N m. Whatever the angles, M_y / F_z and M_z / F_y of a slot are R pi / 4
+//! and 4 R / pi, and both printed ratios say R = 6.0 mm. All printed digits, but for the sign of F_y, come out with that R,
+//! lambda_s = 20 deg, gamma_0 = 5 deg and k_f = 0.4 if the factor 1 / (2 pi) of eq. 4 to 7 is left out. So the printed force is
+//! probably that of another cutter, and 2 pi times its mean. By eq. 8, F_y has the sign of M_z wherever M_x is 0, M_y positive
+//! and F_z negative.
 
 use super::engagement::{Engagement, Integrals};
 use super::rotation::Rotation;
