@@ -23,6 +23,8 @@ impl Unit {
     pub const ANGLE_DEG: Self = Self { factor: 180.0 / std::f64::consts::PI, decimals: 4 };
     /// Forces in N.
     pub const FORCE_N: Self = Self { factor: 1.0, decimals: 4 };
+    /// Moments in N m.
+    pub const MOMENT_NM: Self = Self { factor: 1.0, decimals: 6 };
     /// Numbers without a unit: 1/kappa, Q4, ratios.
     pub const PLAIN: Self = Self { factor: 1.0, decimals: 6 };
     /// Times in s.

@@ -212,11 +212,11 @@ fn placement(placement: &Placement, with_q4: bool) -> Vec<String> {
     fields
 }
 
-fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
+pub(super) fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
     [vector.x, vector.y, vector.z].map(|value| unit.text(value))
 }
 
-fn table(
+pub(super) fn table(
     what: &'static str,
     header: &[&str],
     rows: impl IntoIterator<Item = Vec<String>>,

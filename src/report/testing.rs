@@ -2,6 +2,7 @@
 //! planned by a shortest path over the grid, with an invented search.
 
 use super::Context;
+use crate::cutting::{Course, Engagement, MillingTool, Rotation};
 use crate::input::{InputFile, Reference};
 use crate::placement::criterion::{State, state};
 use crate::placement::outcome::*;
@@ -223,4 +224,21 @@ pub fn assert_well_formed(svg: &str) {
         rest = &rest[end + 1..];
     }
     assert!(open.is_empty() && svg.starts_with("<svg "));
+}
+
+/// The force of a cutter on both sides of a slot that is open over half its width.
+pub fn course() -> Course {
+    let tool = MillingTool {
+        radius: 0.005,
+        teeth: 3,
+        rotation: Rotation::Clockwise,
+        entering_angle: 90_f64.to_radians(),
+        helix: 20_f64.to_radians(),
+        rake: 5_f64.to_radians(),
+        friction: 0.4,
+        normal_pressure: 750e6,
+        feed_per_tooth: 8e-5,
+        axial_depth: 5e-3,
+    };
+    Course::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
 }

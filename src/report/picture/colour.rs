@@ -18,6 +18,11 @@ pub(super) const RED: RGBColor = RGBColor(214, 20, 30);
 /// Means.
 pub(super) const BLUE: RGBColor = RGBColor(110, 140, 190);
 
+/// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
+pub(super) const COMPONENTS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
+/// The ground of a part of an axis that is meant.
+pub(super) const SHADE: RGBColor = RGBColor(248, 244, 230);
+
 /// Levels of the colour scale of deflections.
 pub(super) const LEVELS: usize = 32;
 

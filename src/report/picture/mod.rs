@@ -5,10 +5,12 @@ mod canvas;
 mod cell;
 mod colour;
 mod convergence;
+mod cutting;
 mod deflection_map;
 mod hatch;
 mod scene;
 
 pub use cell::cell;
 pub use convergence::convergence;
+pub use cutting::cutting;
 pub use deflection_map::deflection_map;
