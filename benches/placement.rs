@@ -10,7 +10,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
 use stead::config::read_run;
-use stead::placement::kernel::{Kernel, States};
+use stead::placement::kernel::{Flips, Kernel, States};
 use stead::placement::problem::Problem;
 use stead::placement::redundancy::{Extremum, Planner, band};
 use stead::robot::PostureClass;
@@ -42,7 +42,7 @@ fn poses() -> Vec<[f64; 4]> {
 #[divan::bench]
 fn kernel(bencher: Bencher) {
     let problem = problem();
-    let kernel = Kernel::new(&problem);
+    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
     let mut scratch = kernel.scratch();
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
@@ -60,7 +60,7 @@ fn kernel(bencher: Bencher) {
 fn planner(bencher: Bencher) {
     let problem = problem();
     let planner = Planner::new(&problem);
-    let kernel = Kernel::new(&problem);
+    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
     let mut scratch = kernel.scratch();
     let count = problem.redundancy.beta_count;
     let pose = [0.0, -1.64, -0.214, 1.378];

@@ -77,7 +77,7 @@ pub fn state<T: Scalar>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::five_segments;
+    use super::super::testing::{five_segments, five_segments_compensated};
     use super::*;
     use crate::robot::{angles::yaw_from_q4, scalar::Dual};
     use nalgebra::{Matrix6, Vector6};
@@ -156,8 +156,10 @@ mod tests {
         }
 
         #[test]
-        fn derivatives_agree_with_central_differences(beta in -3.0..3.0_f64, point in 0..105_usize) {
-            let mut problem = five_segments();
+        fn derivatives_agree_with_central_differences(
+            beta in -3.0..3.0_f64, point in 0..105_usize, is_compensated in any::<bool>()
+        ) {
+            let mut problem = if is_compensated { five_segments_compensated() } else { five_segments() };
             problem.criterion.force_uncertainty = 0.2;
             let pose = published_optimum();
             let at = |shift: [f64; 5]| {

@@ -30,6 +30,7 @@ pub(crate) mod testing {
     //! The problem of Caro 2013 for the tests of this room.
     use super::problem::*;
     use crate::robot::testing::{kr270, spindle};
+    use crate::robot::{Compensator, Compliance, Robot};
     use crate::task::{Task, read_csv};
     use std::f64::consts::PI;
     use std::path::Path;
@@ -51,5 +52,27 @@ pub(crate) mod testing {
             criterion: Criterion::default(),
             redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
         }
+    }
+
+    /// The same problem with other laws of compliance at some joints (from 0).
+    pub fn with_laws(mut problem: Problem, laws: &[(usize, Compliance)]) -> Problem {
+        let mut joints = problem.robot.joints().clone();
+        for (joint, law) in laws {
+            joints[*joint].compliance = *law;
+        }
+        problem.robot = Robot::new("laws", joints).unwrap();
+        problem
+    }
+
+    /// A joint beside a compensator of the size of a KR270's, strong enough to be seen; `alpha` in rad, `alone` in
+    /// rad/(N m).
+    pub fn compensated(alpha: f64, alone: f64) -> Compliance {
+        let compensator = Compensator { spring_stiffness: 3e6, a: 0.7, l: 0.18, alpha, free_length: 0.46 };
+        Compliance::Compensated { alone, compensator }
+    }
+
+    /// The five-segment task with a compensator at joint 2.
+    pub fn five_segments_compensated() -> Problem {
+        with_laws(five_segments(), &[(1, compensated(0.2, 1e-6 / 3.32))])
     }
 }

@@ -1,8 +1,12 @@
 //! How the arm yields: joint compliances seen at the tool centre point.
 //!
 //! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as corrected: no
-//! complementary stiffness). Nothing here inverts a matrix: a displacement is a sum over the joints,
-//! `K^-1 w = sum_j J_j (J_j . w) / k_j`.
+//! complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
+//! `K^-1 w = sum_j J_j (J_j . w) / k_j`. Loads so high that they change the configuration are for [`loaded`] (the tangent,
+//! Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest).
+
+pub mod equilibrium;
+pub mod loaded;
 
 use crate::robot::{Frames, scalar::Scalar};
 use nalgebra::Vector3;

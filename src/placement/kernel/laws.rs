@@ -1,6 +1,6 @@
 //! Joint compliances in lanes: the same as [`Robot::compliances_at`], four states at a time.
 
-use super::lanes::{Lanes, WIDTH};
+use super::lanes::Lanes;
 use crate::robot::{Compensator, Compliance, Robot};
 
 /// The compliance laws of an arm, ready for lanes.
@@ -24,6 +24,7 @@ enum Law {
     Spring {
         alone: f64,
         compensator: Compensator,
+        sin_cos_alpha: (f64, f64),
     },
 }
 
@@ -34,7 +35,9 @@ impl Laws {
             Compliance::Range { at_min, at_max } => {
                 Law::Linear { min: joint.min, width: joint.max - joint.min, at_min, rise: at_max - at_min }
             }
-            Compliance::Compensated { alone, compensator } => Law::Spring { alone, compensator },
+            Compliance::Compensated { alone, compensator } => {
+                Law::Spring { alone, compensator, sin_cos_alpha: libm::sincos(compensator.alpha) }
+            }
         });
         Self { laws, constants: robot.constant_compliances().map(|constants| constants.map(Lanes::splat)) }
     }
@@ -45,26 +48,26 @@ impl Laws {
         self.constants
     }
 
-    /// All six compliances at joint angles (rad) that are the real ones where a joint has only one. rad/(N m)
-    pub fn at(&self, joints: &[Lanes; 6]) -> [Lanes; 6] {
-        std::array::from_fn(|j| self.laws[j].at(joints[j]))
+    /// All six compliances at joint angles (rad) that are the real ones where a joint has only one, given with their sines
+    /// and cosines. rad/(N m)
+    pub fn at(&self, angles: &[Lanes; 6], directions: &[[Lanes; 2]; 6]) -> [Lanes; 6] {
+        std::array::from_fn(|j| self.laws[j].at(angles[j], directions[j]))
     }
 }
 
 impl Law {
-    fn at(self, angle: Lanes) -> Lanes {
-        match self {
+    #[inline(always)]
+    fn at(&self, angle: Lanes, [sine, cosine]: [Lanes; 2]) -> Lanes {
+        match *self {
             Self::Constant(value) => Lanes::splat(value),
             Self::Linear { min, width, at_min, rise } => {
                 let share = ((angle - min) * (1.0 / width)).max(Lanes::splat(0.0)).min(Lanes::splat(1.0));
                 share * rise + at_min
             }
-            Self::Spring { alone, compensator } => {
-                let mut stiffness = [0.0; WIDTH];
-                for (slot, angle) in stiffness.iter_mut().zip(angle.0) {
-                    *slot = compensator.stiffness(angle);
-                }
-                Lanes::splat(alone) / (Lanes(stiffness) * alone + 1.0)
+            Self::Spring { alone, compensator, sin_cos_alpha: (sin_alpha, cos_alpha) } => {
+                let cos_psi = cosine * cos_alpha - sine * sin_alpha;
+                let stiffness = Lanes(cos_psi.0.map(|cosine| compensator.stiffness_at(cosine)));
+                Lanes::splat(alone) / (stiffness * alone + 1.0)
             }
         }
     }

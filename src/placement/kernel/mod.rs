@@ -17,7 +17,7 @@ mod wrist;
 pub use states::{States, StatesView};
 
 use super::problem::{Problem, Redundancy, base_from_workpiece};
-use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
+use crate::robot::{Posture, PostureClass, Robot, angles::ANGLE_ROUNDING, turns::Range};
 use lanes::{Lanes, Mask, WIDTH};
 use laws::Laws;
 use nalgebra::Vector3;
@@ -32,7 +32,35 @@ pub struct Kernel<'a> {
     sine: Vec<f64>,
     limits: [Limit; 6],
     laws: Laws,
+    flips: Flips,
     forearm_sin_cos: (f64, f64),
+}
+
+/// Which of the two postures of a class are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flips {
+    /// Both as one, for arms that yield alike in both ([`Robot::flips_yield_alike`]): the score is that of either.
+    Both,
+    /// The one with theta_5 not negative.
+    Plain,
+    /// The one with theta_5 negative.
+    Flipped,
+}
+
+impl Flips {
+    /// What kernels an arm needs: one for both postures of a class, or one for each.
+    pub fn of(robot: &Robot) -> &'static [Self] {
+        if robot.flips_yield_alike() { &[Self::Both] } else { &[Self::Plain, Self::Flipped] }
+    }
+
+    /// Whether a posture is among them.
+    pub fn contains(self, posture: Posture) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Plain => !posture.is_flipped(),
+            Self::Flipped => posture.is_flipped(),
+        }
+    }
 }
 
 /// Scratch space of one thread.
@@ -119,13 +147,8 @@ struct PointGeometry {
 }
 
 impl<'a> Kernel<'a> {
-    /// Prepares the evaluation of a problem on its grid of beta.
-    pub fn new(problem: &'a Problem) -> Self {
-        Self::on_grid(problem, &problem.redundancy)
-    }
-
-    /// Prepares the evaluation of a problem on another grid of beta.
-    pub fn on_grid(problem: &'a Problem, grid: &Redundancy) -> Self {
+    /// Prepares the evaluation of a problem on a grid of beta, in one or both postures of each class.
+    pub fn new(problem: &'a Problem, grid: &Redundancy, flips: Flips) -> Self {
         let count = grid.beta_count;
         let padded = count.next_multiple_of(WIDTH);
         let angle = |k: usize| libm::sincos(grid.beta(k % count));
@@ -137,8 +160,14 @@ impl<'a> Kernel<'a> {
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
             laws: Laws::new(&problem.robot),
+            flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
         }
+    }
+
+    /// Which of the two postures of a class are evaluated.
+    pub fn flips(&self) -> Flips {
+        self.flips
     }
 
     /// Space for one thread to work in.
@@ -150,8 +179,8 @@ impl<'a> Kernel<'a> {
     /// Evaluates path point `point` with the workpiece at `pose` (x, y, z in m, yaw in rad) into `states`.
     ///
     /// Allowed states get their score (m) and their joint angles (theta_5 not negative; rad), all others an infinite
-    /// score. A state is allowed when one of the two postures of its class is inside the limits of every joint by itself;
-    /// turns, and limits that tell the two apart, are for the planner to look at.
+    /// score. A state is allowed when one of the postures asked for is inside the limits of every joint by itself; turns,
+    /// and limits that tell two postures apart, are for the planner to look at.
     pub fn evaluate(&self, point: usize, pose: &[f64; 4], scratch: &mut Scratch, states: &mut States) {
         let geometry = self.point_geometry(point, pose);
         for class in PostureClass::ALL {

@@ -2,14 +2,18 @@
 
 use super::*;
 use crate::placement::criterion::state;
-use crate::placement::testing::five_segments;
-use crate::robot::Posture;
+use crate::placement::testing::{compensated, five_segments, with_laws};
 use crate::robot::angles::{wrap, yaw_from_q4};
 use crate::robot::testing::odd_arms;
+use crate::robot::{Compensator, Compliance, Posture, Robot};
 
 /// Holds every state of some points against [`state`]; returns how many were allowed.
-fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>) -> usize {
-    let kernel = Kernel::new(problem);
+fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize> + Clone) -> usize {
+    Flips::of(&problem.robot).iter().map(|flips| compare_flips(problem, pose, points.clone(), *flips)).sum()
+}
+
+fn compare_flips(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>, flips: Flips) -> usize {
+    let kernel = Kernel::new(problem, &problem.redundancy, flips);
     let mut scratch = kernel.scratch();
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let mut allowed = 0;
@@ -19,18 +23,20 @@ fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usiz
             for k in 0..problem.redundancy.beta_count {
                 let found = states.scores(class)[3 + k];
                 let expected = class.postures().map(|p| reference(problem, pose, point, k, p));
-                let margin = expected.iter().map(|e| e.margin).fold(f64::MIN, f64::max);
+                let asked = class.postures().map(|p| flips.contains(p));
+                let margins = expected.iter().zip(asked).filter(|(_, asked)| *asked).map(|(e, _)| e.margin);
+                let margin = margins.fold(f64::MIN, f64::max);
                 if margin.abs() < 1e-9 {
                     continue;
                 }
                 assert_eq!(found.is_finite(), margin > 0.0, "point {point} class {class:?} beta {k} margin {margin}");
                 if found.is_finite() {
                     allowed += 1;
-                    let expected = &expected[0];
-                    assert!((found - expected.score).abs() < 1e-12 * (1.0 + found), "{found} {}", expected.score);
+                    let score = expected.iter().zip(asked).find(|(_, asked)| *asked).unwrap().0.score;
+                    assert!((found - score).abs() < 1e-12 * (1.0 + found), "{found} {score}");
                     for j in 0..6 {
                         let angle = states.joint(class, j)[3 + k];
-                        assert!(wrap(angle - expected.joints[j]).abs() < 1e-10, "joint {} {angle}", j + 1);
+                        assert!(wrap(angle - expected[0].joints[j]).abs() < 1e-10, "joint {} {angle}", j + 1);
                     }
                 }
             }
@@ -103,10 +109,44 @@ fn agrees_with_uncertainty_moments_a_limit_and_a_narrow_wrist() {
 }
 
 #[test]
+fn agrees_with_compliances_that_change_with_the_joint_angle() {
+    let range = Compliance::Range { at_min: 5e-7, at_max: 1.2e-6 };
+    // A joint 6 with less than a turn, for ranges.
+    let mut constant = five_segments();
+    let mut joints = constant.robot.joints().clone();
+    (joints[5].min, joints[5].max) = (-2.5, 3.0);
+    constant.robot = Robot::new("narrow", joints).unwrap();
+    for laws in [
+        vec![(1, range)],
+        vec![(1, compensated(0.2, 3e-7))],
+        vec![(0, compensated(1.0, 4e-6)), (2, compensated(-1.0, 4e-7)), (1, range)],
+        // A wrist that yields differently in its two flips.
+        vec![(4, range)],
+        vec![(3, compensated(0.5, 2e-6)), (4, compensated(0.3, 2e-6)), (5, compensated(-2.0, 3e-6))],
+        vec![(5, range), (2, range)],
+    ] {
+        let mut problem = with_laws(constant.clone(), &laws);
+        problem.criterion.force_uncertainty = 0.1;
+        problem.constraints.max_deflection = Some(1.5e-3);
+        let mut allowed = 0;
+        for pose in [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]] {
+            allowed += compare(&problem, &pose, (0..105).step_by(3));
+            // The laws are seen, at a thousand times the tolerance.
+            let scores = [&problem, &constant].map(|p| state(p, 30, &pose, 0.7, Posture::ALL[2]).unwrap().normal_part);
+            assert!((scores[0] - scores[1]).abs() > 1e-9, "{scores:?} {laws:?}");
+        }
+        assert!(allowed > 1000, "{allowed} {laws:?}");
+    }
+}
+
+#[test]
 fn agrees_for_every_sign_of_twist_and_with_offsets() {
-    for arm in odd_arms() {
+    // Springs at every joint, so that each angle's sine and cosine is held against the ordinary evaluator too.
+    let compensator = Compensator { spring_stiffness: 4e4, a: 0.5, l: 0.3, alpha: 0.7, free_length: 0.5 };
+    let sprung = Compliance::Compensated { alone: 1e-6, compensator };
+    for (arm, is_sprung) in odd_arms().into_iter().flat_map(|arm| [(arm.clone(), false), (arm, true)]) {
         let mut problem = five_segments();
-        problem.robot = arm;
+        problem.robot = if is_sprung { arm.with_compliances([sprung; 6]).unwrap() } else { arm };
         problem.redundancy.beta_count = 30;
         problem.constraints.min_inverse_condition = 0.05;
         let mut allowed = 0;
@@ -120,7 +160,7 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
 #[test]
 fn continues_rows_cyclically() {
     let problem = five_segments();
-    let kernel = Kernel::new(&problem);
+    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
     let mut states = States::new(120, 5);
     kernel.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut kernel.scratch(), &mut states);
     for class in PostureClass::ALL {

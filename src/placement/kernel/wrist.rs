@@ -3,7 +3,7 @@
 
 use super::lanes::{Lanes, WIDTH};
 use super::states::StatesView;
-use super::{Kernel, PointGeometry, Scratch};
+use super::{Flips, Kernel, PointGeometry, Scratch};
 use std::f64::consts::PI;
 
 /// Number of columns that the first half hands over.
@@ -153,8 +153,8 @@ impl Kernel<'_> {
 
         let inverse_condition = pose.inverse_condition(g.lateral, self.problem.constraints.characteristic_length);
         let conditioned = Lanes::splat(self.problem.constraints.min_inverse_condition).at_most(inverse_condition);
-        let (_, plain5) = self.limits[4].canonical(theta5);
-        let (_, flipped5) = self.limits[4].canonical(-theta5);
+        let (real5, plain5) = self.limits[4].canonical(theta5);
+        let (turned5, flipped5) = self.limits[4].canonical(-theta5);
         let mut allowed = conditioned & (plain5 | flipped5);
         if !allowed.any() {
             return;
@@ -163,11 +163,18 @@ impl Kernel<'_> {
         let theta6 = (z4.dot(y6) * -s5).atan2(z4.dot(x6) * s5);
         let theta1 = sin1.atan2(cos1);
         let (theta1, allowed1) = self.limits[0].canonical(theta1);
-        let (_, plain4) = self.limits[3].canonical(theta4);
-        let (_, plain6) = self.limits[5].canonical(theta6);
-        let (_, flipped4) = self.limits[3].canonical(theta4 + PI);
-        let (_, flipped6) = self.limits[5].canonical(theta6 + PI);
-        allowed = allowed & allowed1 & ((plain4 & plain5 & plain6) | (flipped4 & flipped5 & flipped6));
+        let (real4, plain4) = self.limits[3].canonical(theta4);
+        let (real6, plain6) = self.limits[5].canonical(theta6);
+        let (turned4, flipped4) = self.limits[3].canonical(theta4 + PI);
+        let (turned6, flipped6) = self.limits[5].canonical(theta6 + PI);
+        let (plain, flipped) = (plain4 & plain5 & plain6, flipped4 & flipped5 & flipped6);
+        allowed = allowed
+            & allowed1
+            & match self.flips {
+                Flips::Both => plain | flipped,
+                Flips::Plain => plain,
+                Flips::Flipped => flipped,
+            };
 
         let constant = |v: &nalgebra::Vector3<f64>| turned([v.x, v.y, v.z].map(Lanes::splat), sin1, cos1);
         let (normal, force, moment) =
@@ -177,7 +184,20 @@ impl Kernel<'_> {
         let (theta2, _) = self.limits[1].canonical(s2.atan2(c2));
         let (theta3, _) = self.limits[2].canonical(sin_delta.atan2(cos_delta) - g.forearm_angle);
         let joints = [theta1, theta2, theta3, theta4, theta5, theta6];
-        let compliances = self.laws.constants().unwrap_or_else(|| self.laws.at(&joints));
+        let compliances = self.laws.constants().unwrap_or_else(|| {
+            let (sin_bar, cos_bar) = self.forearm_sin_cos;
+            let third = [sin_delta * cos_bar - cos_delta * sin_bar, cos_delta * cos_bar + sin_delta * sin_bar];
+            let is_flipped = self.flips == Flips::Flipped;
+            let wrist = if is_flipped { [turned4, turned5, turned6] } else { [real4, real5, real6] };
+            // Flipped, joints 4 and 6 point the other way, and joint 5 is bent to the other side.
+            let sign = if is_flipped { -1.0 } else { 1.0 };
+            let per_sine = Lanes::splat(sign) / sine5;
+            let fourth = [m2 * s6 * per_sine, m1 * s6 * per_sine];
+            let fifth = [sine5 * sign, dot46 * (-s5 * s6)];
+            let sixth = [z4.dot(y6) * -s5 * per_sine, z4.dot(x6) * s5 * per_sine];
+            let angles = [theta1, theta2, theta3, wrist[0], wrist[1], wrist[2]];
+            self.laws.at(&angles, &[[sin1, cos1], [s2, c2], third, fourth, fifth, sixth])
+        });
         let score = pose.score::<UNCERTAIN>(g.lateral, &compliances, normal, force, moment, geometry.uncertainty);
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(limit));

@@ -5,7 +5,7 @@
 //! each state the way it came.
 
 use super::super::kernel::{
-    States,
+    Kernel, States,
     lanes::{Lanes, Mask, WIDTH},
 };
 use super::{Extremum, Planner, STEP_ROUNDING, Workspace};
@@ -56,10 +56,12 @@ impl Planner<'_> {
         Step { reach: self.reaches[point], limits: &self.steps[point], modulo: &self.modulo, sign: extremum.sign() }
     }
 
-    /// Passes over the points of a segment, in every posture class or in that of one posture. With `count_only`, only the
+    /// Passes over the points of a segment with one of the kernels, in every posture class or in that of one posture. With `count_only`, only the
     /// blocked points are found.
+    #[expect(clippy::too_many_arguments, reason = "one step of the planner, with all it has")]
     pub(super) fn sweep(
         &self,
+        kernel: &Kernel<'_>,
         span: Span<usize>,
         pose: &[f64; 4],
         extremum: Extremum,
@@ -71,7 +73,7 @@ impl Planner<'_> {
         let mut sweep = Sweep { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
         let Workspace { scratch, before, now, came_from } = workspace;
         for (place, point) in span.enumerate() {
-            self.kernel.evaluate(point, pose, scratch, now);
+            kernel.evaluate(point, pose, scratch, now);
             if let Some(posture) = only {
                 PostureClass::ALL
                     .into_iter()

@@ -87,7 +87,10 @@ fn one_posture(
 fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture, space: &mut Workspace) -> Vec<Node> {
     let problem = planner.problem;
     // The kernel says which grid values are worth a closer look.
-    planner.kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
+    let Some(kernel) = planner.kernels.iter().find(|kernel| kernel.flips().contains(posture)) else {
+        return Vec::new();
+    };
+    kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
     for beta in 0..planner.grid.beta_count {

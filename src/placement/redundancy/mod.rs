@@ -6,7 +6,7 @@
 //!
 //! The plan is made in steps:
 //! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
-//!    turn. This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
+//!    turn (twice where the two flips of a class yield differently: [`Flips`]). This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
 //! 2. `turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
 //! 3. `exact`: only where that fails, dynamic programming over (beta, turns) in one posture.
@@ -15,11 +15,12 @@
 pub mod band;
 mod exact;
 pub mod fine;
+mod segment;
 mod turns;
 
-use super::kernel::{Kernel, Scratch, States};
+use super::kernel::{Flips, Kernel, Scratch, States};
 use super::problem::{Problem, Redundancy};
-use crate::robot::{Posture, PostureClass, turns::Range};
+use crate::robot::{Posture, turns::Range};
 use std::ops::Range as Span;
 
 /// Which plan is wanted.
@@ -95,7 +96,7 @@ pub struct NoPlan {
 pub struct Planner<'a> {
     problem: &'a Problem,
     grid: Redundancy,
-    kernel: Kernel<'a>,
+    kernels: Vec<Kernel<'a>>,
     reaches: Vec<usize>,
     steps: Vec<[f64; 6]>,
     modulo: [bool; 6],
@@ -142,7 +143,7 @@ impl<'a> Planner<'a> {
         Self {
             problem,
             grid,
-            kernel: Kernel::on_grid(problem, &grid),
+            kernels: Flips::of(&problem.robot).iter().map(|flips| Kernel::new(problem, &grid, *flips)).collect(),
             reaches: (0..count).map(|p| if is_start(&p) { 0 } else { reach(p) }).collect(),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
@@ -172,7 +173,7 @@ impl<'a> Planner<'a> {
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
-            scratch: self.kernel.scratch(),
+            scratch: self.kernels[0].scratch(),
             before: States::new(count, pad),
             now: States::new(count, pad),
             came_from: vec![0; longest * 4 * count],
@@ -192,12 +193,13 @@ impl<'a> Planner<'a> {
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, points > 0);
-            points += outcome.blocked.len();
+            let found =
+                self.segment(span.clone(), pose, extremum, only, workspace, if points > 0 { None } else { Some(0.0) });
+            points += found.blocked.len();
             if points > 0 {
                 continue;
             }
-            match self.choose(span.clone(), pose, extremum, only, &outcome, workspace, 0.0).first() {
+            match found.choices.first() {
                 Some(choice) => sum += choice.cost,
                 None => segments += 1,
             }
@@ -254,7 +256,7 @@ impl<'a> Planner<'a> {
             // The refined betas may be driven in other flips and turns just as well.
             let postures = match only {
                 Some(posture) => vec![posture],
-                None => plan.posture.class().postures().to_vec(),
+                None => self.alike(plan.posture),
             };
             let span = plan.points.clone();
             let again = turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
@@ -277,60 +279,16 @@ impl<'a> Planner<'a> {
         let mut all = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let outcome = self.sweep(span.clone(), pose, extremum, only, workspace, false);
-            let choices = self.choose(span.clone(), pose, extremum, only, &outcome, workspace, margin);
-            if !choices.is_empty() {
-                all.push(choices);
-            } else if outcome.blocked.is_empty() {
-                failure.broken_segments.push((index, outcome.farthest(span)));
+            let found = self.segment(span.clone(), pose, extremum, only, workspace, Some(margin));
+            if !found.choices.is_empty() {
+                all.push(found.choices);
+            } else if found.blocked.is_empty() {
+                failure.broken_segments.push((index, found.farthest));
             } else {
-                failure.blocked_points.extend(&outcome.blocked);
+                failure.blocked_points.extend(&found.blocked);
             }
         }
         if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
-    }
-
-    /// The plans of one segment whose classes and turns keep every joint inside its limits: the cheapest, and those that cost
-    /// at most `margin` (relative) more, cheapest first.
-    #[expect(clippy::too_many_arguments, reason = "one step of the two callers above, with all they have")]
-    fn choose(
-        &self,
-        span: Span<usize>,
-        pose: &[f64; 4],
-        extremum: Extremum,
-        only: Option<Posture>,
-        outcome: &band::Sweep,
-        workspace: &mut Workspace,
-        margin: f64,
-    ) -> Vec<turns::Choice> {
-        // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
-        let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
-            .into_iter()
-            .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
-            .collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let sign = extremum.sign();
-        let mut found: Vec<turns::Choice> = Vec::new();
-        let limit = |found: &[turns::Choice]| found.first().map(|best| best.cost * sign + margin * best.cost.abs());
-        for (cost, class) in order {
-            if limit(&found).is_some_and(|limit| cost >= limit) {
-                break;
-            }
-            let postures: Vec<Posture> =
-                class.postures().into_iter().filter(|posture| only.is_none_or(|p| p == *posture)).collect();
-            let betas = self.trace(&span, class, outcome, workspace);
-            let path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-            found.extend(
-                turns::unwind(self.problem, &span, pose, &path, &postures, cost * sign, &self.steps)
-                    .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace)),
-            );
-            found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
-        }
-        if let Some(limit) = limit(&found) {
-            let best = found[0].cost;
-            found.retain(|choice| choice.cost == best || choice.cost * sign <= limit);
-        }
-        found
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::placement::criterion::state;
-use crate::placement::testing::five_segments;
+use crate::placement::testing::{compensated, five_segments, with_laws};
 use crate::robot::angles::yaw_from_q4;
-use crate::robot::{Joint, Robot};
+use crate::robot::{Compliance, Joint, PostureClass, Robot};
 
 fn published_optimum() -> [f64; 4] {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
@@ -83,6 +83,9 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         [(-60.0, 90.0), (-125.0, 125.0), (-200.0, 180.0)],
         [(-100.0, 80.0), (-125.0, 125.0), (-80.0, 110.0)],
         [(-180.0, 0.0), (-125.0, 125.0), (-182.0, 182.0)],
+        // With laws of compliance that tell the flips apart.
+        [(-185.0, 185.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
     ]
     .into_iter()
     .enumerate()
@@ -90,6 +93,10 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         // With and without joint speeds that bind.
         let arm = if index % 2 == 0 { five_segments() } else { with_prototype_steps(five_segments()) };
         let mut problem = with_wrist(arm, ranges);
+        if index >= 6 {
+            let bent = Compliance::Range { at_min: 1e-6, at_max: 4e-6 };
+            problem = with_laws(problem, &[(1, compensated(0.2, 3e-7)), (3, compensated(1.0, 2e-6)), (4, bent)]);
+        }
         problem.redundancy.beta_count = 40;
         // So fast that plans swing around and meet the limits of the turns.
         problem.redundancy.max_beta_rate *= 4.0;
@@ -123,7 +130,7 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
             }
         }
     }
-    assert!(compared == 192 && feasible > 40, "{compared} {feasible}");
+    assert!(compared == 256 && feasible > 60, "{compared} {feasible}");
 }
 
 #[test]
@@ -141,7 +148,15 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let f = f64::from(k);
             let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
             for span in problem.task.segments() {
-                let sweep = planner.sweep(span.clone(), &pose, Extremum::Smallest, None, &mut workspace, false);
+                let sweep = planner.sweep(
+                    &planner.kernels[0],
+                    span.clone(),
+                    &pose,
+                    Extremum::Smallest,
+                    None,
+                    &mut workspace,
+                    false,
+                );
                 for class in PostureClass::ALL {
                     let postures = class.postures();
                     let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::placement::problem::Interval;
-use crate::placement::testing::five_segments;
+use crate::placement::testing::{five_segments, five_segments_compensated};
 use crate::robot::angles::yaw_from_q4;
 
 fn published_optimum() -> [f64; 4] {
@@ -23,9 +23,10 @@ fn assert_allowed(problem: &Problem, solution: &Solution) {
 
 #[test]
 fn best_gets_better_and_stays_allowed() {
-    let problem = five_segments();
-    let planner = Planner::finer(&problem);
-    for start in [published_optimum(), [0.0, -1.7, -0.4, 0.7]] {
+    for (problem, start) in
+        [(five_segments(), published_optimum()), (five_segments_compensated(), [0.0, -1.7, -0.4, 0.7])]
+    {
+        let planner = Planner::finer(&problem);
         let (solution, report) = refine(&planner, &start, Goal::Best, None).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
@@ -100,46 +101,48 @@ fn joint_speeds_bind_and_hold() {
 
 #[test]
 fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
-    let problem = five_segments();
-    let planner = Planner::finer(&problem);
-    let mut workspace = planner.workspace();
-    let tube = fine::Tube { first: 0.026, last: 1e-7 };
-    let pose = [0.2, -2.1, -0.3, -2.2];
-    let here = planned(&planner, &pose, None, tube, &mut workspace).unwrap();
-    let gradient = ascent::pose_gradient(&problem, &here).unwrap();
-    for k in 0..4 {
-        let h = 1e-4;
-        let mut at = |side: f64| {
-            let mut moved = pose;
-            moved[k] += side * h * linearise::UNITS[k];
-            planned(&planner, &moved, None, tube, &mut workspace).unwrap().mean()
-        };
-        let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
-        assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
+    for problem in [five_segments(), five_segments_compensated()] {
+        let planner = Planner::finer(&problem);
+        let mut workspace = planner.workspace();
+        let tube = fine::Tube { first: 0.026, last: 1e-7 };
+        let pose = [0.2, -2.1, -0.3, -2.2];
+        let here = planned(&planner, &pose, None, tube, &mut workspace).unwrap();
+        let gradient = ascent::pose_gradient(&problem, &here).unwrap();
+        for k in 0..4 {
+            let h = 1e-4;
+            let mut at = |side: f64| {
+                let mut moved = pose;
+                moved[k] += side * h * linearise::UNITS[k];
+                planned(&planner, &moved, None, tube, &mut workspace).unwrap().mean()
+            };
+            let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
+            assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
+        }
     }
 }
 
 #[test]
 fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
-    let problem = five_segments();
-    let planner = Planner::finer(&problem);
-    let tube = fine::Tube::full(planner.grid());
-    let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
-    let locals = linearise::linearise(&problem, &here).unwrap();
-    for plan in &here.plans {
-        for (place, point) in plan.points.clone().enumerate().step_by(4) {
-            for k in 0..linearise::LOCAL {
-                let h = 1e-6;
-                let at = |side: f64| {
-                    let (mut pose, mut beta) = (here.pose, plan.betas[place]);
-                    match k {
-                        4 => beta += side * h,
-                        _ => pose[k] += side * h * linearise::UNITS[k],
-                    }
-                    crate::placement::criterion::state(&problem, point, &pose, beta, plan.posture).unwrap()
-                };
-                let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
-                assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
+    for problem in [five_segments(), five_segments_compensated()] {
+        let planner = Planner::finer(&problem);
+        let tube = fine::Tube::full(planner.grid());
+        let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
+        let locals = linearise::linearise(&problem, &here).unwrap();
+        for plan in &here.plans {
+            for (place, point) in plan.points.clone().enumerate().step_by(4) {
+                for k in 0..linearise::LOCAL {
+                    let h = 1e-6;
+                    let at = |side: f64| {
+                        let (mut pose, mut beta) = (here.pose, plan.betas[place]);
+                        match k {
+                            4 => beta += side * h,
+                            _ => pose[k] += side * h * linearise::UNITS[k],
+                        }
+                        crate::placement::criterion::state(&problem, point, &pose, beta, plan.posture).unwrap()
+                    };
+                    let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
+                    assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
+                }
             }
         }
     }

@@ -1,0 +1,90 @@
+//! The plans of one segment: which postures it can be driven in, and at what cost.
+
+use super::{Extremum, Planner, Workspace, band, exact, turns};
+use crate::robot::{Posture, PostureClass};
+use std::ops::Range as Span;
+
+/// What a segment offers.
+pub(super) struct Found {
+    /// The cheapest plans.
+    pub choices: Vec<turns::Choice>,
+    /// Points without an allowed state in any posture asked for.
+    pub blocked: Vec<usize>,
+    /// The first point that the posture that gets farthest cannot get to.
+    pub farthest: usize,
+}
+
+impl Planner<'_> {
+    /// Sweeps one segment with every kernel that evaluates a posture asked for, and takes from all together the cheapest
+    /// plans; with no `margin`, only the blocked points are found.
+    pub(super) fn segment(
+        &self,
+        span: Span<usize>,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        only: Option<Posture>,
+        workspace: &mut Workspace,
+        margin: Option<f64>,
+    ) -> Found {
+        let mut found = Found { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
+        for kernel in self.kernels.iter().filter(|kernel| only.is_none_or(|posture| kernel.flips().contains(posture))) {
+            let sweep = self.sweep(kernel, span.clone(), pose, extremum, only, workspace, margin.is_none());
+            found.blocked.retain(|point| sweep.blocked.contains(point));
+            if let Some(margin) = margin {
+                found.farthest = found.farthest.max(sweep.farthest(&span));
+                let postures =
+                    |posture: &Posture| kernel.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
+                self.choose(span.clone(), pose, extremum, postures, &sweep, workspace, margin, &mut found.choices);
+            }
+        }
+        found
+    }
+
+    /// The postures of a class that yield like the given one, itself among them.
+    pub(super) fn alike(&self, posture: Posture) -> Vec<Posture> {
+        let kernel = self.kernels.iter().find(|kernel| kernel.flips().contains(posture));
+        let postures = posture.class().postures().into_iter();
+        postures.filter(|p| kernel.is_some_and(|kernel| kernel.flips().contains(*p))).collect()
+    }
+
+    /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside its
+    /// limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
+    #[expect(clippy::too_many_arguments, reason = "one step of the caller above, with all it has")]
+    fn choose(
+        &self,
+        span: Span<usize>,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        is_asked: impl Fn(&Posture) -> bool,
+        outcome: &band::Sweep,
+        workspace: &mut Workspace,
+        margin: f64,
+        found: &mut Vec<turns::Choice>,
+    ) {
+        // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
+        let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
+            .into_iter()
+            .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
+            .collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let sign = extremum.sign();
+        let limit = |found: &[turns::Choice]| found.first().map(|best| best.cost * sign + margin * best.cost.abs());
+        for (cost, class) in order {
+            if limit(found).is_some_and(|limit| cost >= limit) {
+                break;
+            }
+            let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
+            let betas = self.trace(&span, class, outcome, workspace);
+            let path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
+            found.extend(
+                turns::unwind(self.problem, &span, pose, &path, &postures, cost * sign, &self.steps)
+                    .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace)),
+            );
+            found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
+        }
+        if let Some(limit) = limit(found) {
+            let best = found[0].cost;
+            found.retain(|choice| choice.cost == best || choice.cost * sign <= limit);
+        }
+    }
+}
