@@ -14,7 +14,7 @@
 //! | 6 | the binary | starts the command line, returns its exit code |
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
-//! | 3 | [`placement`] | the job: criterion, redundancy planning, search, refinement |
+//! | 3 | [`placement`], [`assessment`] | the jobs: where to put the workpiece; how round a profile is |
 //! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |
 //! | 1 | [`robot`], [`task`] | what the arm is, what is to be cut |
 //! | 0 | [`input`] | the one error for anything that a file can get wrong |
@@ -42,6 +42,7 @@
 //! fixed order, and transcendental functions come from `libm` or from [`placement::kernel::lanes`], not from the
 //! C library of the machine.
 
+pub mod assessment;
 pub mod cli;
 pub mod config;
 pub mod cutting;
