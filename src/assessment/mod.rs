@@ -1,5 +1,20 @@
-//! How good a machined or a computed profile is.
+//! How good a robot is for machining, and how good a machined or computed profile is.
 //!
-//! - [`circle`]: roundness of points, with the four reference circles of ISO 12181.
+//! The measure is the circularity of a milled circle (ISO 12181), after Klimchik, Ambiehl, Garnier, Furet and Pashkevich,
+//! "Efficiency evaluation of robots in machining applications using industrial performance measure", 2017:
+//!
+//! - [`circle`]: roundness of points, with the four reference circles of the standard.
+//! - [`benchmark`]: the deflected circle at one place of the cell.
+//! - [`map`]: that at every place of a plane.
+//! - [`zone`]: the best and the middle square zones of a map.
+//! - [`ranking`]: which robot reaches which accuracy at which force.
+//! - [`study`]: all of it for several robots.
+//! - [`printed`]: published tables to set beside ours.
 
+pub mod benchmark;
 pub mod circle;
+pub mod map;
+pub mod printed;
+pub mod ranking;
+pub mod study;
+pub mod zone;

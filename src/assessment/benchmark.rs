@@ -1,0 +1,360 @@
+//! The benchmark of Klimchik 2017, section 4.2: a circle milled under a force that turns with the tool, and what the
+//! yielding arm makes of it (eq. 33 and 34).
+//!
+//! The circle lies in a plane of the cell. At polar angle phi the tip of the tool should be at `p_0 + R(phi) r`; the wrench
+//! `R(phi) (F, M)` moves it by `K_C^-1 R(phi) (F, M)`, the moment through the rotational Jacobian (eq. 34 as corrected).
+//! The parts of the displaced points in the plane are the machined profile, and its circularity is taken about the
+//! least-squares circle (eq. 28 to 32). To first order, with the force turning with the tool, the displacement is that of a
+//! quadratic form: a mean shift of radius, and an ellipse that no shift of the centre removes, so that the circularity is
+//! `|F| (lambda_max - lambda_min)` of the in-plane compliance, whatever the direction of the force
+//! ([`Benchmark::first_order`]).
+
+use super::circle::{CircleError, least_squares};
+use crate::robot::{Frames, Pose, Posture, PostureClass, Robot, angles::wrap, turns::Range};
+use crate::stiffness::displacement;
+use crate::stiffness::loaded::{Buckled, loaded_displacement};
+use crate::task::Wrench;
+use nalgebra::{Matrix2, Matrix3, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// A plane of the cell with two axes of its own, in the robot base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane {
+    /// Where both coordinates are zero. m
+    pub origin: Vector3<f64>,
+    /// First axis, of unit length.
+    pub x: Vector3<f64>,
+    /// Second axis, of unit length and normal to the first.
+    pub y: Vector3<f64>,
+}
+
+impl Plane {
+    /// The vertical plane XOZ through the base axis, that of Klimchik 2017: first axis X, second axis Z.
+    pub const XOZ: Self =
+        Self { origin: Vector3::new(0.0, 0.0, 0.0), x: Vector3::new(1.0, 0.0, 0.0), y: Vector3::new(0.0, 0.0, 1.0) };
+
+    /// The normal `x cross y`, about which polar angles are counted.
+    pub fn normal(&self) -> Vector3<f64> {
+        self.x.cross(&self.y)
+    }
+
+    /// A point of the plane in the base frame. m
+    pub fn point(&self, [x, y]: [f64; 2]) -> Vector3<f64> {
+        self.origin + self.x * x + self.y * y
+    }
+}
+
+/// Which way the wrench turns as the tool goes round the circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turning {
+    /// By the polar angle, as the tool and its feed do (eq. 34 as written).
+    WithTool,
+    /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is then
+    /// `|F| (lambda_max + lambda_min)` to first order.
+    AgainstTool,
+}
+
+/// Where the limits of the joints are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LimitsAt {
+    /// At every point of the circle: the whole circle can be milled in one posture.
+    Circle,
+    /// At its centre only. The circle may then have points that the joints cannot reach.
+    Centre,
+}
+
+/// The deflection of one pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StiffnessModel {
+    /// The unloaded compliance (eq. 9 and 10): linear in the force.
+    Unloaded,
+    /// The compliance of the loaded arm (eq. 11).
+    Loaded,
+}
+
+/// A joint that moves by more than this between neighbouring points of a circle jumps. rad
+const JUMP: f64 = PI / 2.0;
+
+/// A circle to be milled, and how its deflection is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Benchmark {
+    /// The plane of the circle.
+    pub plane: Plane,
+    /// Radius of the circle. m
+    pub radius: f64,
+    /// Number of points on the circle, evenly spaced from polar angle 0.
+    pub points: usize,
+    /// What the workpiece does to the tool at polar angle 0: along the radius outwards, along the direction of growing polar
+    /// angle, and along the normal of the plane. N, N m
+    pub wrench: Wrench,
+    /// Which way the wrench turns.
+    pub turning: Turning,
+    /// Orientation of the tool frame, kept all the way round.
+    pub base_from_tool: Matrix3<f64>,
+    /// The tool frame, its origin at the point that goes round, in the flange frame. `None`: the wrist centre goes round, with
+    /// the flange frame's own orientation.
+    pub flange_from_tool: Option<Pose<f64>>,
+    /// Which joints yield; the others count as rigid.
+    pub yielding: [bool; 6],
+    /// Where limits are looked at.
+    pub limits_at: LimitsAt,
+    /// How a wrench becomes a deflection.
+    pub stiffness: StiffnessModel,
+}
+
+/// Why a circle cannot be milled at a place in a posture class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Obstacle {
+    /// Part of the circle is out of the arm's geometric reach.
+    Reach,
+    /// A joint, counted from 1, would leave its limits.
+    JointLimit(usize),
+    /// A joint, counted from 1, would have to jump: the circle leads through a singularity.
+    Singularity(usize),
+    /// The arm would buckle under the load (loaded stiffness only).
+    Buckling,
+    /// The deflected points make no circle any more: the load is out of all proportion.
+    NoCircle,
+}
+
+impl From<Buckled> for Obstacle {
+    fn from(_: Buckled) -> Self {
+        Self::Buckling
+    }
+}
+
+impl From<CircleError> for Obstacle {
+    fn from(_: CircleError) -> Self {
+        Self::NoCircle
+    }
+}
+
+/// An arm on the benchmark: what does not change from circle to circle.
+#[derive(Debug, Clone)]
+pub struct Trial<'a> {
+    benchmark: &'a Benchmark,
+    robot: &'a Robot,
+    tool_from_flange: Pose<f64>,
+    tip_in_flange: Vector3<f64>,
+    ranges: [Range; 6],
+    /// Cosine and sine of each polar angle.
+    directions: Vec<[f64; 2]>,
+}
+
+/// Room for the points of one circle, so that evaluating allocates nothing.
+#[derive(Debug, Clone, Default)]
+pub struct Profile {
+    joints: Vec<[f64; 6]>,
+    /// In-plane displacements. m
+    displacements: Vec<[f64; 2]>,
+    /// Displaced points in the plane relative to the centre of the nominal circle. m
+    points: Vec<[f64; 2]>,
+}
+
+impl Profile {
+    /// The machined profile of the last circle, relative to the centre of the nominal one. m
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+}
+
+impl Benchmark {
+    /// Size of the force in the plane of the circle. N
+    pub fn in_plane_force(&self) -> f64 {
+        libm::hypot(self.wrench.force.x, self.wrench.force.y)
+    }
+
+    /// Sets an arm up for the benchmark.
+    pub fn trial<'a>(&'a self, robot: &'a Robot) -> Trial<'a> {
+        let wrist_centre =
+            || Pose { rotation: Matrix3::identity(), translation: Vector3::new(0.0, 0.0, -robot.geometry().flange) };
+        let flange_from_tool = self.flange_from_tool.unwrap_or_else(wrist_centre);
+        let directions = (0..self.points)
+            .map(|k| {
+                let (sine, cosine) = libm::sincos(TAU * k as f64 / self.points as f64);
+                [cosine, sine]
+            })
+            .collect();
+        Trial {
+            benchmark: self,
+            robot,
+            tool_from_flange: flange_from_tool.inverse(),
+            tip_in_flange: flange_from_tool.translation,
+            ranges: std::array::from_fn(|j| Range::of(&robot.joints()[j])),
+            directions,
+        }
+    }
+}
+
+impl Trial<'_> {
+    /// Circularity of the circle about `centre` (plane coordinates, m) in a posture class, once for every load: a load of 1 is
+    /// the wrench of the benchmark. `profile` is left with the points of the last load. m
+    ///
+    /// # Errors
+    /// The first [`Obstacle`] met on the way round.
+    pub fn circularity<const N: usize>(
+        &self,
+        centre: [f64; 2],
+        class: PostureClass,
+        loads: [f64; N],
+        profile: &mut Profile,
+    ) -> Result<[f64; N], Obstacle> {
+        self.go_round(centre, class, &mut profile.joints)?;
+        let mut circularities = [0.0; N];
+        let linear = self.benchmark.stiffness == StiffnessModel::Unloaded;
+        if linear {
+            self.displace(1.0, profile)?;
+        }
+        for (slot, load) in circularities.iter_mut().zip(loads) {
+            if linear {
+                self.assemble(load, profile);
+            } else {
+                self.displace(load, profile)?;
+                self.assemble(1.0, profile);
+            }
+            *slot = least_squares(&profile.points)?.circularity;
+        }
+        Ok(circularities)
+    }
+
+    /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the tool,
+    /// with the in-plane compliance at the centre of the circle. m
+    ///
+    /// # Errors
+    /// [`Obstacle::Reach`] when the centre is out of reach.
+    pub fn first_order(&self, centre: [f64; 2], class: PostureClass, load: f64) -> Result<f64, Obstacle> {
+        let joints = self.joints(centre, class)?;
+        let plane = &self.benchmark.plane;
+        let unit = |direction: &Vector3<f64>| {
+            let moved = self.displacement(&joints, direction, &Vector3::zeros());
+            [moved.dot(&plane.x), moved.dot(&plane.y)]
+        };
+        let ([xx, xy], [yx, yy]) = (unit(&plane.x), unit(&plane.y));
+        let eigenvalues = Matrix2::new(xx, (xy + yx) / 2.0, (xy + yx) / 2.0, yy).symmetric_eigenvalues();
+        let (most, least) = (eigenvalues.max(), eigenvalues.min());
+        Ok(load
+            * self.benchmark.in_plane_force()
+            * match self.benchmark.turning {
+                Turning::WithTool => most - least,
+                Turning::AgainstTool => most + least,
+            })
+    }
+
+    /// Joint angles at every point of the circle, or why it cannot be gone round.
+    fn go_round(&self, centre: [f64; 2], class: PostureClass, angles: &mut Vec<[f64; 6]>) -> Result<(), Obstacle> {
+        angles.clear();
+        let radius = self.benchmark.radius;
+        // Joints 1 to 3 are looked at as they come: most circles that fail do so early.
+        let early = match self.benchmark.limits_at {
+            LimitsAt::Circle => 3,
+            LimitsAt::Centre => {
+                let joints = self.joints(centre, class)?;
+                self.within_limits(&joints, &joints)?;
+                0
+            }
+        };
+        let mut least = [f64::INFINITY; 6];
+        let mut most = [f64::NEG_INFINITY; 6];
+        let mut unwrapped = [0.0; 6];
+        for (k, [cosine, sine]) in self.directions.iter().enumerate() {
+            let joints = self.joints([centre[0] + radius * cosine, centre[1] + radius * sine], class)?;
+            for j in 0..6 {
+                let step = if k == 0 { 0.0 } else { wrap(joints[j] - unwrapped[j]) };
+                if step.abs() > JUMP {
+                    return Err(Obstacle::Singularity(j + 1));
+                }
+                unwrapped[j] = if k == 0 { joints[j] } else { unwrapped[j] + step };
+                least[j] = least[j].min(unwrapped[j]);
+                most[j] = most[j].max(unwrapped[j]);
+                if j < early && !fits(&self.ranges[j], least[j], most[j]) {
+                    return Err(Obstacle::JointLimit(j + 1));
+                }
+            }
+            angles.push(joints);
+        }
+        match self.benchmark.limits_at {
+            LimitsAt::Circle => self.within_limits(&least, &most),
+            LimitsAt::Centre => Ok(()),
+        }
+    }
+
+    /// Whether one of the two wrist flips keeps all joints within their limits between the given angles of the unflipped
+    /// one.
+    fn within_limits(&self, least: &[f64; 6], most: &[f64; 6]) -> Result<(), Obstacle> {
+        let unflipped = (0..6).find(|j| !fits(&self.ranges[*j], least[*j], most[*j]));
+        let Some(joint) = unflipped else { return Ok(()) };
+        let flipped = (0..6).all(|j| match j {
+            3 | 5 => fits(&self.ranges[j], least[j] + PI, most[j] + PI),
+            4 => fits(&self.ranges[j], -most[j], -least[j]),
+            _ => fits(&self.ranges[j], least[j], most[j]),
+        });
+        if flipped { Ok(()) } else { Err(Obstacle::JointLimit(joint + 1)) }
+    }
+
+    /// Joint angles with the tip at a point of the plane, wrapped, in the posture of the class that is not flipped. rad
+    fn joints(&self, point: [f64; 2], class: PostureClass) -> Result<[f64; 6], Obstacle> {
+        let benchmark = self.benchmark;
+        let base_from_tool = Pose { rotation: benchmark.base_from_tool, translation: benchmark.plane.point(point) };
+        let [posture, _]: [Posture; 2] = class.postures();
+        self.robot.inverse(&base_from_tool.then(&self.tool_from_flange), posture).map_err(|_| Obstacle::Reach)
+    }
+
+    /// Displacement of the tip for joint angles under a wrench at the tip, all in the base frame. m
+    fn displacement(&self, joints: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector3<f64> {
+        let frames = Frames::new(self.robot, joints);
+        let tip = frames.base_from_flange.point(&self.tip_in_flange);
+        displacement(&frames, &tip, &self.compliances(joints), force, moment).linear
+    }
+
+    fn compliances(&self, joints: &[f64; 6]) -> [f64; 6] {
+        let mut compliances = self.robot.compliances_at(joints);
+        for (compliance, yields) in compliances.iter_mut().zip(self.benchmark.yielding) {
+            if !yields {
+                *compliance = 0.0;
+            }
+        }
+        compliances
+    }
+
+    /// In-plane displacement of every point under a load, from the joint angles left by [`Self::go_round`].
+    fn displace(&self, load: f64, profile: &mut Profile) -> Result<(), Obstacle> {
+        let Benchmark { plane, wrench, .. } = self.benchmark;
+        let normal = plane.normal();
+        profile.displacements.clear();
+        for (joints, [cosine, sine]) in profile.joints.iter().zip(&self.directions) {
+            let turned = match self.benchmark.turning {
+                Turning::WithTool => *sine,
+                Turning::AgainstTool => -*sine,
+            };
+            let radial = plane.x * *cosine + plane.y * turned;
+            let tangential = plane.y * *cosine - plane.x * turned;
+            let in_base = |v: &Vector3<f64>| (radial * v.x + tangential * v.y + normal * v.z) * load;
+            let (force, moment) = (in_base(&wrench.force), in_base(&wrench.moment));
+            let moved = match self.benchmark.stiffness {
+                StiffnessModel::Unloaded => self.displacement(joints, &force, &moment),
+                StiffnessModel::Loaded => {
+                    let frames = Frames::new(self.robot, joints);
+                    let tip = frames.base_from_flange.point(&self.tip_in_flange);
+                    loaded_displacement(&frames, &tip, &self.compliances(joints), &force, &moment)?.linear
+                }
+            };
+            profile.displacements.push([moved.dot(&plane.x), moved.dot(&plane.y)]);
+        }
+        Ok(())
+    }
+
+    /// The nominal circle and so many times the displacements.
+    fn assemble(&self, scale: f64, profile: &mut Profile) {
+        let radius = self.benchmark.radius;
+        let nominal = self.directions.iter().map(|direction| direction.map(|part| radius * part));
+        let moves = profile.displacements.iter().map(|moved| moved.map(|part| scale * part));
+        profile.points.clear();
+        profile.points.extend(nominal.zip(moves).map(|([x, y], [dx, dy])| [x + dx, y + dy]));
+    }
+}
+
+/// Whether some number of turns brings an interval of angles into a range.
+fn fits(range: &Range, least: f64, most: f64) -> bool {
+    let lowest = range.lowest(least);
+    lowest + (most - least) <= range.max + crate::robot::angles::ANGLE_ROUNDING
+}

@@ -1,0 +1,260 @@
+//! The whole assessment: every robot, both elbows, both loads, zones, and the selection.
+
+use super::benchmark::{Benchmark, Obstacle};
+use super::map::{Elbow, Grid, Map};
+use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
+use super::zone::{self, Zone};
+use crate::robot::{Compliance, DataSheet, Robot, RobotError};
+
+/// What is to be assessed, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The robots, in the order of the results. No two have the same name.
+    pub robots: Vec<Robot>,
+    /// The circle and its load.
+    pub benchmark: Benchmark,
+    /// Where the centre of the circle is put.
+    pub grid: Grid,
+    /// Sides of the square zones, in steps of the grid.
+    pub zones: Vec<usize>,
+    /// Which elbow goes by which name.
+    pub elbow_names: ElbowNames,
+    /// For joints whose compliance is a range over the joint: use one value, so far from the lower to the upper end of the
+    /// range. `None`: the law of the robot file.
+    pub range_share: Option<f64>,
+    /// Share of the weight of a robot's payload that makes its rated load: 0.8 in Klimchik 2017, Table 5.
+    pub rated_share: f64,
+    /// Which robot for which task.
+    pub selection: Selection,
+}
+
+/// Which elbow goes by which name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ElbowNames {
+    /// Up is above the line from the shoulder to the wrist centre.
+    Geometric,
+    /// Up is below that line: the readings of Klimchik 2017 fit its tables only so.
+    Swapped,
+}
+
+/// Under which load a circle is milled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Load {
+    /// The wrench of the benchmark.
+    Test,
+    /// The same wrench scaled so that the force in the plane is a share of the weight of the robot's payload.
+    Rated,
+}
+
+/// A value of a map and where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// Centre of the circle, in the coordinates of the plane. m
+    pub centre: [f64; 2],
+    /// Circularity there. m
+    pub circularity: f64,
+}
+
+/// The zones of one size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zones {
+    /// Side of the square. m
+    pub side: f64,
+    /// Where the largest circularity inside is smallest.
+    pub optimal: Option<Zone>,
+    /// About the middle of the map.
+    pub middle: Option<Zone>,
+}
+
+/// One robot with one elbow under one load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Configuration {
+    /// The elbow, by the names of the study.
+    pub elbow: Elbow,
+    /// The load.
+    pub load: Load,
+    /// Force in the plane of the circle. N
+    pub force: f64,
+    /// Number of circles that can be milled.
+    pub circles: usize,
+    /// The most accurate place.
+    pub least: Option<Spot>,
+    /// The least accurate place.
+    pub most: Option<Spot>,
+    /// The middle of the map: the centre of the largest square of places that can all be milled.
+    pub middle: Option<Spot>,
+    /// Zones of the sizes of the study, in their order.
+    pub zones: Vec<Zones>,
+}
+
+/// One robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobotResult {
+    /// Its name.
+    pub name: String,
+    /// Its data sheet.
+    pub data_sheet: DataSheet,
+    /// Working radius: that of the data sheet, or else the geometric reach of the wrist centre. m
+    pub working_radius: f64,
+    /// Load of [`Load::Rated`] in multiples of the benchmark's wrench, where the payload is known.
+    pub rated_load: Option<f64>,
+    /// Elbow up, then elbow down, by the names of the study: circularity under the test load and, where there is one, under
+    /// the rated load (else that of the test load again).
+    pub maps: [(Elbow, Map<2>); 2],
+    /// Both elbows under the test load, then both under the rated load where there is one.
+    pub configurations: Vec<Configuration>,
+}
+
+/// What an assessment finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// The robots in the order of the study.
+    pub robots: Vec<RobotResult>,
+    /// Every robot at every force of the selection.
+    pub accuracies: Vec<Accuracy>,
+    /// The robots that reach every accuracy under every force.
+    pub capable: Vec<Capable>,
+    /// Names of the robots, the most accurate at its best place under the test load first.
+    pub order: Vec<String>,
+}
+
+/// No robot can mill the circle anywhere on the grid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("the circle of radius {} mm fits nowhere on the map: {}", radius * 1e3, words(limits))]
+pub struct FitsNowhere {
+    /// Radius of the circle. m
+    pub radius: f64,
+    /// For each robot its name, how often each obstacle stands in the way (most frequent first), and the number of circles
+    /// tried.
+    pub limits: Vec<(String, Vec<(Obstacle, usize)>, usize)>,
+}
+
+fn words(limits: &[(String, Vec<(Obstacle, usize)>, usize)]) -> String {
+    let each = limits.iter().map(|(name, obstacles, tried)| format!("{name}: {}", obstacle_words(obstacles, *tried)));
+    each.collect::<Vec<_>>().join("; ")
+}
+
+/// How often each obstacle stands in the way, for people.
+pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
+    let each = obstacles.iter().map(|(obstacle, count)| {
+        let what = match obstacle {
+            Obstacle::Reach => "out of reach".to_owned(),
+            Obstacle::JointLimit(joint) => format!("limit of joint {joint}"),
+            Obstacle::Singularity(joint) => format!("singularity, joint {joint} would jump"),
+            Obstacle::Buckling => "arm buckles under the load".to_owned(),
+            Obstacle::NoCircle => "deflected beyond any circle".to_owned(),
+        };
+        format!("{what} at {count} of {tried} places")
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Assesses every robot of the study. `progress` is told how many rows of maps are done, and of how many.
+///
+/// # Errors
+/// [`FitsNowhere`] when no robot can mill the circle anywhere on the grid.
+pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Assessment, FitsNowhere> {
+    let rows = study.robots.len() * 2 * study.grid.counts[1];
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let row_done = || progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, rows);
+    let robots: Vec<RobotResult> = study.robots.iter().map(|robot| study.robot(robot, &row_done)).collect();
+    if robots.iter().all(|robot| robot.maps.iter().all(|(_, map)| map.count() == 0)) {
+        let limits = robots.iter().map(|robot| robot.obstacles()).collect();
+        return Err(FitsNowhere { radius: study.benchmark.radius, limits });
+    }
+    let competitors: Vec<Competitor> = robots.iter().map(RobotResult::competitor).collect();
+    let reference = study.benchmark.in_plane_force();
+    Ok(Assessment {
+        accuracies: study.selection.accuracies(&competitors, reference),
+        capable: study.selection.capable(&competitors, reference),
+        order: order(&competitors),
+        robots,
+    })
+}
+
+impl RobotResult {
+    /// Name, obstacles of both elbows together, and the number of circles tried.
+    pub fn obstacles(&self) -> (String, Vec<(Obstacle, usize)>, usize) {
+        let mut counted: Vec<(Obstacle, usize)> = Vec::new();
+        for (obstacle, count) in self.maps.iter().flat_map(|(_, map)| map.obstacles()) {
+            match counted.iter_mut().find(|(known, _)| *known == obstacle) {
+                Some((_, sum)) => *sum += count,
+                None => counted.push((obstacle, count)),
+            }
+        }
+        counted.sort_by_key(|(obstacle, count)| (std::cmp::Reverse(*count), *obstacle));
+        (self.name.clone(), counted, self.maps.iter().map(|(_, map)| map.nodes.len()).sum())
+    }
+
+    /// The robot as the selection sees it.
+    pub fn competitor(&self) -> Competitor {
+        let test = self.configurations.iter().filter(|configuration| configuration.load == Load::Test);
+        let least = test.filter_map(|configuration| configuration.least.map(|spot| spot.circularity));
+        Competitor { name: self.name.clone(), least: least.reduce(f64::min), payload: self.data_sheet.payload }
+    }
+}
+
+impl Study {
+    fn robot(&self, robot: &Robot, row_done: &(dyn Fn() + Sync)) -> RobotResult {
+        let fixed = self.range_share.and_then(|share| with_range_share(robot, share).ok());
+        let arm = fixed.as_ref().unwrap_or(robot);
+        let sheet = *robot.data_sheet();
+        let force = self.benchmark.in_plane_force();
+        let rated_load = sheet.payload.map(|payload| self.rated_share * payload * self.selection.gravity / force);
+        let maps = Elbow::BOTH.map(|name| {
+            let elbow = match self.elbow_names {
+                ElbowNames::Geometric => name,
+                ElbowNames::Swapped => name.other(),
+            };
+            let class = elbow.forward_class(arm);
+            let loads = [1.0, rated_load.unwrap_or(1.0)];
+            (name, Map::new(&self.benchmark, arm, class, self.grid, loads, row_done))
+        });
+        let mut configurations = Vec::with_capacity(4);
+        let loads = [(Load::Test, Some(1.0)), (Load::Rated, rated_load)];
+        for (index, (load, scale)) in loads.into_iter().enumerate() {
+            let Some(scale) = scale else { continue };
+            for (elbow, map) in &maps {
+                configurations.push(self.configuration(*elbow, load, force * scale, map, index));
+            }
+        }
+        let working_radius = sheet.working_radius.unwrap_or_else(|| robot.geometry().reach());
+        let name = robot.name().to_owned();
+        RobotResult { name, data_sheet: sheet, working_radius, rated_load, maps, configurations }
+    }
+
+    fn configuration(&self, elbow: Elbow, load: Load, force: f64, map: &Map<2>, index: usize) -> Configuration {
+        let values = map.values(index);
+        let grid = &self.grid;
+        let spot = |node: usize| Spot { centre: grid.place(node), circularity: values[node] };
+        let feasible = || (0..values.len()).filter(|node| values[*node].is_finite());
+        let middle = zone::middle(grid, &values);
+        let zones = self.zones.iter().map(|intervals| Zones {
+            side: grid.step * *intervals as f64,
+            optimal: zone::optimal(grid, &values, *intervals),
+            middle: middle.and_then(|node| zone::about(grid, &values, node, *intervals)),
+        });
+        Configuration {
+            elbow,
+            load,
+            force,
+            circles: feasible().count(),
+            least: feasible().min_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
+            // The first of several equal ones, as for the least.
+            most: feasible().rev().max_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
+            middle: middle.map(|[column, row]| spot(row * grid.counts[0] + column)),
+            zones: zones.collect(),
+        }
+    }
+}
+
+/// The same arm with every range of compliance replaced by one value, so far from its lower to its upper end.
+fn with_range_share(robot: &Robot, share: f64) -> Result<Robot, RobotError> {
+    robot.with_compliances(robot.joints().clone().map(|joint| match joint.compliance {
+        Compliance::Range { at_min, at_max } => {
+            let (low, high) = (at_min.min(at_max), at_min.max(at_max));
+            Compliance::Constant(low + share * (high - low))
+        }
+        law => law,
+    }))
+}
