@@ -84,6 +84,28 @@ impl<'a> Field<'a> {
         array.iter().enumerate().map(|(index, value)| self.element(index, value).table()).collect()
     }
 
+    /// The elements of an array, as many as there are but at least one.
+    ///
+    /// # Errors
+    /// [`InputError`] when the key is missing, or its value is no array or an empty one.
+    pub fn list(&self, allowed: &str) -> Result<Vec<Field<'a>>, InputError> {
+        let DeValue::Array(array) = self.required(allowed)? else {
+            return Err(self.error("is not an array", allowed));
+        };
+        if array.is_empty() {
+            return Err(self.error("is empty", allowed));
+        }
+        Ok(array.iter().enumerate().map(|(index, value)| self.element(index, value)).collect())
+    }
+
+    /// As many finite numbers as there are, at least one, that all pass a test.
+    ///
+    /// # Errors
+    /// [`InputError`] when the key is missing, or its value is no such array; a single wrong number is located itself.
+    pub fn numbers(&self, allowed: &str, test: impl Fn(f64) -> bool) -> Result<Vec<f64>, InputError> {
+        self.list(allowed)?.iter().map(|element| element.number_where(allowed, &test)).collect()
+    }
+
     /// The elements of an array of length `N`, named `path[1]` to `path[N]`.
     fn elements<const N: usize>(&self, allowed: &str) -> Result<[Field<'a>; N], InputError> {
         let DeValue::Array(array) = self.required(allowed)? else {
@@ -122,5 +144,9 @@ mod tests {
         assert_parts(read("v = [[1, 2, 3], [4, 5], [6, 7, 8]]", |v| v.matrix3()), "3: a.v[2]", &["found [4, 5]"]);
         assert_parts(read("v = [{}, 2]", |v| v.tables().map(drop)), "3: a.v[2]", &["not a table", "found 2"]);
         assert_parts(read("v = {}", |v| v.tables().map(drop)), "3: a.v", &["not an array of tables", "found {}"]);
+        let positive = |v: &crate::config::reader::Field<'_>| v.numbers("numbers above 0", |n| n > 0.0).map(drop);
+        assert_parts(read("v = []", positive), "3: a.v", &["is empty", "found []", "above 0"]);
+        assert_parts(read("v = 1", positive), "3: a.v", &["not an array", "found 1;", "above 0"]);
+        assert_parts(read("v = [1, 0]", positive), "3: a.v[2]", &["out of range", "found 0;", "above 0"]);
     }
 }

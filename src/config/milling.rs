@@ -22,7 +22,7 @@ enum Way {
 /// # Errors
 /// [`InputError`] with file, line and field: a missing or unknown key, a value of the wrong kind or out of range, a width that
 /// the engagement does not have.
-pub fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement), InputError> {
+pub(super) fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement), InputError> {
     let [
         diameter,
         teeth,

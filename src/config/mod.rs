@@ -18,8 +18,10 @@
 //! ```
 
 mod arrays;
+mod assess;
 mod cutting;
 mod milling;
+mod printed;
 pub mod reader;
 mod robot;
 mod run;
@@ -28,6 +30,6 @@ mod tables;
 #[cfg(test)]
 mod testing;
 
-pub use milling::milling_from;
+pub use assess::{AssessRun, read_assessment};
 pub use robot::read_robot;
 pub use run::{Run, read_run};

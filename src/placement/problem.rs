@@ -3,7 +3,7 @@
 use crate::robot::{
     Pose, Robot, Spindle,
     angles::{q4_from_yaw, wrap},
-    cast,
+    cast, point_from_tool,
     scalar::Scalar,
 };
 use crate::task::Task;
@@ -188,13 +188,7 @@ impl Problem {
             rotation: path_point.workpiece_from_point().map(T::constant),
             translation: cast(&path_point.position),
         };
-        let (sine, cosine) = beta.sin_cos();
-        let (zero, one) = (T::zero(), T::one());
-        // Eq. 10 is its own inverse.
-        let point_from_tool = Pose {
-            rotation: Matrix3::new(cosine, sine, zero, sine, -cosine, zero, zero, zero, -one),
-            translation: Vector3::zeros(),
-        };
+        let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
         base_from_workpiece(pose)
             .then(&workpiece_from_point)
             .then(&point_from_tool)

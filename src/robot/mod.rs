@@ -41,7 +41,7 @@ pub use forward::{Frames, Pose, cast};
 pub use geometry::Geometry;
 pub use inverse::Unreachable;
 pub use posture::{Posture, PostureClass};
-pub use spindle::Spindle;
+pub use spindle::{Spindle, point_from_tool};
 
 /// One row of the arm, base first: modified Denavit-Hartenberg parameters, limits, compliance.
 #[derive(Debug, Clone, PartialEq)]

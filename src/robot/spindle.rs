@@ -1,7 +1,16 @@
 //! The spindle on the flange.
 
-use super::Pose;
+use super::{Pose, scalar::Scalar};
 use nalgebra::{Matrix3, Vector3};
+
+/// Rotation from the tool frame to frame P_i of a path point (x along the feed, z along the tool axis from the workpiece to
+/// the robot) for a free angle beta in rad: Caro 2013, eq. 10, which is its own inverse. The tool's z axis points from the
+/// robot to the workpiece, and at beta zero its x axis lies along the feed.
+pub fn point_from_tool<T: Scalar>(beta: T) -> Matrix3<T> {
+    let (sine, cosine) = beta.sin_cos();
+    let (zero, one) = (T::zero(), T::one());
+    Matrix3::new(cosine, sine, zero, sine, -cosine, zero, zero, zero, -one)
+}
 
 /// The spindle as mounted: the rigid transform from the tool frame (7, at the tool centre point, z along the tool axis
 /// out of the spindle) to the flange frame (6) of the arm (Caro 2013, eq. 9).
