@@ -21,6 +21,8 @@ pub(super) enum Command {
     Score(ScoreOptions),
     /// Tell for one placement, path point and beta what each of the eight postures gives
     Explain(ExplainOptions),
+    /// Tell how good robots are for machining: maps of circularity, best zones, and which robot for which task
+    Assess(AssessOptions),
 }
 
 #[derive(Debug, Args)]
@@ -33,6 +35,27 @@ pub(super) struct PlaceOptions {
     /// Seed of the random numbers, instead of the run file's
     #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
+    /// Number of threads [default: as many as processors]; it does not change the result
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AssessOptions {
+    /// Assessment file (TOML)
+    pub config: PathBuf,
+    /// Folder for the results [default: results/<name of the assessment file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Wanted accuracy in mm, instead of the list in the file
+    #[arg(long, value_name = "A", value_parser = positive, allow_hyphen_values = true)]
+    pub accuracy_mm: Option<f64>,
+    /// Cutting force in N for the wanted accuracy, instead of the list in the file
+    #[arg(long, value_name = "F", value_parser = positive, allow_hyphen_values = true)]
+    pub force_n: Option<f64>,
     /// Number of threads [default: as many as processors]; it does not change the result
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -113,6 +136,10 @@ fn finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err("allowed: a finite decimal number".to_owned()),
     }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
 }
 
 fn quaternion(text: &str) -> Result<f64, String> {

@@ -5,17 +5,20 @@
 //! bad input.
 
 mod arguments;
+mod assess;
 mod explain;
 mod place;
 mod progress;
 mod score;
 
+use crate::assessment::study::FitsNowhere;
 use crate::input::InputError;
 use crate::placement::place::NothingFeasible;
-use crate::report::output::ReportError;
+use crate::report::output::{Folder, ReportError};
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Why a command ends without its result.
@@ -33,6 +36,9 @@ enum Failure {
     /// No placement is feasible.
     #[error("{0}")]
     Nothing(#[from] NothingFeasible),
+    /// No robot can mill the benchmark.
+    #[error("{0}")]
+    Nowhere(#[from] FitsNowhere),
     /// The job itself failed.
     #[error("{0}")]
     Job(String),
@@ -42,7 +48,7 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Usage(_) | Failure::Output(_) => 2,
-            Failure::Nothing(_) | Failure::Job(_) => 1,
+            Failure::Nothing(_) | Failure::Nowhere(_) | Failure::Job(_) => 1,
         }
     }
 }
@@ -54,6 +60,7 @@ pub fn main() -> ExitCode {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
+        Command::Assess(options) => assess::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -83,4 +90,29 @@ fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -
     }
     let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
     Ok((pool.install(job), pool.current_num_threads()))
+}
+
+/// The folder that results go to.
+struct OutFolder {
+    folder: Folder,
+    is_new: bool,
+}
+
+impl OutFolder {
+    /// Removes a folder that this run has made and put nothing into.
+    fn give_up(&self) {
+        if self.is_new {
+            // Goes only if it is empty, as it should be.
+            let _ = std::fs::remove_dir(self.folder.path());
+        }
+    }
+}
+
+/// The folder asked for, or `results/` and the name of the config; tried before the long work, so that one that cannot be
+/// written to is found out now.
+fn out_folder(asked: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
+    let name = config.file_stem().unwrap_or_default();
+    let path = asked.map_or_else(|| Path::new("results").join(name), Path::to_owned);
+    let is_new = !path.exists();
+    Ok(OutFolder { folder: Folder::create(&path).map_err(Failure::Output)?, is_new })
 }

@@ -3,24 +3,19 @@
 use super::arguments::PlaceOptions;
 use super::progress::Watcher;
 use super::score::mention_cancellation;
-use super::{Failure, on_threads, print, say};
+use super::{Failure, on_threads, out_folder, print, say};
 use crate::config::read_run;
 use crate::placement::control::Control;
 use crate::placement::place::place;
 use crate::report::json::{self, Timing};
-use crate::report::output::Folder;
 use crate::report::{Context, evaluation, text, write_placement};
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
     let mut search = run.search;
     search.seed = options.seed.unwrap_or(search.seed);
-    // Before the long work: an output folder that cannot be written is found out now.
-    let out = out_dir(options);
-    let is_new = !out.exists();
-    let folder = Folder::create(&out).map_err(Failure::Output)?;
+    let out = out_folder(options.out.as_deref(), &options.config)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
 
     let watcher = Watcher::start();
@@ -32,24 +27,21 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         if options.json {
             print(&json::bytes(&evaluation::infeasible_json(nothing)));
         }
-        if is_new {
-            // Goes only if it is empty, as it should be.
-            let _ = std::fs::remove_dir(&out);
-        }
+        out.give_up();
         if watcher.should_stop() {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
 
     let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
-    let written = write_placement(&folder, &run.problem, &outcome, &context);
+    let written = write_placement(&out.folder, &run.problem, &outcome, &context);
     // Whatever happened to the files, the result of a long search is shown.
     if options.json {
         print(&json::bytes(&json::place_json(&outcome, &context, &Timing { wall, threads })));
     } else {
         let table = text::placement_text(&run.problem, &outcome, &context);
         let where_to = match &written {
-            Ok(_) => format!("; results in {}", folder.path().display()),
+            Ok(_) => format!("; results in {}", out.folder.path().display()),
             Err(_) => String::new(),
         };
         print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
@@ -59,10 +51,4 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
     written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
-}
-
-/// The folder asked for, or `results/` and the name of the run file.
-fn out_dir(options: &PlaceOptions) -> PathBuf {
-    let name = options.config.file_stem().unwrap_or_default();
-    options.out.clone().unwrap_or_else(|| Path::new("results").join(name))
 }

@@ -24,12 +24,7 @@ impl Watcher {
                 std::process::exit(130);
             }
         });
-        // Draws nothing when standard error is not a terminal.
-        let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}") {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        Self { bar, stop }
+        Self { bar: bar(), stop }
     }
 
     /// Clears the bar.
@@ -42,6 +37,40 @@ impl Watcher {
         self.bar.set_length(of as u64);
         self.bar.set_position(done as u64);
         self.bar.set_message(message);
+    }
+}
+
+/// A bar that draws nothing when standard error is not a terminal.
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+/// Draws the progress of a job that goes on in even steps.
+pub(super) struct Steps {
+    bar: ProgressBar,
+}
+
+impl Steps {
+    /// Starts the bar.
+    pub fn start(name: &'static str) -> Self {
+        let bar = bar();
+        bar.set_prefix(name);
+        Self { bar }
+    }
+
+    /// So many steps are done.
+    pub fn show(&self, done: usize, of: usize) {
+        self.bar.set_length(of as u64);
+        self.bar.set_position(done as u64);
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
     }
 }
 

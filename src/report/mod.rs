@@ -2,6 +2,7 @@
 //!
 //! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
 
+pub mod assessment;
 pub mod cutting;
 pub mod evaluation;
 pub mod json;

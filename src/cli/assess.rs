@@ -1,0 +1,54 @@
+//! `stead assess`: maps of circularity, then files, then tables.
+
+use super::arguments::AssessOptions;
+use super::progress::Steps;
+use super::{Failure, on_threads, out_folder, print, say};
+use crate::assessment::study::assess;
+use crate::config::read_assessment;
+use crate::report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
+use crate::report::json::{self, Timing};
+use std::time::Instant;
+
+pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
+    let mut run = read_assessment(&options.config)?;
+    let selection = &mut run.study.selection;
+    if let Some(accuracy_mm) = options.accuracy_mm {
+        selection.accuracies = vec![accuracy_mm / 1e3];
+    }
+    if let Some(force) = options.force_n {
+        selection.forces = vec![force];
+    }
+    if selection.accuracies.is_empty() != selection.forces.is_empty() {
+        return Err(Failure::Usage(
+            "--accuracy-mm and --force-n: only one of the two is known; allowed: both, or a table [selection]"
+                .to_owned(),
+        ));
+    }
+    let out = out_folder(options.out.as_deref(), &options.config)?;
+    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+
+    let steps = Steps::start("circularity maps");
+    let started = Instant::now();
+    let (assessment, threads) = on_threads(options.threads, || assess(&run.study, &|done, of| steps.show(done, of)))?;
+    let wall = started.elapsed().as_secs_f64();
+    steps.finish();
+    let assessment = assessment.inspect_err(|_| out.give_up())?;
+
+    let printed = run.printed.map(|printed| {
+        let agreement = printed.agreement(&assessment);
+        (printed, agreement)
+    });
+    let context = AssessmentContext { inputs: run.inputs, printed, course: run.course };
+    let written = write_assessment(&out.folder, &run.study, &assessment, &context);
+    if options.json {
+        print(&json::bytes(&assess_json(&assessment, &context, &Timing { wall, threads })));
+    } else {
+        let where_to = match &written {
+            Ok(_) => format!("; results in {}", out.folder.path().display()),
+            Err(_) => String::new(),
+        };
+        let table = assessment_text(&assessment, &context);
+        print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
+    }
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+}

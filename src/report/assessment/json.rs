@@ -1,0 +1,160 @@
+//! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
+
+use super::super::json::Timing;
+use super::super::number::Unit;
+use super::{AssessmentContext, elbow, load};
+use crate::assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
+use crate::assessment::printed::Agreement;
+use crate::assessment::study::{Assessment, Configuration, ElbowNames, RobotResult, Spot, Study, Zones};
+use nalgebra::Vector3;
+use serde_json::{Map, Value, json};
+
+/// What `stead assess --json` prints.
+pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing: &Timing) -> Value {
+    let mut document = common(assessment, context);
+    document.insert("threads".to_owned(), json!(timing.threads));
+    document.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
+    Value::Object(document)
+}
+
+/// The content of `summary.json`: byte for byte the same for the same inputs.
+pub fn summary_json(study: &Study, assessment: &Assessment, context: &AssessmentContext) -> Value {
+    let mut document = common(assessment, context);
+    let inputs = context.inputs.iter();
+    let inputs: Vec<Value> =
+        inputs.map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 })).collect();
+    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
+    document.insert("inputs".to_owned(), json!(inputs));
+    document.insert("benchmark".to_owned(), benchmark(study));
+    Value::Object(document)
+}
+
+fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {
+    let accuracies = assessment.accuracies.iter().map(|cell| {
+        json!({
+            "robot": cell.robot,
+            "force_n": Unit::FORCE_N.number(cell.force),
+            "circularity_mm": optional(cell.circularity),
+        })
+    });
+    let selection = assessment.capable.iter().map(|cell| {
+        json!({
+            "accuracy_mm": mm(cell.accuracy),
+            "force_n": Unit::FORCE_N.number(cell.force),
+            "robots": cell.robots,
+        })
+    });
+    let agreement = context.printed.as_ref().map(|(printed, agreement)| reference(&printed.source, agreement));
+    Map::from_iter([
+        ("robots".to_owned(), assessment.robots.iter().map(robot).collect()),
+        ("order".to_owned(), json!(assessment.order)),
+        ("accuracies".to_owned(), accuracies.collect()),
+        ("selection".to_owned(), selection.collect()),
+        ("reference".to_owned(), agreement.unwrap_or(Value::Null)),
+    ])
+}
+
+fn robot(robot: &RobotResult) -> Value {
+    let sheet = &robot.data_sheet;
+    json!({
+        "name": robot.name,
+        "payload_kg": sheet.payload,
+        "working_radius_mm": Unit::PLACE_MM.number(robot.working_radius),
+        "price_eur": sheet.price,
+        "configurations": robot.configurations.iter().map(configuration).collect::<Vec<_>>(),
+    })
+}
+
+fn configuration(configuration: &Configuration) -> Value {
+    let value = |spot: Option<Spot>| optional(spot.map(|spot| spot.circularity));
+    let place = |spot: Option<Spot>| spot.map_or(Value::Null, |spot| centre(spot.centre));
+    json!({
+        "elbow": elbow(configuration.elbow),
+        "load": load(configuration.load),
+        "force_n": Unit::FORCE_N.number(configuration.force),
+        "circles": configuration.circles,
+        "min_mm": value(configuration.least),
+        "min_at": place(configuration.least),
+        "max_mm": value(configuration.most),
+        "max_at": place(configuration.most),
+        "middle_mm": value(configuration.middle),
+        "middle_at": place(configuration.middle),
+        "zones": configuration.zones.iter().map(zones).collect::<Vec<_>>(),
+    })
+}
+
+fn zones(zones: &Zones) -> Value {
+    json!({
+        "size_mm": Unit::PLACE_MM.number(zones.side),
+        "optimal_mm": optional(zones.optimal.map(|zone| zone.largest)),
+        "optimal_at": zones.optimal.map_or(Value::Null, |zone| centre(zone.centre)),
+        "middle_mm": optional(zones.middle.map(|zone| zone.largest)),
+        "middle_at": zones.middle.map_or(Value::Null, |zone| centre(zone.centre)),
+    })
+}
+
+/// A place in the coordinates of the plane.
+fn centre([x, y]: [f64; 2]) -> Value {
+    json!({ "x_mm": Unit::PLACE_MM.number(x), "y_mm": Unit::PLACE_MM.number(y) })
+}
+
+fn reference(source: &str, agreement: &Agreement) -> Value {
+    let (cells, same) = agreement.accuracies;
+    json!({
+        "source": source,
+        "rms_percent": Unit::PLAIN.number(agreement.rms * 100.0),
+        "readings": agreement.readings,
+        "readings_on_one_side_only": agreement.one_sided,
+        "order": agreement.order,
+        "same_best": agreement.same_best,
+        "same_worst": agreement.same_worst,
+        "same_order": agreement.same_order,
+        "accuracy_cells": cells,
+        "accuracy_cells_that_round_alike": same,
+    })
+}
+
+fn benchmark(study: &Study) -> Value {
+    let Benchmark { plane, radius, points, wrench, turning, base_from_tool, yielding, limits_at, stiffness, .. } =
+        &study.benchmark;
+    let vector = |unit: Unit, v: &Vector3<f64>| [v.x, v.y, v.z].map(|part| unit.number(part));
+    let joints: Vec<usize> = (1..=6).filter(|joint| yielding[joint - 1]).collect();
+    json!({
+        "plane": {
+            "origin_mm": vector(Unit::PLACE_MM, &plane.origin),
+            "x": vector(Unit::PLAIN, &plane.x),
+            "y": vector(Unit::PLAIN, &plane.y),
+        },
+        "radius_mm": Unit::PLACE_MM.number(*radius),
+        "points": points,
+        "force_n": vector(Unit::FORCE_N, &wrench.force),
+        "moment_nm": vector(Unit::MOMENT_NM, &wrench.moment),
+        "force_turns": match turning { Turning::WithTool => "with-tool", Turning::AgainstTool => "against-tool" },
+        "traced": if study.benchmark.flange_from_tool.is_some() { "tool" } else { "wrist-centre" },
+        "tool_axis": vector(Unit::PLAIN, &-base_from_tool.column(2).into_owned()),
+        "limits_at": match limits_at { LimitsAt::Circle => "circle", LimitsAt::Centre => "centre" },
+        "elbow_names": match study.elbow_names {
+            ElbowNames::Geometric => "geometric",
+            ElbowNames::Swapped => "swapped",
+        },
+        "joints": joints,
+        "range_share": study.range_share,
+        "loaded": *stiffness == StiffnessModel::Loaded,
+        "rated_share": study.rated_share,
+        "gravity_m_per_s2": study.selection.gravity,
+        "remaining_share": study.selection.remaining_share,
+        "map": {
+            "x_mm": [0, study.grid.counts[0] - 1].map(|k| Unit::PLACE_MM.number(study.grid.at([k as f64, 0.0])[0])),
+            "y_mm": [0, study.grid.counts[1] - 1].map(|k| Unit::PLACE_MM.number(study.grid.at([0.0, k as f64])[1])),
+            "step_mm": Unit::PLACE_MM.number(study.grid.step),
+        },
+    })
+}
+
+fn mm(value: f64) -> f64 {
+    Unit::DEFLECTION_MM.number(value)
+}
+
+fn optional(value: Option<f64>) -> Value {
+    value.map_or(Value::Null, |value| json!(mm(value)))
+}

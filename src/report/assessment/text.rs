@@ -1,0 +1,78 @@
+//! The short tables for people.
+
+use super::super::number::fixed;
+use super::super::text::aligned;
+use super::{AssessmentContext, elbow, load};
+use crate::assessment::printed::{Printed, Quantity};
+use crate::assessment::study::{Assessment, Configuration, RobotResult, obstacle_words};
+
+/// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published values
+/// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
+/// tables agree.
+pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
+    let printed = context.printed.as_ref().map(|(printed, _)| printed);
+    let mut text = aligned(&configuration_rows(assessment, printed), &[0, 1, 2]);
+    for robot in assessment.robots.iter().filter(|robot| robot.maps.iter().any(|(_, map)| map.count() == 0)) {
+        for (name, map) in robot.maps.iter().filter(|(_, map)| map.count() == 0) {
+            let why = obstacle_words(&map.obstacles(), map.nodes.len());
+            text += &format!("{}, elbow {}: the circle fits nowhere ({why})\n", robot.name, elbow(*name));
+        }
+    }
+    if !assessment.capable.is_empty() {
+        text += "\nRobots that reach an accuracy, with errors compensated as the config says:\n";
+        text += &aligned(&selection_rows(assessment), &[2]);
+    }
+    text += &format!("\nmost accurate first: {}\n", assessment.order.join(", "));
+    if let Some((printed, agreement)) = &context.printed {
+        let same = |same: bool| if same { "the same" } else { "another" };
+        text += &format!(
+            "({}): rms difference {} % over {} values, {} on one side only; best robot {}, worst {}, order {}\n",
+            printed.source,
+            fixed(agreement.rms * 100.0, 1),
+            agreement.readings,
+            agreement.one_sided,
+            same(agreement.same_best),
+            same(agreement.same_worst),
+            same(agreement.same_order),
+        );
+    }
+    text
+}
+
+fn configuration_rows(assessment: &Assessment, printed: Option<&Printed>) -> Vec<Vec<String>> {
+    let mut header = ["robot", "elbow", "load", "force N", "min mm", "max mm", "middle mm"].map(str::to_owned).to_vec();
+    let first = assessment.robots.first().and_then(|robot| robot.configurations.first());
+    let sides: Vec<f64> = first.map_or(vec![], |configuration| configuration.zones.iter().map(|z| z.side).collect());
+    header.extend(sides.iter().map(|side| format!("in {0}x{0}", fixed(side * 1e3, 0))));
+    let mut rows = vec![header];
+    let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
+    for (robot, configuration) in every {
+        let mut row =
+            vec![robot.name.clone(), elbow(configuration.elbow).to_owned(), load(configuration.load).to_owned()];
+        row.push(fixed(configuration.force, 0));
+        let zones = sides.iter().map(|side| Quantity::OptimalZone(*side));
+        let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().chain(zones);
+        row.extend(quantities.map(|quantity| cell(robot, configuration, quantity, printed)));
+        rows.push(row);
+    }
+    rows
+}
+
+/// Our value, and the published one in parentheses.
+fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, printed: Option<&Printed>) -> String {
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| fixed(value * 1e3, 2));
+    let ours = number(quantity.of(of));
+    match printed.and_then(|printed| printed.value(&robot.name, of.elbow, of.load, quantity)) {
+        Some(value) => format!("{ours} ({})", number(value)),
+        None => ours,
+    }
+}
+
+fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
+    let mut rows = vec![["accuracy mm", "force N", "robots"].map(str::to_owned).to_vec()];
+    rows.extend(assessment.capable.iter().map(|cell| {
+        let robots = if cell.robots.is_empty() { "-".to_owned() } else { cell.robots.join(", ") };
+        vec![format!("{}", (cell.accuracy * 1e9).round() / 1e6), fixed(cell.force, 0), robots]
+    }));
+    rows
+}
