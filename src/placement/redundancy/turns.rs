@@ -10,7 +10,7 @@ use crate::robot::{
 };
 use std::ops::Range as Span;
 
-/// A segment's plan with every flip and turn that it can be driven with, all of the same cost.
+/// A segment's plan with every flip and turn that it can be driven with at the same cost.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Choice {
     pub points: Span<usize>,
