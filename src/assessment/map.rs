@@ -1,6 +1,6 @@
 //! Circularity over a plane of the cell (Klimchik 2017, Fig. 15 to 19).
 
-use super::benchmark::{Benchmark, Obstacle, Profile};
+use super::benchmark::{Benchmark, Obstacle, Profile, Trial};
 use crate::robot::{PostureClass, Robot};
 use rayon::prelude::*;
 
@@ -88,7 +88,7 @@ impl<const N: usize> Map<N> {
         loads: [f64; N],
         row_done: &(dyn Fn() + Sync),
     ) -> Self {
-        let trial = benchmark.trial(robot);
+        let trial = Trial::new(benchmark, robot);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
             let nodes: Vec<_> = (first..first + grid.counts[0])
@@ -117,5 +117,49 @@ impl<const N: usize> Map<N> {
         let mut counted: Vec<_> = found.chunk_by(|a, b| a == b).map(|run| (run[0], run.len())).collect();
         counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         counted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{Frames, testing};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    #[test]
+    fn elbow_up_has_the_elbow_above_the_line_to_the_wrist() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut seen = [0, 0];
+        for robot in testing::odd_arms().into_iter().chain([testing::kr270()]) {
+            let geometry = robot.geometry();
+            for _ in 0..100 {
+                let theta: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
+                let posture = crate::robot::Posture::of(&robot, &theta);
+                let Some(elbow) = Elbow::BOTH.into_iter().find(|elbow| elbow.forward_class(&robot) == posture.class())
+                else {
+                    continue;
+                };
+                let frames = Frames::new(&robot, &theta);
+                let root =
+                    |p: nalgebra::Vector3<f64>| geometry.base_from_root.transpose() * (p - geometry.root_in_base);
+                let [shoulder, joint, wrist] = [frames.origins[1], frames.origins[2], frames.wrist_centre()].map(root);
+                // In the plane of the arm, seen with the wrist to the right.
+                let (sine, cosine) = libm::sincos(theta[0]);
+                let flat = |p: nalgebra::Vector3<f64>| [cosine * p.x + sine * p.y, p.z];
+                let [s, e, w] = [shoulder, joint, wrist].map(flat);
+                let above = (w[0] - s[0]) * (e[1] - s[1]) - (w[1] - s[1]) * (e[0] - s[0]);
+                assert_eq!(above > 0.0, elbow == Elbow::Up, "{theta:?}");
+                seen[usize::from(elbow == Elbow::Up)] += 1;
+            }
+        }
+        assert!(seen[0] > 300 && seen[1] > 300, "{seen:?}");
+    }
+
+    #[test]
+    fn places_run_along_the_first_axis_fastest() {
+        let grid = Grid { origin: [-1.0, 2.0], step: 0.5, counts: [3, 2] };
+        assert_eq!(grid.len(), 6);
+        assert_eq!([0, 2, 3].map(|k| grid.place(k)), [[-1.0, 2.0], [0.0, 2.0], [-1.0, 2.5]]);
     }
 }

@@ -118,6 +118,8 @@ fn benchmark(study: &Study) -> Value {
     let Benchmark { plane, radius, points, wrench, turning, base_from_tool, yielding, limits_at, stiffness, .. } =
         &study.benchmark;
     let vector = |unit: Unit, v: &Vector3<f64>| [v.x, v.y, v.z].map(|part| unit.number(part));
+    let last = study.grid.at(study.grid.counts.map(|count| (count - 1) as f64));
+    let ends = |axis: usize| [study.grid.origin[axis], last[axis]].map(|end| Unit::PLACE_MM.number(end));
     let joints: Vec<usize> = (1..=6).filter(|joint| yielding[joint - 1]).collect();
     json!({
         "plane": {
@@ -144,8 +146,8 @@ fn benchmark(study: &Study) -> Value {
         "gravity_m_per_s2": study.selection.gravity,
         "remaining_share": study.selection.remaining_share,
         "map": {
-            "x_mm": [0, study.grid.counts[0] - 1].map(|k| Unit::PLACE_MM.number(study.grid.at([k as f64, 0.0])[0])),
-            "y_mm": [0, study.grid.counts[1] - 1].map(|k| Unit::PLACE_MM.number(study.grid.at([0.0, k as f64])[1])),
+            "x_mm": ends(0),
+            "y_mm": ends(1),
             "step_mm": Unit::PLACE_MM.number(study.grid.step),
         },
     })
