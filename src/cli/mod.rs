@@ -5,6 +5,7 @@
 //! bad input.
 
 mod arguments;
+mod circularity;
 mod explain;
 mod place;
 mod progress;
@@ -54,6 +55,7 @@ pub fn main() -> ExitCode {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
+        Command::Circularity(options) => circularity::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -19,6 +19,7 @@
 
 mod arrays;
 mod cutting;
+mod points;
 pub mod reader;
 mod robot;
 mod run;
@@ -27,5 +28,6 @@ mod tables;
 #[cfg(test)]
 mod testing;
 
+pub use points::{PointFile, read_points};
 pub use robot::read_robot;
 pub use run::{Run, read_run};

@@ -2,6 +2,7 @@
 //!
 //! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
 
+pub mod circularity;
 pub mod evaluation;
 pub mod json;
 pub mod number;

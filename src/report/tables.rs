@@ -216,7 +216,8 @@ fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
     [vector.x, vector.y, vector.z].map(|value| unit.text(value))
 }
 
-fn table(
+/// A CSV file with a header.
+pub(super) fn table(
     what: &'static str,
     header: &[&str],
     rows: impl IntoIterator<Item = Vec<String>>,

@@ -7,8 +7,10 @@ mod colour;
 mod convergence;
 mod deflection_map;
 mod hatch;
+mod polar;
 mod scene;
 
 pub use cell::cell;
 pub use convergence::convergence;
 pub use deflection_map::deflection_map;
+pub use polar::polar;
