@@ -19,8 +19,8 @@ const RIM: f64 = 320.0;
 const DOTS: usize = 400;
 /// Directions that are told apart: where there are more points, the extremes of each stand for all.
 const DIRECTIONS: usize = 1440;
-/// Points farther apart than this are not joined. rad
-const GAP: f64 = PI / 12.0;
+/// Points farther apart than this are not joined: so many times their mean distance, but no less than 2 deg.
+const GAP: f64 = 3.0;
 
 /// The profile about the centre of the minimum zone circles: the deviation from the mean of both circles, magnified so that
 /// the zone fills a fixed part of the picture. Points left out are shown apart, those beyond the rim on it.
@@ -118,7 +118,8 @@ impl<'a> Plot<'a> {
     fn profile(&self, canvas: &Canvas<'_>) -> Drawn {
         let closing = self.kept.first().map(|(angle, deviation)| (angle + TAU, *deviation));
         let points: Vec<Polar> = self.kept.iter().copied().chain(closing).collect();
-        for run in points.chunk_by(|a, b| b.0 - a.0 < GAP) {
+        let gap = (GAP * TAU / self.kept.len().max(1) as f64).max(PI / 90.0);
+        for run in points.chunk_by(|a, b| b.0 - a.0 < gap) {
             if run.len() > 1 {
                 let places: Vec<Place> = run.iter().map(|(angle, deviation)| self.place(*angle, *deviation)).collect();
                 canvas.curve(&places, BLUE, 2)?;
