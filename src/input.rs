@@ -1,5 +1,7 @@
 //! What comes from files: which ones, what they cite, and the one error for anything that they can get wrong.
 
+pub mod table;
+
 use std::fmt;
 use std::path::Path;
 

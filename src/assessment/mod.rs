@@ -3,7 +3,8 @@
 //! The measure is the circularity of a milled circle (ISO 12181), after Klimchik, Ambiehl, Garnier, Furet and Pashkevich,
 //! "Efficiency evaluation of robots in machining applications using industrial performance measure", 2017:
 //!
-//! - [`circle`]: roundness of points, with the four reference circles of the standard.
+//! - [`circle`]: the four reference circles of the standard and the circularity about each.
+//! - [`roundness`]: the same for measured points, in the plane or in space, with sectors left out.
 //! - [`benchmark`]: the deflected circle at one place of the cell.
 //! - [`map`]: that at every place of a plane.
 //! - [`zone`]: the best and the middle square zones of a map.
@@ -16,5 +17,6 @@ pub mod circle;
 pub mod map;
 pub mod printed;
 pub mod ranking;
+pub mod roundness;
 pub mod study;
 pub mod zone;

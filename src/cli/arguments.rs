@@ -1,5 +1,6 @@
 //! What may be said on the command line.
 
+use crate::assessment::roundness::Sector;
 use crate::placement::problem::Placement;
 use crate::robot::angles::yaw_from_q4;
 use clap::{Args, Parser, Subcommand};
@@ -23,6 +24,8 @@ pub(super) enum Command {
     Explain(ExplainOptions),
     /// Tell how good robots are for machining: maps of circularity, best zones, and which robot for which task
     Assess(AssessOptions),
+    /// Roundness of measured points: the four reference circles of ISO 12181
+    Circularity(CircularityOptions),
 }
 
 #[derive(Debug, Args)]
@@ -92,6 +95,21 @@ pub(super) struct ExplainOptions {
     pub json: bool,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct CircularityOptions {
+    /// Measured points (CSV with x_mm,y_mm or x_mm,y_mm,z_mm)
+    pub points: PathBuf,
+    /// Leave out points from angle A to B in degrees about the least-squares centre of all; may be repeated
+    #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]
+    pub exclude_deg: Vec<Sector>,
+    /// Folder for circularity.json, deviations.csv and polar.svg [default: nothing is written]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// A placement: the workpiece origin in the robot base frame, and its yaw.
 #[derive(Debug, Args)]
 #[group(skip)]
@@ -140,6 +158,16 @@ fn finite(text: &str) -> Result<f64, String> {
 
 fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
+}
+
+/// Angles count from the x axis counter-clockwise; from the first to the second the sector may pass through zero.
+fn sector(text: &str) -> Result<Sector, String> {
+    let allowed = || "allowed: two angles from -360 to 360, as in 350:10".to_owned();
+    let angle = |text: &str| finite(text.trim()).ok().filter(|angle| angle.abs() <= 360.0).ok_or_else(allowed);
+    let (from, to) = text.split_once(':').ok_or_else(allowed)?;
+    let (from, to) = (angle(from)?, angle(to)?);
+    let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
+    Ok(Sector { start: from.to_radians(), width: (to - from + 360.0 * turns).to_radians() })
 }
 
 fn quaternion(text: &str) -> Result<f64, String> {

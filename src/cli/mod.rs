@@ -6,6 +6,7 @@
 
 mod arguments;
 mod assess;
+mod circularity;
 mod explain;
 mod place;
 mod progress;
@@ -61,6 +62,7 @@ pub fn main() -> ExitCode {
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
         Command::Assess(options) => assess::run(&options),
+        Command::Circularity(options) => circularity::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -21,6 +21,7 @@ mod arrays;
 mod assess;
 mod cutting;
 mod milling;
+mod points;
 mod printed;
 pub mod reader;
 mod robot;
@@ -31,5 +32,6 @@ mod tables;
 mod testing;
 
 pub use assess::{AssessRun, read_assessment};
+pub use points::{PointFile, read_points};
 pub use robot::read_robot;
 pub use run::{Run, read_run};

@@ -216,6 +216,7 @@ pub(super) fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
     [vector.x, vector.y, vector.z].map(|value| unit.text(value))
 }
 
+/// A CSV file with a header.
 pub(super) fn table(
     what: &'static str,
     header: &[&str],

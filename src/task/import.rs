@@ -2,6 +2,7 @@
 
 use super::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
 use crate::input::InputError;
+use crate::input::table::{Row, Table};
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -39,31 +40,24 @@ pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
 /// # Errors
 /// As [`read_csv`].
 pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
-    let mut line_at = LineCounter { bytes, at: 0, line: 1 };
-    let header = reader.headers().map_err(|e| csv_error(file, &mut line_at, &e))?.clone();
-    let columns = Columns::find(file, &header)?;
+    let mut table = Table::new(file, bytes)?;
+    let columns = Columns::find(file, &table)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut lines = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| csv_error(file, &mut line_at, &e))?;
-        let row = Row { file, line: line_at.of(record.position()), record: &record, header: &header };
-        let segment = row.segment(columns.required[0])?;
-        let vector = |k: usize| row.vector([columns.required[k], columns.required[k + 1], columns.required[k + 2]]);
-        points.push((segment, PathPoint { position: vector(1)? * 1e-3, feed: vector(4)?, axis: vector(7)? }));
+    while let Some(row) = table.next_row()? {
+        let segment = segment(&row, columns.required[0])?;
+        let at = |k: usize| vector(&row, [columns.required[k], columns.required[k + 1], columns.required[k + 2]]);
+        points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }));
         if let (Some(wrenches), Some(force)) = (wrenches.as_mut(), columns.force) {
-            let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| row.vector(moment))?;
-            wrenches.push(Wrench { force: row.vector(force)?, moment });
+            let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| vector(&row, moment))?;
+            wrenches.push(Wrench { force: vector(&row, force)?, moment });
         }
-        lines.push(row.line);
+        lines.push(row.line());
     }
     let path = ToolPath::new(points).map_err(|e| locate(file, &lines, &e))?;
     Ok(Imported { path, wrenches, lines })
 }
-
-/// No length, direction, force or moment is larger than this in its unit.
-const LARGEST: f64 = 1e9;
 
 /// Where each column of the contract stands in this file.
 struct Columns {
@@ -73,7 +67,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(file: &Path, header: &csv::StringRecord) -> Result<Self, InputError> {
+    fn find(file: &Path, table: &Table<'_>) -> Result<Self, InputError> {
         let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT);
         let fail = |column: &str, problem: &str| {
             InputError::new(file, problem)
@@ -81,25 +75,17 @@ impl Columns {
                 .in_field(column)
                 .allowed(all().copied().collect::<Vec<_>>().join(","))
         };
-        if let (1, Some(name)) = (header.len(), header.get(0))
-            && let Some(mark) = [';', '\t', '|'].into_iter().find(|mark| name.contains(*mark))
-        {
-            return Err(InputError::new(file, "the columns are not separated by commas")
-                .at_line(1)
-                .found(format!("{mark:?} between them"))
-                .allowed("columns separated by commas, and a point in decimal numbers"));
-        }
-        for (index, name) in header.iter().enumerate() {
+        for name in table.header() {
             if !all().any(|known| *known == name) {
                 let nearest = all().max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));
                 let hint = nearest.map(|n| format!(" (nearest known one: {n})")).unwrap_or_default();
                 return Err(fail(name, &format!("unknown column{hint}")));
             }
-            if header.iter().skip(index + 1).any(|other| other == name) {
+            if table.is_doubled(name) {
                 return Err(fail(name, "this column is there twice"));
             }
         }
-        let place = |name: &str| header.iter().position(|column| column == name);
+        let place = |name: &str| table.column(name);
         let mut required = [0; 10];
         for (slot, name) in required.iter_mut().zip(REQUIRED) {
             *slot = place(name).ok_or_else(|| fail(name, "missing column"))?;
@@ -123,79 +109,12 @@ impl Columns {
     }
 }
 
-/// Tells the line of a row. The reader's own count takes a row to begin right behind the row before it, so it is early
-/// after blank lines, and by one in files whose lines end in carriage return and line feed.
-struct LineCounter<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    line: usize,
+fn vector(row: &Row<'_>, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
+    Ok(Vector3::new(row.number(columns[0])?, row.number(columns[1])?, row.number(columns[2])?))
 }
 
-impl LineCounter<'_> {
-    /// The line, from 1, of the row that the reader says to begin at a position, which must not go back.
-    fn of(&mut self, position: Option<&csv::Position>) -> usize {
-        let start = position.map_or(0, |position| position.byte() as usize).min(self.bytes.len());
-        let blank = self.bytes[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-        while self.at < start + blank {
-            let ends = match self.bytes[self.at] {
-                b'\n' => true,
-                b'\r' => self.bytes.get(self.at + 1) != Some(&b'\n'),
-                _ => false,
-            };
-            self.line += usize::from(ends);
-            self.at += 1;
-        }
-        self.line
-    }
-}
-
-/// One row under its header.
-struct Row<'a> {
-    file: &'a Path,
-    line: usize,
-    record: &'a csv::StringRecord,
-    header: &'a csv::StringRecord,
-}
-
-impl Row<'_> {
-    fn fail(&self, column: usize, problem: &str, allowed: &str) -> InputError {
-        InputError::new(self.file, problem)
-            .at_line(self.line)
-            .in_field(&self.header[column])
-            .found(format!("'{}'", &self.record[column]))
-            .allowed(allowed)
-    }
-
-    fn number(&self, column: usize) -> Result<f64, InputError> {
-        match self.record[column].parse::<f64>() {
-            Ok(value) if value.abs() <= LARGEST => Ok(value),
-            _ => Err(self.fail(column, "not a finite number", "a finite decimal number of at most 1e9")),
-        }
-    }
-
-    fn vector(&self, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
-        Ok(Vector3::new(self.number(columns[0])?, self.number(columns[1])?, self.number(columns[2])?))
-    }
-
-    fn segment(&self, column: usize) -> Result<u32, InputError> {
-        self.record[column].parse().map_err(|_| self.fail(column, "not a segment number", "whole numbers from 1"))
-    }
-}
-
-fn csv_error(file: &Path, line_at: &mut LineCounter<'_>, error: &csv::Error) -> InputError {
-    let (problem, allowed) = match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => (
-            format!("this row does not fit its header, found {len} values"),
-            format!("{expected_len} values, one for each column"),
-        ),
-        csv::ErrorKind::Utf8 { .. } => ("not UTF-8 text".to_owned(), "UTF-8 text".to_owned()),
-        _ => (format!("not readable as CSV: {error}"), "a CSV file".to_owned()),
-    };
-    let located = InputError::new(file, problem).allowed(allowed);
-    match error.position() {
-        Some(position) => located.at_line(line_at.of(Some(position))),
-        None => located,
-    }
+fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
+    row.text(column).parse().map_err(|_| row.fail(column, "not a segment number", "whole numbers from 1"))
 }
 
 /// A broken rule of the path, at its line of the file.

@@ -106,7 +106,7 @@ impl Frame {
 
     /// A point of the frame of the points in this one.
     #[inline(always)]
-    pub fn into_local(&self, p: Point) -> Point {
+    pub fn localised(&self, p: Point) -> Point {
         // The inverse of a power of two is exact.
         let factor = 1.0 / self.unit;
         [(p[0] - self.origin[0]) * factor, (p[1] - self.origin[1]) * factor]
@@ -114,7 +114,7 @@ impl Frame {
 
     /// All points in this frame.
     pub fn localise(&self, points: &[Point]) -> Vec<Point> {
-        points.iter().map(|p| self.into_local(*p)).collect()
+        points.iter().map(|p| self.localised(*p)).collect()
     }
 
     /// The reference circle about a centre in this frame, for points in theirs.
@@ -144,10 +144,10 @@ impl Frame {
 
     fn reaches<C: Chart>(&self, coordinates: Point, points: &[Point]) -> Reaches {
         let at = C::at(coordinates);
-        let first = C::reach(C::key(&at, &self.into_local(points[0])));
+        let first = C::reach(C::key(&at, &self.localised(points[0])));
         let (mut least, mut most, mut excess) = (first, first, 0.0);
         for p in points {
-            let reach = C::reach(C::key(&at, &self.into_local(*p)));
+            let reach = C::reach(C::key(&at, &self.localised(*p)));
             (least, most) = (least.min(reach), most.max(reach));
             excess += reach - first;
         }

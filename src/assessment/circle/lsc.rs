@@ -128,7 +128,7 @@ impl Set<'_> {
         let (mut count, mut e, mut ee) = (0.0, 0.0, 0.0);
         let ([mut g, mut eg], [mut gg, mut eh, mut h]) = ([[0.0; 2]; 2], [[0.0; 3]; 3]);
         for p in self.points.iter().step_by(self.stride) {
-            let (reach, [gx, gy], second) = C::derivatives(&at, &self.frame.into_local(*p));
+            let (reach, [gx, gy], second) = C::derivatives(&at, &self.frame.localised(*p));
             let residual = reach - reference;
             count += 1.0;
             e += residual;

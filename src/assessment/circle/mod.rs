@@ -35,6 +35,7 @@ mod lsc;
 mod mcc;
 mod mic;
 mod mzc;
+pub mod plane;
 mod polygon;
 mod search;
 #[cfg(test)]
@@ -154,7 +155,7 @@ impl Circles {
         let local = frame.localise(points);
         let hull = Hull::new(&local);
         let mcc = mcc::minimum_circumscribed(&hull.vertices);
-        let starts = [frame.into_local(lsc.circle.center), mcc];
+        let starts = [frame.localised(lsc.circle.center), mcc];
         let (zone, inscribed) = rayon::join(
             || mzc::minimum_zone_from(&local, &hull, &starts),
             || mic::maximum_inscribed(&local, &hull, &starts),

@@ -90,9 +90,8 @@ impl Search<'_> {
                 *best = Found { coordinates: middle, objective: view.objective() };
             }
             if size <= SMALLEST {
-                if thin.take().is_none() {
-                    return None;
-                }
+                // Seen in part only, it is looked at once more in full.
+                thin.take()?;
                 continue;
             }
             let goal = best.objective - ABSOLUTE - RELATIVE * best.objective.abs();

@@ -8,9 +8,11 @@ mod convergence;
 mod cutting;
 mod deflection_map;
 mod hatch;
+mod polar;
 mod scene;
 
 pub use cell::cell;
 pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
+pub use polar::polar;
