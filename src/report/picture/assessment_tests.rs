@@ -67,3 +67,129 @@ fn maps_are_well_formed_the_same_each_time_and_labelled() {
         }
     }
 }
+
+#[test]
+fn a_map_of_ten_thousand_circles_is_small() {
+    let mut study = study(40);
+    study.benchmark.points = 8;
+    study.robots.truncate(1);
+    let assessment = assess(&study, &|_, _| ()).unwrap();
+    let result = &assessment.robots[0];
+    let circles: Vec<usize> = result.maps.iter().map(|(_, map)| map.count()).collect();
+    assert!(circles.iter().sum::<usize>() > 10_000, "{circles:?}");
+    let svg = circularity_map(&study, result).unwrap();
+    assert!(svg.len() < 250_000, "{}", svg.len());
+    // Finer than the picture shows.
+    let mut fine = result.clone();
+    for (_, map) in &mut fine.maps {
+        let [columns, rows] = map.grid.counts;
+        let nodes = (0..4 * rows * columns).map(|k| map.nodes[k / (2 * columns) / 2 * columns + k % (2 * columns) / 2]);
+        map.nodes = nodes.collect();
+        map.grid = Grid { step: map.grid.step / 2.0, counts: [2 * columns, 2 * rows], ..map.grid };
+    }
+    let thinned = circularity_map(&study, &fine).unwrap();
+    assert!(thinned.len() < svg.len() * 11 / 10, "{} {}", thinned.len(), svg.len());
+}
+
+#[test]
+fn an_elbow_without_circles_says_so() {
+    let (study, assessment) = small();
+    let mut result = assessment.robots[0].clone();
+    let mut clear = |index: usize| {
+        let nodes = &mut result.maps[index].1.nodes;
+        nodes.iter_mut().for_each(|node| *node = Err(Obstacle::JointLimit(5)));
+        let elbow = Elbow::BOTH[index];
+        for found in result.configurations.iter_mut().filter(|found| found.elbow == elbow) {
+            (found.circles, found.least, found.most, found.middle) = (0, None, None, None);
+            found.zones.iter_mut().for_each(|zones| (zones.optimal, zones.middle) = (None, None));
+        }
+        circularity_map(study, &result).unwrap()
+    };
+    let svg = clear(1);
+    assert_well_formed(&svg);
+    assert!(svg.contains("no circle fits") && svg.contains("limit of joint 5 at 2501 of 2501 places"));
+    assert!(svg.contains("circularity (mm)"));
+    let svg = clear(0);
+    assert_well_formed(&svg);
+    assert!(!svg.contains("circularity (mm)"), "no colours without values");
+}
+
+#[test]
+fn huge_and_tiny_values_are_drawn() {
+    let (study, assessment) = small();
+    for (factor, label) in [(1e9, "e9"), (1e-12, "e-"), (0.0, "smallest 0, ")] {
+        let mut result = assessment.robots[0].clone();
+        for (_, map) in &mut result.maps {
+            map.nodes.iter_mut().flatten().for_each(|values| *values = values.map(|value| value * factor));
+        }
+        for found in &mut result.configurations {
+            for spot in [&mut found.least, &mut found.middle, &mut found.most].into_iter().flatten() {
+                spot.circularity *= factor;
+            }
+        }
+        let svg = circularity_map(study, &result).unwrap();
+        assert_well_formed(&svg);
+        assert!(svg.contains(label) && !svg.contains("NaN") && !svg.contains("inf"), "{factor}");
+        assert!(svg.len() < 200_000, "{}", svg.len());
+    }
+}
+
+#[test]
+fn a_plane_without_axis_1_shows_no_arm() {
+    let (study, assessment) = small();
+    let mut study = study.clone();
+    study.benchmark.plane.origin.y = 0.5;
+    study.elbow_names = ElbowNames::Swapped;
+    let svg = circularity_map(&study, &assessment.robots[0]).unwrap();
+    assert!(svg.contains("plane y = 500 mm") && svg.contains("elbow up, by the names of this study: below the line"));
+    assert!(!svg.contains("axis 1") && !svg.contains("shoulder (axis 2)"));
+    study.benchmark.plane.x = Vector3::new(0.6, 0.8, 0.0);
+    let svg = circularity_map(&study, &assessment.robots[0]).unwrap();
+    assert!(svg.contains("along the plane") && svg.contains("z (mm)") && !svg.contains("x (mm)"));
+}
+
+#[test]
+fn indicators_show_values_relative_to_the_best_robot() {
+    let (_, assessment) = small();
+    let svg = indicators(assessment).unwrap();
+    assert_eq!(svg, indicators(assessment).unwrap());
+    assert_well_formed(&svg);
+    for label in ["KUKA KR 500", "KUKA KR 120 R3900", "2.825", "3.900", ">\n500\n<", ">\n120\n<", "kg", "1439 N"] {
+        assert!(svg.contains(label), "{label}");
+    }
+    assert!(svg.contains("relative to the best robot, which has 1"));
+    // No prices are known, and nothing is missing.
+    assert!(!svg.contains("price") && !svg.contains('–'));
+}
+
+#[test]
+fn indicators_leave_out_what_is_not_known() {
+    let mut assessment = small().1.clone();
+    assessment.robots[0].data_sheet.price = Some(123_456.0);
+    assessment.robots[0].configurations.iter_mut().for_each(|found| found.least = None);
+    let svg = indicators(&assessment).unwrap();
+    assert!(svg.contains("123456") && svg.contains("the lowest price"));
+    // One robot has no accuracy, the other no price.
+    assert_eq!(svg.matches('–').count(), 2);
+    for robot in &mut assessment.robots {
+        (robot.data_sheet.payload, robot.data_sheet.price) = (None, None);
+    }
+    let svg = indicators(&assessment).unwrap();
+    assert!(!svg.contains("payload") && svg.contains("working radius"));
+    assessment.robots.clear();
+    assert_well_formed(&indicators(&assessment).unwrap());
+}
+
+#[test]
+fn many_robots_stand_in_several_rows() {
+    let mut assessment = small().1.clone();
+    let height = |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<i32>().unwrap();
+    let one_row = height(&indicators(&assessment).unwrap());
+    for number in 0..12 {
+        let mut robot = assessment.robots[0].clone();
+        robot.name = format!("another robot with quite a long name {number}");
+        assessment.robots.push(robot);
+    }
+    let svg = indicators(&assessment).unwrap();
+    assert!(height(&svg) > 2 * one_row && svg.contains("long name 11"));
+}

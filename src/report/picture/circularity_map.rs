@@ -1,13 +1,13 @@
 //! The circularity maps of a robot (Klimchik 2017, Fig. 15 to 19).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
+use super::canvas::{Canvas, Drawn, Lettering, Place, exact, picture};
 use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder_mark};
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
 use super::lettering::{figures, lines};
 use super::plane_view::{ArmInPlane, PlaneView};
 use crate::assessment::map::{Elbow, Map};
-use crate::assessment::study::{Configuration, ElbowNames, Load, RobotResult, Study, obstacle_words};
+use crate::assessment::study::{Configuration, ElbowNames, Load, RobotResult, Study, Zones, obstacle_words};
 use crate::assessment::zone::Zone;
 use crate::report::output::ReportError;
 use plotters::style::{BLACK, RGBColor};
@@ -22,7 +22,7 @@ const TOP: i32 = 116;
 /// Least and largest height of a panel.
 const HEIGHTS: [i32; 2] = [260, 660];
 /// Letters of 11 pixels that fit under a panel.
-const LETTERS: usize = 66;
+const LETTERS: usize = 68;
 /// Most nodes shown along an axis: a finer map is thinned out to keep the file small.
 const MOST_NODES: usize = 160;
 /// Free space around the map, as a share of its larger side.
@@ -93,7 +93,7 @@ impl<'a> Picture<'a> {
     }
 
     fn height(&self) -> i32 {
-        self.text_bottom() + 76
+        self.text_bottom() + 102
     }
 
     fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
@@ -214,15 +214,17 @@ impl<'a> Picture<'a> {
             shoulder_mark(canvas, (f64::from(x + 112), f64::from(y)))?;
             canvas.text("shoulder (axis 2)", (x + 126, y), lettering)?;
         }
-        let labels = "labels of squares: side in mm; white: no circle fits";
-        canvas.text(labels, (left + 560, y), lettering.coloured(INK))
+        canvas.text("white: no circle fits", (left + 560, y), lettering.coloured(INK))?;
+        let labels = "A square is labelled with its side in mm where there is room. Under the maps: side in mm, then the largest \
+                      circularity in the zone in mm.";
+        canvas.text(labels, (left, y + 26), lettering.coloured(INK))
     }
 }
 
 /// The sign of a zone in the legend.
-fn square(left: i32, y: i32) -> [super::canvas::Place; 5] {
+fn square(left: i32, y: i32) -> [Place; 5] {
     let corners = [(left, y - 8), (left + 16, y - 8), (left + 16, y + 8), (left, y + 8), (left, y - 8)];
-    corners.map(super::canvas::exact)
+    corners.map(exact)
 }
 
 fn joined(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
@@ -269,7 +271,7 @@ fn colours(nodes: &[Nodes; 2], bottom: i32) -> Colours {
 
 /// The largest circularity in the zones of each side, in the colours of the zones.
 fn zone_lines(found: &Configuration) -> Vec<(String, RGBColor)> {
-    let table = |kind: &str, colour, zone: fn(&crate::assessment::study::Zones) -> Option<Zone>| {
+    let table = |kind: &str, colour, zone: fn(&Zones) -> Option<Zone>| {
         let each = found.zones.iter().map(|zones| {
             let largest = zone(zones).map_or_else(|| "–".to_owned(), |zone| figures(zone.largest * 1e3));
             format!("{}: {largest}", figures(zones.side * 1e3))
@@ -280,7 +282,7 @@ fn zone_lines(found: &Configuration) -> Vec<(String, RGBColor)> {
     if found.zones.is_empty() || found.circles == 0 {
         return Vec::new();
     }
-    let mut both = table("optimal zones (side: largest)", RED, |zones| zones.optimal);
-    both.extend(table("middle zones (side: largest)", GREEN, |zones| zones.middle));
+    let mut both = table("optimal zones", RED, |zones| zones.optimal);
+    both.extend(table("middle zones", GREEN, |zones| zones.middle));
     both
 }

@@ -1,10 +1,11 @@
 //! The circularity over a plane for one elbow: the map as colours and contour lines, zones, and the most accurate place.
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Place, nearest};
+use super::canvas::{Canvas, DrawError, Drawn, Pixel, Place, exact, nearest};
 use super::colour::{GREEN, INK, LEVELS, RED, contrast, viridis};
 use super::contour::contour;
-use super::lettering::{Area, Label, Labeller};
+use super::lettering::{Area, Label, Labeller, figures};
+use super::patches::patches;
 use super::plane_view::{ArmInPlane, PlaneView};
 use crate::assessment::map::Map;
 use crate::assessment::study::Configuration;
@@ -119,26 +120,20 @@ impl ElbowPanel<'_> {
         self.panel.place(x, y)
     }
 
-    /// One rectangle for all neighbours of a row with the same colour.
+    /// The nodes with a value, each in the middle of its cell.
     fn cells(&self, canvas: &Canvas<'_>) -> Drawn {
-        let look = |value: f64| value.is_finite().then(|| self.colours.level(value));
-        for (row, values) in self.nodes.values.chunks_exact(self.nodes.columns).enumerate() {
-            let mut column = 0;
-            for run in values.chunk_by(|a, b| look(*a) == look(*b)) {
-                let (first, last) = (column as f64 - 0.5, (column + run.len()) as f64 - 0.5);
-                column += run.len();
-                if let Some(level) = look(run[0]) {
-                    let upper_left = self.place(self.nodes.at([first, row as f64 + 0.5]));
-                    let lower_right = self.place(self.nodes.at([last, row as f64 - 0.5]));
-                    canvas.fill(nearest(upper_left), nearest(lower_right), viridis(level))?;
-                }
-            }
+        let level = |value: &f64| value.is_finite().then(|| self.colours.level(*value));
+        let levels: Vec<Option<usize>> = self.nodes.values.iter().map(level).collect();
+        for patch in patches(self.nodes.columns, &levels) {
+            let corner = |cells: [usize; 2]| nearest(self.place(self.nodes.at(cells.map(|count| count as f64 - 0.5))));
+            let corners: Vec<Pixel> = patch.outline().into_iter().map(corner).collect();
+            canvas.polygon(&corners, viridis(patch.level))?;
         }
         Ok(())
     }
 
     /// The contour lines, drawn and returned with their values.
-    fn contours(&self, canvas: &Canvas<'_>) -> Result<Vec<(f64, Vec<Place>)>, super::canvas::DrawError> {
+    fn contours(&self, canvas: &Canvas<'_>) -> Result<Vec<(f64, Vec<Place>)>, DrawError> {
         let mut drawn = Vec::new();
         for value in &self.colours.ticks.values {
             let colour = contrast(viridis(self.colours.level(*value)));
@@ -161,11 +156,32 @@ impl ElbowPanel<'_> {
         let ground = viridis(self.colours.level(value));
         let middle = line.len() / 2;
         let outwards = (0..=middle).flat_map(|off| [middle.checked_sub(off), middle.checked_add(off)]).flatten();
-        let centres = outwards.filter_map(|index| line.get(index)).map(|place| nearest(*place));
+        let half = Labeller::half(&text);
+        let on_map = |(x, y): &Pixel| {
+            let corners = [
+                (x - half.0, y - half.1),
+                (x + half.0, y - half.1),
+                (x - half.0, y + half.1),
+                (x + half.0, y + half.1),
+            ];
+            corners.into_iter().all(|corner| self.has_value(corner))
+        };
+        let centres = outwards.filter_map(|index| line.get(index)).map(|place| nearest(*place)).filter(on_map);
         labeller.put(canvas, &Label { text: &text, colour: contrast(ground), ground }, centres)
     }
 
-    /// The most accurate place and the zones of each size, labelled with their sides in mm.
+    /// Whether a pixel is in the cell of a node with a value.
+    fn has_value(&self, (x, y): Pixel) -> bool {
+        let shown = [self.panel.x.number(f64::from(x)), self.panel.y.number(f64::from(y))];
+        let [column, row] = [0, 1].map(|k| ((shown[k] - self.nodes.origin[k]) / self.nodes.step).round());
+        if column < 0.0 || row < 0.0 || column >= self.nodes.columns as f64 {
+            return false;
+        }
+        let node = row as usize * self.nodes.columns + column as usize;
+        self.nodes.values.get(node).is_some_and(|value| value.is_finite())
+    }
+
+    /// The most accurate place and the zones of each size, labelled with their sides in mm where there is room.
     fn zones(&self, canvas: &Canvas<'_>, labeller: &mut Labeller) -> Drawn {
         let zones = || {
             let each = self.found.zones.iter();
@@ -175,7 +191,7 @@ impl ElbowPanel<'_> {
         for (zone, colour) in zones() {
             let ((left, top), (right, bottom)) = self.square(&zone);
             let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-            let corners = corners.map(super::canvas::exact);
+            let corners = corners.map(exact);
             canvas.curve(&corners, WHITE, 4)?;
             canvas.curve(&corners, colour, 2)?;
             labeller.take_outline(((left, top), (right, bottom)));
@@ -187,7 +203,7 @@ impl ElbowPanel<'_> {
             labeller.take(((x - 6, y - 6), (x + 6, y + 6)));
         }
         for (zone, colour) in zones() {
-            let text = super::lettering::figures(zone.side * 1e3);
+            let text = figures(zone.side * 1e3);
             let ((left, top), (right, bottom)) = self.square(&zone);
             let (half_width, half_height) = Labeller::half(&text);
             let (beside, above) = (half_width + 4, half_height + 4);

@@ -1,8 +1,8 @@
 //! Robots side by side by four indicators (Klimchik 2017, Fig. 20).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, picture};
-use super::colour::{GREY, INDICATORS, INK};
+use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
+use super::colour::{INDICATORS, INK};
 use super::lettering::figures;
 use crate::assessment::study::{Assessment, Load, RobotResult};
 use crate::report::number::fixed;
@@ -48,7 +48,7 @@ const ALL: [Indicator; 4] = [
         unit: "m",
         of: |robot| Some(robot.working_radius),
         least_is_best: false,
-        text: figures,
+        text: |radius| fixed(radius, 3),
     },
     Indicator {
         name: "payload",
@@ -80,8 +80,9 @@ pub fn indicators(assessment: &Assessment) -> Result<String, ReportError> {
     picture("the picture of the indicators", (WIDTH, height), |canvas| {
         let known: Vec<Known> =
             ALL.iter().zip(INDICATORS).filter_map(|(i, colour)| Known::new(i, colour, assessment)).collect();
+        let room = (RIGHT - LEFT) / assessment.robots.len().clamp(1, MOST) as i32;
         head(canvas, assessment, &known)?;
-        rows.zip(0..).try_for_each(|(robots, row)| draw_row(canvas, robots, ROWS[0] + ROWS[2] * row, &known))
+        rows.zip(0..).try_for_each(|(robots, row)| draw_row(canvas, robots, (ROWS[0] + ROWS[2] * row, room), &known))
     })
 }
 
@@ -128,14 +129,14 @@ fn head(canvas: &Canvas<'_>, assessment: &Assessment, known: &[Known<'_>]) -> Dr
         let lettering = Lettering::new(12.0);
         canvas.text(name, (LEFT + 34, y), lettering.bold())?;
         let text = format!("{relative_to}{load}; the number is the {value} in {unit}");
-        canvas.text(&text, (LEFT + 140, y), lettering.coloured(INK))?;
+        canvas.text(&text, (LEFT + 152, y), lettering.coloured(INK))?;
     }
     Ok(())
 }
 
-/// A row of robots.
-fn draw_row(canvas: &Canvas<'_>, robots: &[RobotResult], top: i32, known: &[Known<'_>]) -> Drawn {
-    let x = Scale::new(0.0, robots.len() as f64, LEFT, LEFT + (RIGHT - LEFT) * robots.len() as i32 / MOST as i32);
+/// A row of robots: its upper edge, and the width for each.
+fn draw_row(canvas: &Canvas<'_>, robots: &[RobotResult], (top, room): Pixel, known: &[Known<'_>]) -> Drawn {
+    let x = Scale::new(0.0, robots.len() as f64, LEFT, LEFT + room * robots.len() as i32);
     let y = Scale::new(0.0, FULL, top + ROWS[1], top);
     let (x_ticks, y_ticks) = (Ticks { values: Vec::new(), decimals: 0 }, Ticks::every(&y, 0.2, 1));
     let y_label = "relative to the best robot, which has 1";
@@ -156,19 +157,19 @@ fn bars(canvas: &Canvas<'_>, panel: &Panel, robot: &RobotResult, left: i32, know
     let room = panel.x.pixel(1.0) - panel.x.pixel(0.0);
     let width = room * 8 / 10 / known.len().max(1) as i32;
     let first = left + (room - width * known.len() as i32) / 2;
-    let lettering = Lettering::new(11.0).centred();
     for (bar, known) in (0..).zip(known) {
         let from = first + bar * width;
         let middle = from + width / 2;
         let Some(value) = (known.indicator.of)(robot) else {
-            canvas.text("–", (middle, panel.y.start - 9), lettering.coloured(GREY))?;
+            canvas.text("–", (middle, panel.y.start - 10), Lettering::new(14.0).centred())?;
             continue;
         };
         let upper = panel.y.pixel(known.relative(value));
         canvas.fill((from + 1, upper), (from + width - 1, panel.y.start), known.colour)?;
         let (text, unit) = ((known.indicator.text)(value), known.indicator.unit);
-        canvas.text(&text, (middle, upper - 22), lettering)?;
-        canvas.text(unit, (middle, upper - 9), lettering.coloured(INK))?;
+        let size = (f64::from(width) / (text.chars().count() as f64 * 0.6)).min(11.0);
+        canvas.text(&text, (middle, upper - 22), Lettering::new(size).centred())?;
+        canvas.text(unit, (middle, upper - 9), Lettering::new(11.0).centred().coloured(INK))?;
     }
     Ok(())
 }

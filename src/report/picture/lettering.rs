@@ -18,13 +18,16 @@ pub(super) fn figures(value: f64) -> String {
     }
 }
 
-/// Phrases in lines of at most so many letters, two spaces apart; a longer phrase has a line of its own.
+/// What stands between two phrases.
+const BETWEEN: &str = " · ";
+
+/// Phrases in lines of at most so many letters, with a dot between them; a longer phrase has a line of its own.
 pub(super) fn lines(phrases: &[String], most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for phrase in phrases {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 2 + phrase.chars().count() <= most => {
-                line.push_str("  ");
+            Some(line) if line.chars().count() + BETWEEN.chars().count() + phrase.chars().count() <= most => {
+                line.push_str(BETWEEN);
                 line.push_str(phrase);
             }
             _ => lines.push(phrase.clone()),
@@ -120,8 +123,8 @@ mod tests {
     #[test]
     fn phrases_are_broken_into_lines() {
         let phrases = ["one", "two", "threefold", "a"].map(str::to_owned);
-        assert_eq!(lines(&phrases, 8), ["one  two", "threefold", "a"]);
-        assert_eq!(lines(&phrases, 100), ["one  two  threefold  a"]);
+        assert_eq!(lines(&phrases, 9), ["one · two", "threefold", "a"]);
+        assert_eq!(lines(&phrases, 100), ["one · two · threefold · a"]);
         assert!(lines(&[], 8).is_empty());
     }
 

@@ -13,6 +13,7 @@ mod deflection_map;
 mod hatch;
 mod indicators;
 mod lettering;
+mod patches;
 mod plane_view;
 mod scene;
 
