@@ -34,6 +34,12 @@ impl Scale {
         f64::from(self.start) + part * f64::from(self.end - self.start)
     }
 
+    /// The number at a place.
+    pub fn number(&self, place: f64) -> f64 {
+        let part = (place - f64::from(self.start)) / f64::from(self.end - self.start);
+        self.from + part * (self.to - self.from)
+    }
+
     /// The pixel of a number, the nearest end for a number beyond the scale.
     pub fn clamped(&self, value: f64) -> i32 {
         self.pixel(value.max(self.from).min(self.to))

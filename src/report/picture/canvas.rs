@@ -85,6 +85,12 @@ impl Canvas<'_> {
         self.area.draw(&Rectangle::new([raster(from), raster(to)], colour.filled()))
     }
 
+    /// A filled polygon.
+    pub fn polygon(&self, corners: &[Pixel], colour: RGBColor) -> Drawn {
+        let corners: Vec<Pixel> = corners.iter().map(|corner| raster(*corner)).collect();
+        self.area.draw(&Polygon::new(corners, colour.filled()))
+    }
+
     /// The outline of a rectangle.
     pub fn outline(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
         self.line(vec![from, (to.0, from.1), to, (from.0, to.1), from], colour, 1)

@@ -20,6 +20,9 @@ pub(super) const BLUE: RGBColor = RGBColor(110, 140, 190);
 
 /// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
 pub(super) const COMPONENTS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
+/// Indicators of a robot: accuracy, working radius, payload, price (Okabe and Ito 2008).
+pub(super) const INDICATORS: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(230, 159, 0), RGBColor(204, 121, 167)];
 /// The ground of a part of an axis that is meant.
 pub(super) const SHADE: RGBColor = RGBColor(248, 244, 230);
 
@@ -49,6 +52,12 @@ pub(super) fn viridis(level: usize) -> RGBColor {
         (low + (high - low) * part).round() as u8
     };
     RGBColor(mix(0), mix(1), mix(2))
+}
+
+/// Black or white, whichever stands out more from a ground.
+pub(super) fn contrast(RGBColor(red, green, blue): RGBColor) -> RGBColor {
+    let brightness = 0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue);
+    if brightness > 130.0 { RGBColor(0, 0, 0) } else { RGBColor(255, 255, 255) }
 }
 
 /// The pale ground of states that are not allowed.

@@ -3,16 +3,28 @@
 mod axes;
 mod canvas;
 mod cell;
+mod circularity_map;
+mod circularity_panel;
 mod colour;
+mod contour;
 mod convergence;
 mod cutting;
 mod deflection_map;
 mod hatch;
+mod indicators;
+mod lettering;
+mod patches;
+mod plane_view;
 mod polar;
 mod scene;
 
 pub use cell::cell;
+pub use circularity_map::circularity_map;
 pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
+pub use indicators::indicators;
 pub use polar::polar;
+
+#[cfg(test)]
+mod assessment_tests;
