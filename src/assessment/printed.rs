@@ -67,10 +67,16 @@ pub struct Agreement {
     pub same_order: bool,
     /// Cells of the printed table of accuracies, and how many of ours round to the same.
     pub accuracies: (usize, usize),
+    /// Cells of the printed table of capable robots, and how many of ours name the same robots.
+    pub capable: (usize, usize),
 }
 
 /// Sides closer than this are the same zone. m
 const SAME_SIDE: f64 = 1e-6;
+/// Accuracies closer than this are the same. m
+const SAME_ACCURACY: f64 = 1e-9;
+/// Forces closer than this are the same. N
+const SAME_FORCE: f64 = 1e-6;
 
 impl Quantity {
     /// The same quantity of a configuration of ours. m
@@ -113,13 +119,14 @@ impl Printed {
 
     /// The printed circularity of a robot at a force, as [`Self::value`].
     pub fn accuracy(&self, robot: &str, force: f64) -> Option<Option<f64>> {
-        let found = self.accuracies.iter().find(|(name, at, _)| name == robot && (at - force).abs() < 1e-6);
+        let found = self.accuracies.iter().find(|(name, at, _)| name == robot && (at - force).abs() < SAME_FORCE);
         found.map(|(_, _, value)| *value)
     }
 
     /// The printed robots that reach an accuracy under a force.
     pub fn robots(&self, accuracy: f64, force: f64) -> Vec<&str> {
-        let is_it = |(a, f, _): &&(f64, f64, String)| (a - accuracy).abs() < 1e-9 && (f - force).abs() < 1e-6;
+        let is_it =
+            |(a, f, _): &&(f64, f64, String)| (a - accuracy).abs() < SAME_ACCURACY && (f - force).abs() < SAME_FORCE;
         self.capable.iter().filter(is_it).map(|(_, _, robot)| robot.as_str()).collect()
     }
 
@@ -144,6 +151,12 @@ impl Printed {
             self.accuracy(&cell.robot, cell.force).map(|printed| rounded(printed) == rounded(cell.circularity))
         });
         let cells: Vec<bool> = cells.collect();
+        let heads = |accuracy: f64, force: f64| {
+            self.capable.iter().any(|(a, _, _)| (a - accuracy).abs() < SAME_ACCURACY)
+                && self.accuracies.iter().any(|(_, f, _)| (f - force).abs() < SAME_FORCE)
+        };
+        let named = ours.capable.iter().filter(|cell| heads(cell.accuracy, cell.force));
+        let named: Vec<bool> = named.map(|cell| self.robots(cell.accuracy, cell.force) == cell.robots).collect();
         Agreement {
             rms: if readings > 0 { libm::sqrt(squares / f64::from(readings)) } else { 0.0 },
             readings: readings as usize,
@@ -153,6 +166,7 @@ impl Printed {
             same_order: ours.order == printed_order,
             order: printed_order,
             accuracies: (cells.len(), cells.iter().filter(|same| **same).count()),
+            capable: (named.len(), named.iter().filter(|same| **same).count()),
         }
     }
 

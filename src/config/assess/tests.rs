@@ -125,8 +125,11 @@ fn the_shipped_files_are_the_published_case_and_its_tables() {
         assert_eq!(printed.readings.len(), 140);
         let dashes = printed.readings.iter().filter(|reading| reading.value.is_none()).count();
         assert_eq!(dashes, 5 + 5 + 1);
-        assert_eq!(printed.value("KUKA KR 500", Elbow::Down, Load::Test, Quantity::Minimum), Some(Some(0.41e-3)));
-        assert_eq!(printed.value("KUKA KR 360 L240", Elbow::Up, Load::Rated, Quantity::Minimum), Some(Some(3.34e-3)));
+        assert_eq!(printed.value("KUKA KR 500", Elbow::Down, Load::Test, Quantity::Minimum), Some(Some(0.41 / 1e3)));
+        assert_eq!(
+            printed.value("KUKA KR 360 L240", Elbow::Up, Load::Rated, Quantity::Minimum),
+            Some(Some(3.34 / 1e3))
+        );
         assert_eq!(printed.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.5)), Some(None));
         assert_eq!(printed.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.3)), None);
         assert_eq!(printed.accuracies.iter().filter(|(_, _, value)| value.is_some()).count(), 25);

@@ -100,6 +100,7 @@ fn centre([x, y]: [f64; 2]) -> Value {
 
 fn reference(source: &str, agreement: &Agreement) -> Value {
     let (cells, same) = agreement.accuracies;
+    let (capable, same_capable) = agreement.capable;
     json!({
         "source": source,
         "rms_percent": Unit::PLAIN.number(agreement.rms * 100.0),
@@ -111,6 +112,8 @@ fn reference(source: &str, agreement: &Agreement) -> Value {
         "same_order": agreement.same_order,
         "accuracy_cells": cells,
         "accuracy_cells_that_round_alike": same,
+        "selection_cells": capable,
+        "selection_cells_with_the_same_robots": same_capable,
     })
 }
 

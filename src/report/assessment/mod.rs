@@ -91,3 +91,6 @@ fn load(load: Load) -> &'static str {
         Load::Rated => "rated",
     }
 }
+
+#[cfg(test)]
+mod tests;

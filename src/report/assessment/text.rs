@@ -19,14 +19,19 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
         }
     }
     if !assessment.capable.is_empty() {
-        text += "\nRobots that reach an accuracy, with errors compensated as the config says:\n";
-        text += &aligned(&selection_rows(assessment), &[2]);
+        let mut forces: Vec<f64> = assessment.capable.iter().map(|cell| cell.force).collect();
+        forces.sort_by(f64::total_cmp);
+        forces.dedup();
+        let forces: Vec<String> = forces.into_iter().map(|force| fixed(force, 0)).collect();
+        text += &format!("\naccuracy reached at the best place up to which of {} N:\n", forces.join(", "));
+        text += &aligned(&selection_rows(assessment), &[0]);
     }
     text += &format!("\nmost accurate first: {}\n", assessment.order.join(", "));
     if let Some((printed, agreement)) = &context.printed {
         let same = |same: bool| if same { "the same" } else { "another" };
         text += &format!(
-            "({}): rms difference {} % over {} values, {} on one side only; best robot {}, worst {}, order {}\n",
+            "in parentheses: {}\nrms difference {} % over {} values, {} more on one side only\n\
+             best robot {}, worst {}, order {}; robots for accuracy and force the same in {} of {} cells\n",
             printed.source,
             fixed(agreement.rms * 100.0, 1),
             agreement.readings,
@@ -34,6 +39,8 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
             same(agreement.same_best),
             same(agreement.same_worst),
             same(agreement.same_order),
+            agreement.capable.1,
+            agreement.capable.0,
         );
     }
     text
@@ -68,11 +75,24 @@ fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, printed: Op
     }
 }
 
+/// Robots by accuracies: the largest of the forces at which a robot reaches the accuracy. A robot that does at one force does
+/// at any smaller one.
 fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
-    let mut rows = vec![["accuracy mm", "force N", "robots"].map(str::to_owned).to_vec()];
-    rows.extend(assessment.capable.iter().map(|cell| {
-        let robots = if cell.robots.is_empty() { "-".to_owned() } else { cell.robots.join(", ") };
-        vec![format!("{}", (cell.accuracy * 1e9).round() / 1e6), fixed(cell.force, 0), robots]
-    }));
+    let mut accuracies: Vec<f64> = Vec::new();
+    for cell in &assessment.capable {
+        if accuracies.last() != Some(&cell.accuracy) {
+            accuracies.push(cell.accuracy);
+        }
+    }
+    let millimetres = |accuracy: &f64| format!("{} mm", (accuracy * 1e9).round() / 1e6);
+    let mut rows = vec![std::iter::once("robot".to_owned()).chain(accuracies.iter().map(millimetres)).collect()];
+    for robot in &assessment.robots {
+        let largest = |accuracy: &f64| {
+            let cells = assessment.capable.iter().filter(|cell| cell.accuracy == *accuracy);
+            let able = cells.filter(|cell| cell.robots.contains(&robot.name)).map(|cell| cell.force);
+            able.reduce(f64::max).map_or_else(|| "-".to_owned(), |force| format!("{} N", fixed(force, 0)))
+        };
+        rows.push(std::iter::once(robot.name.clone()).chain(accuracies.iter().map(largest)).collect());
+    }
     rows
 }
