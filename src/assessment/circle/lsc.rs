@@ -162,8 +162,8 @@ impl State {
         self.hessian[0].abs() + self.hessian[2].abs() + 2.0 * self.hessian[1].abs() + f64::MIN_POSITIVE
     }
 
-    /// The damped Newton step, at most one unit long, and whether it is an undamped one. Where the curvature is negative it is damped
-    /// enough to go downhill.
+    /// The damped Newton step, at most one unit long, and whether it is an undamped one. Where the curvature is negative
+    /// it is damped enough to go downhill.
     fn step(&self, damping: f64) -> (Point, bool) {
         let [xx, xy, yy] = self.hessian;
         let least = 0.5 * (xx + yy) - libm::hypot(0.5 * (xx - yy), xy);

@@ -22,7 +22,7 @@
 //! let (inscribed, circumscribed) = (maximum_inscribed(&points)?, minimum_circumscribed(&points)?);
 //! assert!((circumscribed.circle.radius - 3.0).abs() < 1e-12);
 //! assert!((circumscribed.circularity - 1.0).abs() < 1e-12);
-//! assert!((inscribed.circularity - 0.0).abs() < 1e-12, "the centre may lie on the hull, where all four are equally far");
+//! assert!((inscribed.circle.radius - 13.0 / 6.0).abs() < 1e-12, "as far from (3, 0) as from (0, 2) and (0, -2)");
 //! # Ok(())
 //! # }
 //! ```
@@ -118,7 +118,7 @@ pub enum CircleError {
 pub fn minimum_zone(points: &[[f64; 2]]) -> Result<Fit, CircleError> {
     let frame = Frame::new(points)?;
     let local = frame.localise(points);
-    Ok(frame.fit(mzc::minimum_zone(&local, &Hull::new(&local))?, points, Radius::Middle))
+    Ok(frame.fit(mzc::minimum_zone(&local, &Hull::new(&local), &[])?, points, Radius::Middle))
 }
 
 /// The maximum inscribed circle: of all circles that hold no point inside and have their centre in the convex hull of the
@@ -157,7 +157,7 @@ impl Circles {
         let mcc = mcc::minimum_circumscribed(&hull.vertices);
         let starts = [frame.localised(lsc.circle.center), mcc];
         let (zone, inscribed) = rayon::join(
-            || mzc::minimum_zone_from(&local, &hull, &starts),
+            || mzc::minimum_zone(&local, &hull, &starts),
             || mic::maximum_inscribed(&local, &hull, &starts),
         );
         Ok(Self {

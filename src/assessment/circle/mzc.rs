@@ -12,13 +12,8 @@ const NEAR: f64 = 1.0 / Far::MOST;
 /// unit.
 const ROUNDING: [f64; 2] = [1e-12, 8.0 * f64::EPSILON];
 
-/// As [`minimum_zone_from`], from the middle of the points.
-pub(super) fn minimum_zone(points: &[Point], hull: &Hull) -> Result<Middle, CircleError> {
-    minimum_zone_from(points, hull, &[[0.0, 0.0]])
-}
-
-/// The centre of the minimum zone circles of points in their local frame; starts are guesses at it.
-pub(super) fn minimum_zone_from(points: &[Point], hull: &Hull, starts: &[Point]) -> Result<Middle, CircleError> {
+/// The centre of the minimum zone circles of points in their local frame; starts are guesses at it, besides their middle.
+pub(super) fn minimum_zone(points: &[Point], hull: &Hull, starts: &[Point]) -> Result<Middle, CircleError> {
     let width = |start: &Point| {
         let at = Centre::at(*start);
         farthest::<Centre>(&at, &hull.vertices).1 - nearest::<Centre>(&at, points).1

@@ -21,22 +21,24 @@ impl Polygon {
 
     /// Keeps the part where `normal . (x - from) <= offset`.
     pub fn cut(&mut self, from: Point, normal: Point, offset: f64) {
-        let excess: Vec<f64> =
-            self.corners.iter().map(|c| normal[0] * (c[0] - from[0]) + normal[1] * (c[1] - from[1]) - offset).collect();
-        if excess.iter().all(|e| *e <= 0.0) {
+        let excess = |c: &Point| normal[0] * (c[0] - from[0]) + normal[1] * (c[1] - from[1]) - offset;
+        if self.corners.iter().all(|c| excess(c) <= 0.0) {
             return;
         }
         let mut kept = Vec::with_capacity(self.corners.len() + 1);
-        for (k, (a, ea)) in self.corners.iter().zip(&excess).enumerate() {
-            let next = (k + 1) % self.corners.len();
-            let (b, eb) = (self.corners[next], excess[next]);
-            if *ea <= 0.0 {
-                kept.push(*a);
-            }
-            if (*ea < 0.0 && eb > 0.0) || (*ea > 0.0 && eb < 0.0) {
+        let mut last = self.corners.last().map(|corner| (*corner, excess(corner)));
+        for b in &self.corners {
+            let eb = excess(b);
+            if let Some((a, ea)) = last
+                && ((ea < 0.0 && eb > 0.0) || (ea > 0.0 && eb < 0.0))
+            {
                 let part = ea / (ea - eb);
                 kept.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
             }
+            if eb <= 0.0 {
+                kept.push(*b);
+            }
+            last = Some((*b, eb));
         }
         self.corners = kept;
     }
@@ -45,18 +47,18 @@ impl Polygon {
     pub fn area_and_centroid(&self) -> (f64, Point) {
         let root = self.corners[0];
         let (mut area, mut moment, mut sum) = (0.0, [0.0; 2], [0.0; 2]);
-        let seen: Vec<Point> = self.corners.iter().map(|c| [c[0] - root[0], c[1] - root[1]]).collect();
-        for (k, a) in seen.iter().enumerate() {
-            let b = seen[(k + 1) % seen.len()];
+        let seen = |c: &Point| [c[0] - root[0], c[1] - root[1]];
+        for (c, d) in self.corners.iter().zip(self.corners.iter().cycle().skip(1)) {
+            let (a, b) = (seen(c), seen(d));
             let double = a[0] * b[1] - a[1] * b[0];
             area += double;
             moment = [moment[0] + double * (a[0] + b[0]), moment[1] + double * (a[1] + b[1])];
             sum = [sum[0] + a[0], sum[1] + a[1]];
         }
-        let count = seen.len() as f64;
+        let count = self.corners.len() as f64;
         let mut centroid = [sum[0] / count, sum[1] / count];
         // Rounding may put the centroid of a sliver outside; its mean is inside.
-        let spread = seen.iter().fold(0.0_f64, |most, a| most.max(a[0] * a[0] + a[1] * a[1]));
+        let spread = self.corners.iter().map(seen).fold(0.0_f64, |most, a| most.max(a[0] * a[0] + a[1] * a[1]));
         if area > 1e-6 * spread {
             centroid = [moment[0] / (3.0 * area), moment[1] / (3.0 * area)];
         }

@@ -1,11 +1,11 @@
 //! The global search for a centre: branch and bound with cutting planes.
 //!
 //! Sought is the centre with the smallest *objective*: the reach of the farthest point less that of the nearest for the
-//! minimum zone, and less the distance of the nearest alone for the maximum inscribed circle. A cell is a convex polygon of centres and the points
-//! that may be farthest or nearest somewhere in it. Seen from its centroid, farthest and nearest point give a plane that
-//! the objective exceeds everywhere in the cell, but for a bound on the bending that shrinks with the square of the size.
-//! Where the plane is above the best objective known, the cell is cut off; where that takes away too little it is split.
-//! What is left in the end is nothing, which proves the best one best.
+//! minimum zone, and less the distance of the nearest alone for the maximum inscribed circle. A cell is a convex polygon of
+//! centres and the points that may be farthest or nearest somewhere in it. Seen from its centroid, farthest and nearest
+//! point give a plane that the objective exceeds everywhere in the cell, but for a bound on the bending that shrinks with
+//! the square of the size. Where the plane is above the best objective known, the cell is cut off; where that takes away too
+//! little it is split. What is left in the end is nothing, which proves the best one best.
 
 use super::chart::{Chart, Point, farthest, nearest};
 use super::hull::Hull;
