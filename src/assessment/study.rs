@@ -124,13 +124,23 @@ pub struct Assessment {
 pub struct FitsNowhere {
     /// Radius of the circle. m
     pub radius: f64,
-    /// For each robot its name, how often each obstacle stands in the way (most frequent first), and the number of circles
-    /// tried.
-    pub limits: Vec<(String, Vec<(Obstacle, usize)>, usize)>,
+    /// What limits each robot.
+    pub limits: Vec<Limits>,
 }
 
-fn words(limits: &[(String, Vec<(Obstacle, usize)>, usize)]) -> String {
-    let each = limits.iter().map(|(name, obstacles, tried)| format!("{name}: {}", obstacle_words(obstacles, *tried)));
+/// What keeps a robot from milling circles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Name of the robot.
+    pub robot: String,
+    /// How often each obstacle stands in the way, the most frequent first.
+    pub obstacles: Vec<(Obstacle, usize)>,
+    /// Number of circles tried.
+    pub tried: usize,
+}
+
+fn words(limits: &[Limits]) -> String {
+    let each = limits.iter().map(|of| format!("{}: {}", of.robot, obstacle_words(&of.obstacles, of.tried)));
     each.collect::<Vec<_>>().join("; ")
 }
 
@@ -159,7 +169,7 @@ pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) + Sync)) -> Result
     let row_done = || progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, rows);
     let robots: Vec<RobotResult> = study.robots.iter().map(|robot| study.robot(robot, &row_done)).collect();
     if robots.iter().all(|robot| robot.maps.iter().all(|(_, map)| map.count() == 0)) {
-        let limits = robots.iter().map(|robot| robot.obstacles()).collect();
+        let limits = robots.iter().map(RobotResult::limits).collect();
         return Err(FitsNowhere { radius: study.benchmark.radius, limits });
     }
     let competitors: Vec<Competitor> = robots.iter().map(RobotResult::competitor).collect();
@@ -173,8 +183,8 @@ pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) + Sync)) -> Result
 }
 
 impl RobotResult {
-    /// Name, obstacles of both elbows together, and the number of circles tried.
-    pub fn obstacles(&self) -> (String, Vec<(Obstacle, usize)>, usize) {
+    /// What limits the robot, both elbows together.
+    pub fn limits(&self) -> Limits {
         let mut counted: Vec<(Obstacle, usize)> = Vec::new();
         for (obstacle, count) in self.maps.iter().flat_map(|(_, map)| map.obstacles()) {
             match counted.iter_mut().find(|(known, _)| *known == obstacle) {
@@ -183,7 +193,8 @@ impl RobotResult {
             }
         }
         counted.sort_by_key(|(obstacle, count)| (std::cmp::Reverse(*count), *obstacle));
-        (self.name.clone(), counted, self.maps.iter().map(|(_, map)| map.nodes.len()).sum())
+        let tried = self.maps.iter().map(|(_, map)| map.nodes.len()).sum();
+        Limits { robot: self.name.clone(), obstacles: counted, tried }
     }
 
     /// The robot as the selection sees it.

@@ -35,7 +35,9 @@ fn robot(row: &Table<'_>, heads: &Heads, printed: &mut Printed) -> Result<(), In
     let [name, accuracy, largest, up, down] = row.fields(["name", "accuracy_mm", "largest_force_n", "up", "down"])?;
     let name = name.string()?;
     let values = under(&heads.forces, &accuracy)?;
-    printed.accuracies.extend(values.map(|(force, value)| (name.to_owned(), force, value.map(|mm| mm / 1e3))));
+    printed
+        .accuracies
+        .extend(values.into_iter().map(|(force, value)| (name.to_owned(), force, value.map(|mm| mm / 1e3))));
     for (accuracy, most) in under(&heads.accuracies, &largest)? {
         let reached = heads.forces.iter().filter(|force| most.is_some_and(|most| **force <= most));
         printed.capable.extend(reached.map(|force| (accuracy / 1e3, *force, name.to_owned())));
@@ -65,12 +67,12 @@ fn robot(row: &Table<'_>, heads: &Heads, printed: &mut Printed) -> Result<(), In
 }
 
 /// The numbers of a row, each with its head; `None` where the row has ended.
-fn under(heads: &[f64], row: &Field<'_>) -> Result<impl Iterator<Item = (f64, Option<f64>)>, InputError> {
+fn under(heads: &[f64], row: &Field<'_>) -> Result<Vec<(f64, Option<f64>)>, InputError> {
     let rule = format!("at most {} numbers above 0, as many as there are heads", heads.len());
     let numbers = row.numbers(&rule, |value| value > 0.0)?;
     if numbers.len() > heads.len() {
         return Err(row.error(format!("has {} numbers under {} heads", numbers.len(), heads.len()), rule));
     }
     let padded = numbers.into_iter().map(Some).chain(std::iter::repeat(None));
-    Ok(heads.to_vec().into_iter().zip(padded))
+    Ok(heads.iter().copied().zip(padded).collect())
 }

@@ -1,0 +1,42 @@
+//! Speed of circularity maps: `cargo bench --bench assessment`. Items are circles of 72 points that can be milled.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use std::path::Path;
+use stead::assessment::map::{Elbow, Map};
+use stead::assessment::study::{Study, assess};
+use stead::config::read_assessment;
+
+fn main() {
+    divan::main();
+}
+
+fn published() -> Study {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/klimchik-2017.toml");
+    read_assessment(&file).map(|run| run.study).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// All maps of the paper with everything that is read off them: five robots, both elbows, both loads, 25 mm grid, on all
+/// processors.
+#[divan::bench(sample_count = 5, sample_size = 1)]
+fn all_maps(bencher: Bencher) {
+    let study = published();
+    let maps = assess(&study, &|_, _| ()).unwrap_or_else(|e| panic!("{e}"));
+    let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
+    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| ()));
+}
+
+/// One map of the KR 500 on one processor, with so many times finer a grid.
+#[divan::bench(args = [1, 2, 4], sample_count = 5, sample_size = 1)]
+fn one_map_finer_by(bencher: Bencher, fineness: usize) {
+    let study = published();
+    let robot = &study.robots[4];
+    let mut grid = study.grid;
+    grid.step /= fineness as f64;
+    grid.counts = grid.counts.map(|count| (count - 1) * fineness + 1);
+    let class = Elbow::Up.forward_class(robot);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap_or_else(|e| panic!("{e}"));
+    let map = || pool.install(|| Map::new(black_box(&study.benchmark), robot, class, grid, [1.0, 2.0], &|| ()));
+    let circles = map().count();
+    bencher.counter(ItemsCount::new(circles)).bench_local(map);
+}
