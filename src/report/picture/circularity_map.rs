@@ -4,8 +4,8 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, exact, picture};
 use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder_mark};
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
-use super::lettering::{figures, lines};
-use super::plane_view::{ArmInPlane, PlaneView};
+use super::lettering::{figures, lines, whole_or_figures};
+use super::plane_view::{ArmInPlane, PlaneView, Window};
 use crate::assessment::map::{Elbow, Map};
 use crate::assessment::study::{Configuration, ElbowNames, Load, RobotResult, Study, Zones, obstacle_words};
 use crate::assessment::zone::Zone;
@@ -24,7 +24,7 @@ const HEIGHTS: [i32; 2] = [260, 660];
 /// Letters of 11 pixels that fit under a panel.
 const LETTERS: usize = 68;
 /// Most nodes shown along an axis: a finer map is thinned out to keep the file small.
-const MOST_NODES: usize = 160;
+const MOST_NODES: usize = 240;
 /// Free space around the map, as a share of its larger side.
 const MARGIN: f64 = 0.04;
 /// The arm is shown where that widens the view by no more than this share.
@@ -33,7 +33,7 @@ const WIDENED: f64 = 0.5;
 /// The circularity of a robot under the test load over the plane of the study, for both elbows to the same scales: colours
 /// and contour lines in mm, optimal zones and zones about the middle of each size, the most accurate place, and the robot's
 /// axis 1 and shoulder where they lie in the plane and near the map. The axes show the part of the grid that has values. A
-/// map of more than 160 nodes along an axis is thinned out evenly.
+/// map of more than 240 nodes along an axis is thinned out evenly.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
@@ -48,7 +48,7 @@ struct Picture<'a> {
     view: PlaneView,
     nodes: [Nodes; 2],
     /// Edges of the view. mm
-    window: [[f64; 2]; 2],
+    window: Window,
     /// Lower edge of the panels. Pixels
     bottom: i32,
     colours: Colours,
@@ -63,8 +63,7 @@ impl<'a> Picture<'a> {
         let [up, down] = &result.maps;
         let extents = [&up.1, &down.1].map(|map| Nodes::new(map, &view, 1).extent());
         let grid = &up.1.grid;
-        let whole = [[0, 0], [grid.counts[0].saturating_sub(1), grid.counts[1].saturating_sub(1)]];
-        let whole = whole.map(|node| view.shown(grid.at(node.map(|count| count as f64))));
+        let whole = [[-0.5, -0.5], grid.counts.map(|count| count as f64 - 0.5)].map(|steps| view.shown(grid.at(steps)));
         let extent = extents.into_iter().flatten().reduce(joined).unwrap_or(whole);
         let longest = (0..2).map(|k| extent[1][k] - extent[0][k]).fold(0.0, f64::max);
         let stride = ((longest / (grid.step * 1e3)).ceil() as usize).div_ceil(MOST_NODES).max(1);
@@ -110,7 +109,7 @@ impl<'a> Picture<'a> {
     fn title(&self, canvas: &Canvas<'_>) -> Drawn {
         let benchmark = &self.study.benchmark;
         let force = figures(benchmark.in_plane_force());
-        let radius = figures(benchmark.radius * 1e3);
+        let radius = whole_or_figures(benchmark.radius * 1e3);
         let title = format!("{}: circularity of a circle of radius {radius} mm under {force} N, mm", self.result.name);
         let size = (f64::from(WIDTH - 2 * 40) / (title.chars().count() as f64 * 0.6)).min(17.0);
         canvas.text(&title, (COLUMNS[0], 24), Lettering::new(size).bold())?;
@@ -129,7 +128,11 @@ impl<'a> Picture<'a> {
         let [low, high] = self.window;
         let x = Scale::new(low[0], high[0], left, left + PANEL);
         let y = Scale::new(low[1], high[1], self.bottom, TOP);
-        let (x_ticks, y_ticks) = (Ticks::round(&x, 7), Ticks::round(&y, ((self.bottom - TOP) / 55) as usize));
+        let x_ticks = Ticks::round(&x, 7);
+        let y_ticks = match x_ticks.values[..] {
+            [first, second, ..] => Ticks::every(&y, second - first, x_ticks.decimals),
+            _ => Ticks::round(&y, 7),
+        };
         let [x_label, y_label] = self.view.labels;
         let panel = Panel { x, y, x_ticks, y_ticks, x_label, y_label };
         let Some(found) = self.found(elbow) else { return panel.draw_frame(canvas) };
@@ -143,6 +146,7 @@ impl<'a> Picture<'a> {
             [found.least, found.middle, found.most].map(|spot| millimetres(spot.map(|spot| spot.circularity)));
         let figures = match found.circles {
             0 => "no circle fits".to_owned(),
+            1 => format!("{least} mm; one circle"),
             count => format!("smallest {least}, middle {middle}, largest {most} mm; {count} circles"),
         };
         canvas.text(&figures, (left, TOP - 15), Lettering::new(12.0).coloured(INK))?;
@@ -178,7 +182,7 @@ impl<'a> Picture<'a> {
             canvas.text(&format!("up to {}", figures(largest)), (left, TOP - 12), lettering)?;
         }
         let labelled: Vec<(f64, String)> = if ticks.values.len() > 1 {
-            ticks.values.iter().map(|value| (*value, ticks.label(*value))).collect()
+            ticks.values.iter().map(|value| (*value, self.colours.label(*value))).collect()
         } else {
             [scale.from, scale.to].map(|value| (value, figures(value))).to_vec()
         };
@@ -207,10 +211,12 @@ impl<'a> Picture<'a> {
         let y = y + 26;
         canvas.dot((f64::from(left + 8), f64::from(y)), 4, BLACK)?;
         canvas.text("most accurate place", (left + 24, y), lettering)?;
-        if self.arm.is_some() {
-            let x = left + 180;
+        let x = left + 180;
+        if self.arm.as_ref().is_some_and(|arm| arm.axis_within(self.window).is_some()) {
             dash_dotted(canvas, (f64::from(x), f64::from(y)), (f64::from(x + 36), f64::from(y)), INK)?;
             canvas.text("axis 1", (x + 44, y), lettering)?;
+        }
+        if self.arm.as_ref().is_some_and(|arm| arm.shoulder_within(self.window)) {
             shoulder_mark(canvas, (f64::from(x + 112), f64::from(y)))?;
             canvas.text("shoulder (axis 2)", (x + 126, y), lettering)?;
         }
@@ -227,14 +233,14 @@ fn square(left: i32, y: i32) -> [Place; 5] {
     corners.map(exact)
 }
 
-fn joined(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+fn joined(a: Window, b: Window) -> Window {
     [[0, 1].map(|k| a[0][k].min(b[0][k])), [0, 1].map(|k| a[1][k].max(b[1][k]))]
 }
 
 /// The edges of the view (mm) and the height of the panels (pixels): the extent of the map, that of the arm where it is
 /// near, a margin, and as much more as fills the panels with both axes to the same scale.
-fn window(extent: [[f64; 2]; 2], arm: Option<&ArmInPlane>) -> ([[f64; 2]; 2], i32) {
-    let sides = |[low, high]: [[f64; 2]; 2]| [0, 1].map(|k| (high[k] - low[k]).max(1e-6));
+fn window(extent: Window, arm: Option<&ArmInPlane>) -> (Window, i32) {
+    let sides = |[low, high]: Window| [0, 1].map(|k| (high[k] - low[k]).max(1e-6));
     let mut shown = extent;
     if let Some(arm) = arm {
         let wider = [arm.shoulder, arm.foot].into_iter().fold(extent, |extent, point| joined(extent, [point, point]));
@@ -257,13 +263,17 @@ fn finite(nodes: &Nodes) -> impl Iterator<Item = f64> + '_ {
     nodes.values.iter().copied().filter(|value| value.is_finite())
 }
 
-/// From the smallest value of both maps to the largest, but where few values are far above all others, to the one that 97 of
-/// 100 do not pass, so that a peak does not leave the rest in the dark.
+/// From the smallest value of both maps (from zero, where all are the same) to the largest, but where few values are far
+/// above all others, to the one that 97 of 100 do not pass, so that a peak does not leave the rest in the dark.
 fn colours(nodes: &[Nodes; 2], bottom: i32) -> Colours {
     let mut sorted: Vec<f64> = nodes.iter().flat_map(finite).collect();
     sorted.sort_by(f64::total_cmp);
     let at = |index: usize| sorted.get(index).copied().unwrap_or(0.0);
     let (least, common, most) = (at(0), at(sorted.len() * 97 / 100), at(sorted.len().saturating_sub(1)));
+    if most <= least {
+        let scale = Scale::new(0.0, if most > 0.0 { most } else { 1.0 }, bottom, TOP);
+        return Colours { ticks: Ticks::round(&scale, 10), scale };
+    }
     let peak = most - least > 1.5 * (common - least) && common > least;
     let scale = Scale::new(least, if peak { common } else { most }, bottom, TOP);
     Colours { ticks: Ticks::round(&scale, 10), scale }
@@ -274,7 +284,7 @@ fn zone_lines(found: &Configuration) -> Vec<(String, RGBColor)> {
     let table = |kind: &str, colour, zone: fn(&Zones) -> Option<Zone>| {
         let each = found.zones.iter().map(|zones| {
             let largest = zone(zones).map_or_else(|| "–".to_owned(), |zone| figures(zone.largest * 1e3));
-            format!("{}: {largest}", figures(zones.side * 1e3))
+            format!("{}: {largest}", whole_or_figures(zones.side * 1e3))
         });
         let phrases: Vec<String> = std::iter::once(kind.to_owned()).chain(each).collect();
         lines(&phrases, LETTERS).into_iter().map(move |line| (line, colour)).collect::<Vec<_>>()
@@ -285,4 +295,50 @@ fn zone_lines(found: &Configuration) -> Vec<(String, RGBColor)> {
     let mut both = table("optimal zones", RED, |zones| zones.optimal);
     both.extend(table("middle zones", GREEN, |zones| zones.middle));
     both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_axes_have_the_same_scale_and_a_near_arm_is_in_view() {
+        let arm = ArmInPlane { shoulder: [500.0, 1000.0], foot: [0.0, 1000.0], along: [0.0, 1.0] };
+        let extents = [
+            ([[600.0, -400.0], [2700.0, 3200.0]], true),
+            ([[300.0, 500.0], [3000.0, 1500.0]], true),
+            // So tall that the arm is in the space beside it.
+            ([[1200.0, -2000.0], [1300.0, 3000.0]], true),
+            // A flat and a small one, too far away to show the arm.
+            ([[1200.0, 500.0], [2400.0, 620.0]], false),
+            ([[1200.0, 800.0], [1220.0, 820.0]], false),
+        ];
+        for (extent, near) in extents {
+            let ([low, high], pixels) = window(extent, Some(&arm));
+            let (across, up) = ((high[0] - low[0]) / f64::from(PANEL), (high[1] - low[1]) / f64::from(pixels));
+            assert!((across / up - 1.0).abs() < 1e-12, "{extent:?}");
+            assert!((HEIGHTS[0]..=HEIGHTS[1]).contains(&pixels));
+            assert_eq!(joined([low, high], extent), [low, high], "the map is in view");
+            assert_eq!(arm.shoulder_within([low, high]) && arm.axis_within([low, high]).is_some(), near, "{extent:?}");
+        }
+    }
+
+    #[test]
+    fn a_peak_does_not_set_the_scale() {
+        let view = PlaneView::new(&crate::assessment::benchmark::Plane::XOZ);
+        let scale = |values: &[f64]| {
+            let grid = crate::assessment::map::Grid { origin: [0.0, 0.0], step: 0.1, counts: [values.len(), 1] };
+            let nodes = values.iter().map(|value| Ok([value * 1e-3; 2])).collect();
+            let map = Map { grid, nodes };
+            let Colours { scale, .. } = colours(&[Nodes::new(&map, &view, 1), Nodes::new(&map, &view, 1)], 500);
+            [scale.from, scale.to]
+        };
+        let even: Vec<f64> = (1..=100).map(f64::from).collect();
+        assert_eq!(scale(&even), [1.0, 100.0]);
+        let peak: Vec<f64> = (1..=100).map(|k| if k == 100 { 1000.0 } else { f64::from(k) }).collect();
+        assert_eq!(scale(&peak), [1.0, 98.0]);
+        assert_eq!(scale(&[2.0, 2.0]), [0.0, 2.0]);
+        assert_eq!(scale(&[0.0]), [0.0, 1.0]);
+        assert_eq!(scale(&[]), [0.0, 1.0]);
+    }
 }

@@ -4,9 +4,9 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, DrawError, Drawn, Pixel, Place, exact, nearest};
 use super::colour::{GREEN, INK, LEVELS, RED, contrast, viridis};
 use super::contour::contour;
-use super::lettering::{Area, Label, Labeller, figures};
+use super::lettering::{Area, Label, Labeller, whole_or_figures};
 use super::patches::patches;
-use super::plane_view::{ArmInPlane, PlaneView};
+use super::plane_view::{ArmInPlane, PlaneView, Window};
 use crate::assessment::map::Map;
 use crate::assessment::study::Configuration;
 use crate::assessment::zone::Zone;
@@ -14,8 +14,10 @@ use plotters::style::{BLACK, RGBColor, WHITE};
 
 /// Strokes and gaps of a dash-dotted line. Pixels
 const DASHES: [f64; 4] = [12.0, 4.0, 2.0, 4.0];
+/// Most letters of a label of a tick without a power of ten.
+const LONGEST: usize = 7;
 /// A contour line is labelled when it is so many times as long as its label.
-const LONG: f64 = 2.5;
+const LONG: f64 = 1.5;
 
 /// The nodes of a map in the units of the picture.
 pub(super) struct Nodes {
@@ -46,8 +48,8 @@ impl Nodes {
     }
 
     /// The smallest rectangle around the cells of all nodes with a value: the lowest and the highest coordinates. mm
-    pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
-        let mut extent: Option<[[f64; 2]; 2]> = None;
+    pub fn extent(&self) -> Option<Window> {
+        let mut extent: Option<Window> = None;
         let valued = self.values.iter().enumerate().filter(|(_, value)| value.is_finite());
         for (index, _) in valued {
             let [low, high] = [-0.5, 0.5]
@@ -73,6 +75,12 @@ pub(super) struct Colours {
 }
 
 impl Colours {
+    /// The label of a tick.
+    pub fn label(&self, value: f64) -> String {
+        let label = self.ticks.label(value);
+        if label.len() <= LONGEST { label } else { format!("{value:.2e}") }
+    }
+
     /// The level of a value; values beyond the scale have the level of its end.
     fn level(&self, value: f64) -> usize {
         let part = (value - self.scale.from) / (self.scale.to - self.scale.from);
@@ -148,7 +156,7 @@ impl ElbowPanel<'_> {
 
     /// The value of a contour line on a ground of its colour, as near to the middle of the line as there is room.
     fn contour_label(&self, canvas: &Canvas<'_>, labeller: &mut Labeller, value: f64, line: &[Place]) -> Drawn {
-        let text = self.colours.ticks.label(value);
+        let text = self.colours.label(value);
         let length: f64 = line.windows(2).map(|pair| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum();
         if length < LONG * 2.0 * f64::from(Labeller::half(&text).0) {
             return Ok(());
@@ -203,7 +211,7 @@ impl ElbowPanel<'_> {
             labeller.take(((x - 6, y - 6), (x + 6, y + 6)));
         }
         for (zone, colour) in zones() {
-            let text = figures(zone.side * 1e3);
+            let text = whole_or_figures(zone.side * 1e3);
             let ((left, top), (right, bottom)) = self.square(&zone);
             let (half_width, half_height) = Labeller::half(&text);
             let (beside, above) = (half_width + 4, half_height + 4);
@@ -227,18 +235,18 @@ impl ElbowPanel<'_> {
     /// Axis 1 and the shoulder, as far as they are in view.
     fn arm(&self, canvas: &Canvas<'_>) -> Drawn {
         let Some(arm) = self.arm else { return Ok(()) };
-        let foot = self.place(arm.foot);
-        let ahead = self.place([arm.foot[0] + arm.along[0] * 1e3, arm.foot[1] + arm.along[1] * 1e3]);
-        if let Some((from, to)) = clipped(foot, ahead, self.area()) {
-            dash_dotted(canvas, from, to, INK)?;
+        if let Some([from, to]) = arm.axis_within(self.window()) {
+            dash_dotted(canvas, self.place(from), self.place(to), INK)?;
         }
-        let shoulder = self.place(arm.shoulder);
-        let ((left, top), (right, bottom)) = self.area();
-        let (x, y) = nearest(shoulder);
-        if (left..=right).contains(&x) && (top..=bottom).contains(&y) {
-            shoulder_mark(canvas, shoulder)?;
+        if arm.shoulder_within(self.window()) {
+            shoulder_mark(canvas, self.place(arm.shoulder))?;
         }
         Ok(())
+    }
+
+    fn window(&self) -> Window {
+        let Panel { x, y, .. } = self.panel;
+        [[x.from, y.from], [x.to, y.to]]
     }
 }
 
@@ -264,37 +272,4 @@ pub(super) fn dash_dotted(canvas: &Canvas<'_>, from: Place, to: Place, colour: R
         along += stroke + gap;
     }
     Ok(())
-}
-
-/// The part inside an area of the straight line through two places.
-fn clipped(first: Place, second: Place, ((left, top), (right, bottom)): Area) -> Option<(Place, Place)> {
-    let (dx, dy) = (second.0 - first.0, second.1 - first.1);
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    for (start, step, low, high) in [(first.0, dx, left, right), (first.1, dy, top, bottom)] {
-        let (low, high) = (f64::from(low), f64::from(high));
-        if step.abs() > 1e-9 {
-            let ends = [(low - start) / step, (high - start) / step];
-            from = from.max(ends[0].min(ends[1]));
-            to = to.min(ends[0].max(ends[1]));
-        } else if start < low || start > high {
-            return None;
-        }
-    }
-    let at = |part: f64| (first.0 + dx * part, first.1 + dy * part);
-    (from < to && from.is_finite() && to.is_finite()).then(|| (at(from), at(to)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_are_clipped_to_the_area() {
-        let area = ((0, 0), (100, 50));
-        assert_eq!(clipped((10.0, 20.0), (10.0, 21.0), area), Some(((10.0, 0.0), (10.0, 50.0))));
-        assert_eq!(clipped((0.0, 0.0), (-1.0, -1.0), area), Some(((50.0, 50.0), (0.0, 0.0))));
-        assert_eq!(clipped((-1.0, 20.0), (-1.0, 21.0), area), None);
-        assert_eq!(clipped((0.0, 60.0), (10.0, 70.0), area), None);
-        assert_eq!(clipped((5.0, 5.0), (5.0, 5.0), area), None);
-    }
 }

@@ -18,6 +18,12 @@ pub(super) fn figures(value: f64) -> String {
     }
 }
 
+/// A whole number without decimals, any other as [`figures`].
+pub(super) fn whole_or_figures(value: f64) -> String {
+    let rounded = value.round();
+    if (value - rounded).abs() < 1e-6 && rounded.abs() < 1e9 { fixed(rounded, 0) } else { figures(value) }
+}
+
 /// What stands between two phrases.
 const BETWEEN: &str = " · ";
 
@@ -118,6 +124,10 @@ mod tests {
         let texts = [0.0, 0.4149, 1.0, 12.34, 999.6, 123_456.7, 0.000_123_4, 1e-5, -2.5e12, f64::MAX].map(figures);
         let expected = ["0", "0.415", "1.00", "12.3", "1000", "123457", "0.000123", "1.00e-5", "-2.50e12", "1.80e308"];
         assert_eq!(texts, expected);
+        assert_eq!(
+            [50.0, 0.1 * 3.0 * 1e3, 12.5, 2e9, -0.0].map(whole_or_figures),
+            ["50", "300", "12.5", "2.00e9", "0"]
+        );
     }
 
     #[test]
