@@ -1,5 +1,7 @@
 //! Speed of circularity maps: `cargo bench --bench assessment`. Items are circles of 72 points that can be milled.
 
+#![allow(clippy::expect_used, reason = "a benchmark of shipped files")]
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
@@ -13,7 +15,7 @@ fn main() {
 
 fn published() -> Study {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/klimchik-2017.toml");
-    read_assessment(&file).map(|run| run.study).unwrap_or_else(|e| panic!("{e}"))
+    read_assessment(&file).map(|run| run.study).expect("the shipped study is good")
 }
 
 /// All maps of the paper with everything that is read off them: five robots, both elbows, both loads, 25 mm grid, on all
@@ -21,7 +23,7 @@ fn published() -> Study {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
     let study = published();
-    let maps = assess(&study, &|_, _| ()).unwrap_or_else(|e| panic!("{e}"));
+    let maps = assess(&study, &|_, _| ()).expect("the shipped study is good");
     let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
     bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| ()));
 }
@@ -35,7 +37,7 @@ fn one_map_finer_by(bencher: Bencher, fineness: usize) {
     grid.step /= fineness as f64;
     grid.counts = grid.counts.map(|count| (count - 1) * fineness + 1);
     let class = Elbow::Up.forward_class(robot);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap_or_else(|e| panic!("{e}"));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
     let map = || pool.install(|| Map::new(black_box(&study.benchmark), robot, class, grid, [1.0, 2.0], &|| ()));
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
