@@ -4,7 +4,7 @@ use super::benchmark::{Benchmark, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
-use crate::robot::{Compliance, DataSheet, Robot, RobotError};
+use crate::robot::{DataSheet, Robot};
 
 /// What is to be assessed, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,9 +19,6 @@ pub struct Study {
     pub zones: Vec<usize>,
     /// Which elbow goes by which name.
     pub elbow_names: ElbowNames,
-    /// For joints whose compliance is a range over the joint: use one value, so far from the lower to the upper end of the
-    /// range. `None`: the law of the robot file.
-    pub range_share: Option<f64>,
     /// Share of the weight of a robot's payload that makes its rated load: 0.8 in Klimchik 2017, Table 5.
     pub rated_share: f64,
     /// Which robot for which task.
@@ -207,8 +204,6 @@ impl RobotResult {
 
 impl Study {
     fn robot(&self, robot: &Robot, row_done: &(dyn Fn() + Sync)) -> RobotResult {
-        let fixed = self.range_share.and_then(|share| with_range_share(robot, share).ok());
-        let arm = fixed.as_ref().unwrap_or(robot);
         let sheet = *robot.data_sheet();
         let force = self.benchmark.in_plane_force();
         let rated_load = sheet.payload.map(|payload| self.rated_share * payload * self.selection.gravity / force);
@@ -217,9 +212,9 @@ impl Study {
                 ElbowNames::Geometric => name,
                 ElbowNames::Swapped => name.other(),
             };
-            let class = elbow.forward_class(arm);
+            let class = elbow.forward_class(robot);
             let loads = [1.0, rated_load.unwrap_or(1.0)];
-            (name, Map::new(&self.benchmark, arm, class, self.grid, loads, row_done))
+            (name, Map::new(&self.benchmark, robot, class, self.grid, loads, row_done))
         });
         let mut configurations = Vec::with_capacity(4);
         let loads = [(Load::Test, Some(1.0)), (Load::Rated, rated_load)];
@@ -257,15 +252,4 @@ impl Study {
             zones: zones.collect(),
         }
     }
-}
-
-/// The same arm with every range of compliance replaced by one value, so far from its lower to its upper end.
-fn with_range_share(robot: &Robot, share: f64) -> Result<Robot, RobotError> {
-    robot.with_compliances(robot.joints().clone().map(|joint| match joint.compliance {
-        Compliance::Range { at_min, at_max } => {
-            let (low, high) = (at_min.min(at_max), at_min.max(at_max));
-            Compliance::Constant(low + share * (high - low))
-        }
-        law => law,
-    }))
 }

@@ -38,7 +38,7 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         let agreement = printed.agreement(&assessment);
         (printed, agreement)
     });
-    let context = AssessmentContext { inputs: run.inputs, printed, course: run.course };
+    let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course };
     let written = write_assessment(&out.folder, &run.study, &assessment, &context);
     if options.json {
         print(&json::bytes(&assess_json(&assessment, &context, &Timing { wall, threads })));

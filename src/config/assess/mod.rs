@@ -27,6 +27,8 @@ use std::path::Path;
 pub struct AssessRun {
     /// What is to be assessed.
     pub study: Study,
+    /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
+    pub range_share: Option<f64>,
     /// The cutting forces behind the load, where the file computes them.
     pub course: Option<Course>,
     /// Published tables to set beside ours.
@@ -77,17 +79,16 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         selection.unwrap_or(Selection { accuracies: vec![], forces: vec![], remaining_share: 1.0, gravity });
 
     let mut inputs = vec![input("config", &file.file_name().unwrap_or_default().to_string_lossy(), source.bytes())];
-    let robots = robots_from(&robots, &mut inputs)?;
+    let robots = robots_from(&robots, yields.range_share, &mut inputs)?;
     let printed = reference.optional(|field| {
         let [tables] = field.table()?.fields(["tables"])?;
         let named = tables.named_file()?;
         inputs.push(input("reference", &named.name, &named.bytes));
         printed_from(&Source::new(&named.file, named.bytes)?)
     })?;
-    let notes = range_note(&robots, setting.yields.range_share).into_iter().collect();
-    let study =
-        Study { robots, benchmark, grid, zones, elbow_names, range_share: yields.range_share, rated_share, selection };
-    Ok(AssessRun { study, course, printed, inputs, notes })
+    let notes = range_note(&robots).into_iter().collect();
+    let study = Study { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
+    Ok(AssessRun { study, range_share: yields.range_share, course, printed, inputs, notes })
 }
 
 /// Share of the weight of the payload that makes the rated load, where the file does not say.
@@ -99,7 +100,12 @@ fn input(role: &'static str, name: &str, bytes: &[u8]) -> InputFile {
     InputFile { role, name: name.to_owned(), sha256: sha256(bytes) }
 }
 
-fn robots_from(field: &Field<'_>, inputs: &mut Vec<InputFile>) -> Result<Vec<Robot>, InputError> {
+/// The robots of a list, with one compliance in place of a range where a share of the range is given.
+fn robots_from(
+    field: &Field<'_>,
+    range_share: Option<f64>,
+    inputs: &mut Vec<InputFile>,
+) -> Result<Vec<Robot>, InputError> {
     let mut robots: Vec<Robot> = Vec::new();
     for entry in field.list("the paths of one or more robot files, relative to the folder of this file")? {
         let NamedFile { name, file, bytes } = entry.named_file()?;
@@ -109,7 +115,12 @@ fn robots_from(field: &Field<'_>, inputs: &mut Vec<InputFile>) -> Result<Vec<Rob
             let problem = format!("names a second robot called '{}'", robot.name());
             return Err(entry.error(problem, "robot files with different names in them"));
         }
-        robots.push(robot);
+        robots.push(match range_share {
+            Some(share) => robot.with_range_share(share).map_err(|e| {
+                entry.error(format!("has a joint without a compliance there: {e}"), "ranges of compliances above 0")
+            })?,
+            None => robot,
+        });
     }
     Ok(robots)
 }
@@ -183,11 +194,11 @@ fn selection_from(table: &Table<'_>, gravity: f64) -> Result<Selection, InputErr
     })
 }
 
-/// Which robots have a joint whose compliance is a range, and how it is read.
-fn range_note(robots: &[Robot], share: Option<f64>) -> Option<String> {
+/// Which robots have a joint whose compliance is a range that is used as such.
+fn range_note(robots: &[Robot]) -> Option<String> {
     let ranged = |robot: &&Robot| robot.joints().iter().any(|j| matches!(j.compliance, Compliance::Range { .. }));
     let names: Vec<&str> = robots.iter().filter(ranged).map(Robot::name).collect();
-    (!names.is_empty() && share.is_none()).then(|| {
+    (!names.is_empty()).then(|| {
         format!(
             "a joint compliance that the robot file gives as a range is taken as linear in the joint angle ({}): an \
              assumption; stiffness.range_share takes one value of the range instead",

@@ -54,7 +54,7 @@ fn read(text: &str) -> Result<AssessRun, InputError> {
 #[test]
 fn defaults_are_equation_34_as_written_on_the_plane_xoz() {
     let run = read(TEXT).unwrap();
-    let Study { robots, benchmark, grid, zones, elbow_names, range_share, rated_share, selection } = &run.study;
+    let Study { robots, benchmark, grid, zones, elbow_names, rated_share, selection } = &run.study;
     assert_eq!(robots.iter().map(Robot::name).collect::<Vec<_>>(), ["KUKA KR270-2", "KUKA KR 500"]);
     assert_eq!((benchmark.plane, benchmark.radius, benchmark.points), (Plane::XOZ, 0.1, 72));
     assert_eq!(benchmark.wrench.force, Vector3::new(-440.0, -1370.0, -635.0));
@@ -66,7 +66,7 @@ fn defaults_are_equation_34_as_written_on_the_plane_xoz() {
     let expected = Matrix3::from_columns(&[Vector3::x(), -Vector3::z(), Vector3::y()]);
     assert!((benchmark.base_from_tool - expected).abs().max() < 1e-15);
     assert_eq!((grid.origin, grid.counts, zones.as_slice()), ([0.5, 0.0], [6, 5], [1, 4].as_slice()));
-    assert_eq!((*elbow_names, *range_share, *rated_share), (ElbowNames::Geometric, None, 0.8));
+    assert_eq!((*elbow_names, run.range_share, *rated_share), (ElbowNames::Geometric, None, 0.8));
     assert_eq!((selection.accuracies[0], selection.forces[0], selection.remaining_share), (0.2e-3, 500.0, 1.0));
     assert_eq!(selection.gravity, 9.80665);
     assert!(run.printed.is_none() && run.course.is_none());
@@ -93,7 +93,9 @@ fn optional_tables_override_the_defaults() {
     let [x, z] = [0, 2].map(|k| benchmark.base_from_tool.column(k).into_owned());
     assert!((z + Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-12);
     assert!((x - Vector3::new(-1.0, 0.0, 0.0)).norm() < 1e-12);
-    assert_eq!((run.study.elbow_names, run.study.range_share), (ElbowNames::Swapped, Some(0.25)));
+    assert_eq!((run.study.elbow_names, run.range_share), (ElbowNames::Swapped, Some(0.25)));
+    let quarter = Compliance::Constant(0.14 / 1e6 + 0.25 * (0.20 / 1e6 - 0.14 / 1e6));
+    assert_eq!(run.study.robots[1].joints()[1].compliance, quarter);
     assert_eq!((run.study.rated_share, run.study.selection.gravity), (0.5, 10.0));
     assert!(run.notes.is_empty());
 }

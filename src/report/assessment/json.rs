@@ -25,7 +25,7 @@ pub fn summary_json(study: &Study, assessment: &Assessment, context: &Assessment
         inputs.map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 })).collect();
     document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
     document.insert("inputs".to_owned(), json!(inputs));
-    document.insert("benchmark".to_owned(), benchmark(study));
+    document.insert("benchmark".to_owned(), benchmark(study, context.range_share));
     Value::Object(document)
 }
 
@@ -117,7 +117,7 @@ fn reference(source: &str, agreement: &Agreement) -> Value {
     })
 }
 
-fn benchmark(study: &Study) -> Value {
+fn benchmark(study: &Study, range_share: Option<f64>) -> Value {
     let Benchmark { plane, radius, points, wrench, turning, base_from_tool, yielding, limits_at, stiffness, .. } =
         &study.benchmark;
     let vector = |unit: Unit, v: &Vector3<f64>| [v.x, v.y, v.z].map(|part| unit.number(part));
@@ -143,7 +143,7 @@ fn benchmark(study: &Study) -> Value {
             ElbowNames::Swapped => "swapped",
         },
         "joints": joints,
-        "range_share": study.range_share,
+        "range_share": range_share,
         "loaded": *stiffness == StiffnessModel::Loaded,
         "rated_share": study.rated_share,
         "gravity_m_per_s2": study.selection.gravity,

@@ -21,6 +21,8 @@ use std::path::PathBuf;
 pub struct AssessmentContext {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
+    pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.
     pub printed: Option<(Printed, Agreement)>,
     /// The cutting forces behind the load, where they were computed.

@@ -37,7 +37,6 @@ fn study(steps: usize) -> Study {
         grid: Grid { origin: [0.0, -2.0], step: 1.0 / steps as f64, counts: [4 * steps + 1, 6 * steps + 1] },
         zones: vec![steps / 5, steps / 2, steps],
         elbow_names: ElbowNames::Geometric,
-        range_share: None,
         rated_share: 0.8,
         selection: Selection { accuracies: vec![], forces: vec![], remaining_share: 0.2, gravity: 10.0 },
     }

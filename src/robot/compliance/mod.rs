@@ -217,6 +217,20 @@ impl Robot {
         }
         Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())
     }
+
+    /// The same arm with one compliance in place of every range, so far from its smaller to its larger value: 0 to 1.
+    ///
+    /// # Errors
+    /// [`RobotError`] where that is no compliance, for a share that is not from 0 to 1.
+    pub fn with_range_share(&self, share: f64) -> Result<Self, RobotError> {
+        self.with_compliances(self.joints().clone().map(|joint| match joint.compliance {
+            Compliance::Range { at_min, at_max } => {
+                let (least, most) = (at_min.min(at_max), at_min.max(at_max));
+                Compliance::Constant(least + share * (most - least))
+            }
+            law => law,
+        }))
+    }
 }
 
 #[cfg(test)]

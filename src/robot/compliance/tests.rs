@@ -128,3 +128,16 @@ fn laws_that_do_not_suit_the_joint_are_refused() {
     let error = Robot::new("x", joints).unwrap_err();
     assert!(matches!(error, RobotError::AmbiguousRange { joint: 4, .. }), "{error}");
 }
+
+#[test]
+fn a_share_of_a_range_is_one_compliance() {
+    let mut laws = kr270().joints().clone().map(|joint| joint.compliance);
+    laws[1] = Compliance::Range { at_min: 5e-7, at_max: 3e-7 };
+    let robot = kr270().with_compliances(laws).unwrap();
+    for (share, expected) in [(0.0, 3e-7), (0.25, 3.5e-7), (1.0, 5e-7)] {
+        let fixed = robot.with_range_share(share).unwrap().constant_compliances().unwrap();
+        assert!((fixed[1] - expected).abs() < 1e-20);
+        assert_eq!(fixed[0], robot.compliances_at(&[0.0; 6])[0]);
+    }
+    assert!(robot.with_range_share(-9.0).is_err());
+}
