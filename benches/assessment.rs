@@ -23,9 +23,9 @@ fn published() -> Study {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
     let study = published();
-    let maps = assess(&study, &|_, _| ()).expect("the shipped study is good");
+    let maps = assess(&study, &|_, _| true).expect("the shipped study is good");
     let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
-    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| ()));
+    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| true));
 }
 
 /// One map of the KR 500 on one processor, with so many times finer a grid.
@@ -38,7 +38,7 @@ fn one_map_finer_by(bencher: Bencher, fineness: usize) {
     grid.counts = grid.counts.map(|count| (count - 1) * fineness + 1);
     let class = Elbow::Up.forward_class(robot);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
-    let map = || pool.install(|| Map::new(black_box(&study.benchmark), robot, class, grid, [1.0, 2.0], &|| ()));
+    let map = || pool.install(|| Map::new(black_box(&study.benchmark), robot, class, grid, [1.0, 2.0], &|| true));
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
 }

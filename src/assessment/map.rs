@@ -3,6 +3,7 @@
 use super::benchmark::{Benchmark, Obstacle, Profile, Trial};
 use crate::robot::{PostureClass, Robot};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Centres of circles: the nodes of a square grid, in the coordinates of the benchmark's plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,12 +74,14 @@ impl Elbow {
 pub struct Map<const N: usize> {
     /// The centres.
     pub grid: Grid,
-    /// Circularity under each load in m, or why there is none; in the order of [`Grid::place`].
+    /// Circularity under each load in m (infinite where the arm is too soft for that load, but not for another), or why there
+    /// is none; in the order of [`Grid::place`].
     pub nodes: Vec<Result<[f64; N], Obstacle>>,
 }
 
 impl<const N: usize> Map<N> {
-    /// Mills every circle of the grid in one posture class. Rows of the grid are shared among the threads of rayon's pool;
+    /// Mills every circle of the grid in one posture class. `row_done` is called after each row; once it has said no, the rest
+    /// is left undone and the map is of no use. Rows of the grid are shared among the threads of rayon's pool;
     /// the result does not depend on their number.
     pub fn new(
         benchmark: &Benchmark,
@@ -86,15 +89,20 @@ impl<const N: usize> Map<N> {
         class: PostureClass,
         grid: Grid,
         loads: [f64; N],
-        row_done: &(dyn Fn() + Sync),
+        row_done: &(dyn Fn() -> bool + Sync),
     ) -> Self {
         let trial = Trial::new(benchmark, robot);
+        let goes_on = AtomicBool::new(true);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
-            let nodes: Vec<_> = (first..first + grid.counts[0])
-                .map(|index| trial.circularity(grid.place(index), class, loads, profile))
-                .collect();
-            row_done();
+            let mill = |index: usize| trial.circularity(grid.place(index), class, loads, profile);
+            if !goes_on.load(Ordering::Relaxed) {
+                return vec![Err(Obstacle::Reach); grid.counts[0]];
+            }
+            let nodes: Vec<_> = (first..first + grid.counts[0]).map(mill).collect();
+            if !row_done() {
+                goes_on.store(false, Ordering::Relaxed);
+            }
             nodes
         });
         Self { grid, nodes: rows.collect::<Vec<_>>().concat() }
@@ -105,7 +113,7 @@ impl<const N: usize> Map<N> {
         self.nodes.iter().map(|node| node.as_ref().map_or(f64::INFINITY, |values| values[load])).collect()
     }
 
-    /// Number of circles that can be milled.
+    /// Number of circles that can be milled under some load.
     pub fn count(&self) -> usize {
         self.nodes.iter().filter(|node| node.is_ok()).count()
     }

@@ -1,10 +1,11 @@
 //! The whole assessment: every robot, both elbows, both loads, zones, and the selection.
 
-use super::benchmark::{Benchmark, Obstacle};
+use super::benchmark::{Benchmark, MOST_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
 use crate::robot::{DataSheet, Robot};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// What is to be assessed, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +75,8 @@ pub struct Configuration {
     pub force: f64,
     /// Number of circles that can be milled.
     pub circles: usize,
+    /// Number of circles for which the arm is too soft under this load alone; they are not among the former.
+    pub too_soft: usize,
     /// The most accurate place.
     pub least: Option<Spot>,
     /// The least accurate place.
@@ -125,6 +128,17 @@ pub struct FitsNowhere {
     pub limits: Vec<Limits>,
 }
 
+/// Why an assessment has no result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AssessError {
+    /// No robot can mill the circle.
+    #[error("{0}")]
+    FitsNowhere(FitsNowhere),
+    /// It was stopped before its end.
+    #[error("interrupted: there are no results")]
+    Interrupted,
+}
+
 /// What keeps a robot from milling circles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
@@ -149,25 +163,38 @@ pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
             Obstacle::JointLimit(joint) => format!("limit of joint {joint}"),
             Obstacle::Singularity(joint) => format!("singularity, joint {joint} would jump"),
             Obstacle::Buckling => "arm buckles under the load".to_owned(),
-            Obstacle::NoCircle => "deflected beyond any circle".to_owned(),
+            Obstacle::TooSoft => format!("deflected by more than {MOST_DEFLECTION} of the radius"),
         };
         format!("{what} at {count} of {tried} places")
     });
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Assesses every robot of the study. `progress` is told how many rows of maps are done, and of how many.
+/// Assesses every robot of the study. `progress` is told how many rows of maps are done, and of how many; it says whether to
+/// go on.
 ///
 /// # Errors
-/// [`FitsNowhere`] when no robot can mill the circle anywhere on the grid.
-pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Assessment, FitsNowhere> {
+/// [`AssessError`] when no robot can mill the circle anywhere on the grid, or when `progress` said to stop.
+pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Assessment, AssessError> {
     let rows = study.robots.len() * 2 * study.grid.counts[1];
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let row_done = || progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, rows);
-    let robots: Vec<RobotResult> = study.robots.iter().map(|robot| study.robot(robot, &row_done)).collect();
+    let done = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let row_done = || {
+        if !progress(done.fetch_add(1, Ordering::Relaxed) + 1, rows) {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        !stopped.load(Ordering::Relaxed)
+    };
+    let mut robots: Vec<RobotResult> = Vec::with_capacity(study.robots.len());
+    for robot in &study.robots {
+        robots.push(study.robot(robot, &row_done));
+        if stopped.load(Ordering::Relaxed) {
+            return Err(AssessError::Interrupted);
+        }
+    }
     if robots.iter().all(|robot| robot.maps.iter().all(|(_, map)| map.count() == 0)) {
         let limits = robots.iter().map(RobotResult::limits).collect();
-        return Err(FitsNowhere { radius: study.benchmark.radius, limits });
+        return Err(AssessError::FitsNowhere(FitsNowhere { radius: study.benchmark.radius, limits }));
     }
     let competitors: Vec<Competitor> = robots.iter().map(RobotResult::competitor).collect();
     let reference = study.benchmark.in_plane_force();
@@ -203,7 +230,7 @@ impl RobotResult {
 }
 
 impl Study {
-    fn robot(&self, robot: &Robot, row_done: &(dyn Fn() + Sync)) -> RobotResult {
+    fn robot(&self, robot: &Robot, row_done: &(dyn Fn() -> bool + Sync)) -> RobotResult {
         let sheet = *robot.data_sheet();
         let force = self.benchmark.in_plane_force();
         let rated_load = sheet.payload.map(|payload| self.rated_share * payload * self.selection.gravity / force);
@@ -245,6 +272,7 @@ impl Study {
             load,
             force,
             circles: feasible().count(),
+            too_soft: map.count() - feasible().count(),
             least: feasible().min_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
             // The first of several equal ones, as for the least.
             most: feasible().rev().max_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),

@@ -1,11 +1,12 @@
 //! `stead circularity`: roundness of measured points.
 
 use super::arguments::CircularityOptions;
-use super::{Failure, print};
+use super::{Failure, print, say};
 use crate::assessment::circle::CircleError;
-use crate::assessment::roundness::{RoundnessError, assess};
+use crate::assessment::roundness::{Roundness, RoundnessError, assess};
 use crate::config::{PointFile, read_points};
 use crate::input::InputError;
+use crate::report::number::figures;
 use crate::report::output::Folder;
 use crate::report::{circularity, json};
 use std::path::Path;
@@ -13,6 +14,7 @@ use std::path::Path;
 pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let file = read_points(&options.points)?;
     let found = assess(&file.measured, &options.exclude_deg).map_err(|error| located(&options.points, &file, error))?;
+    mention_flatness(&found);
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
         circularity::write(&folder, &file, &found).map_err(|e| Failure::Job(e.to_string()))?;
@@ -24,6 +26,20 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
         print((circularity::text(&file, &found) + &where_to.unwrap_or_default()).as_bytes());
     }
     Ok(())
+}
+
+/// Points farther off their plane than this, in radii, are hardly one profile.
+const NOT_FLAT: f64 = 0.1;
+
+/// Points in space that lie in no plane have a circularity too, but not a meaningful one.
+fn mention_flatness(found: &Roundness) {
+    let radius = found.circles.lsc.circle.radius;
+    if let Some(flatness) = found.flatness().filter(|flatness| *flatness > NOT_FLAT * radius) {
+        say(&format!(
+            "note: the points are spread over {} mm across their plane, more than a tenth of the radius: are they one profile?",
+            figures(flatness)
+        ));
+    }
 }
 
 /// What is wrong with the points, in their file.

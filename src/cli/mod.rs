@@ -12,7 +12,7 @@ mod place;
 mod progress;
 mod score;
 
-use crate::assessment::study::FitsNowhere;
+use crate::assessment::study::AssessError;
 use crate::input::InputError;
 use crate::placement::place::NothingFeasible;
 use crate::report::output::{Folder, ReportError};
@@ -37,9 +37,9 @@ enum Failure {
     /// No placement is feasible.
     #[error("{0}")]
     Nothing(#[from] NothingFeasible),
-    /// No robot can mill the benchmark.
+    /// No robot can mill the benchmark, or nobody wants to know any more.
     #[error("{0}")]
-    Nowhere(#[from] FitsNowhere),
+    Assessment(#[from] AssessError),
     /// The job itself failed.
     #[error("{0}")]
     Job(String),
@@ -49,7 +49,7 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Usage(_) | Failure::Output(_) => 2,
-            Failure::Nothing(_) | Failure::Nowhere(_) | Failure::Job(_) => 1,
+            Failure::Nothing(_) | Failure::Assessment(_) | Failure::Job(_) => 1,
         }
     }
 }

@@ -15,16 +15,7 @@ pub(super) struct Watcher {
 impl Watcher {
     /// Takes over Ctrl-C: the first asks the job to stop and keep what it has, the second ends the process.
     pub fn start() -> Self {
-        let stop = Arc::new(AtomicBool::new(false));
-        let seen = Arc::clone(&stop);
-        // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
-        let _ = ctrlc::set_handler(move || {
-            if seen.swap(true, Ordering::SeqCst) {
-                // Nobody is left to return to.
-                std::process::exit(130);
-            }
-        });
-        Self { bar: bar(), stop }
+        Self { bar: bar(), stop: ctrl_c() }
     }
 
     /// Clears the bar.
@@ -49,23 +40,40 @@ fn bar() -> ProgressBar {
     bar
 }
 
-/// Draws the progress of a job that goes on in even steps.
+/// A flag that the first Ctrl-C sets; the second ends the process.
+fn ctrl_c() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&stop);
+    // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
+    let _ = ctrlc::set_handler(move || {
+        if seen.swap(true, Ordering::SeqCst) {
+            // Nobody is left to return to.
+            std::process::exit(130);
+        }
+    });
+    stop
+}
+
+/// Draws the progress of a job that goes on in even steps, and stops it at Ctrl-C.
 pub(super) struct Steps {
     bar: ProgressBar,
+    stop: Arc<AtomicBool>,
 }
 
 impl Steps {
-    /// Starts the bar.
+    /// Starts the bar and takes over Ctrl-C: the first stops the job, but not the writing of its results; the second ends the
+    /// process.
     pub fn start(name: &'static str) -> Self {
         let bar = bar();
         bar.set_prefix(name);
-        Self { bar }
+        Self { bar, stop: ctrl_c() }
     }
 
-    /// So many steps are done.
-    pub fn show(&self, done: usize, of: usize) {
+    /// So many steps are done; says whether to go on.
+    pub fn show(&self, done: usize, of: usize) -> bool {
         self.bar.set_length(of as u64);
         self.bar.set_position(done as u64);
+        !self.stop.load(Ordering::SeqCst)
     }
 
     /// Clears the bar.

@@ -59,6 +59,20 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with three significant digits, or all digits before the point where there are more; very small and very large
+/// ones with a power of ten.
+pub fn figures(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = libm::floor(libm::log10(value.abs()));
+    if (-4.0..9.0).contains(&exponent) {
+        fixed(value, (2.0 - exponent).max(0.0) as usize)
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

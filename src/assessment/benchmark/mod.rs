@@ -15,7 +15,6 @@ mod trial;
 
 pub use trial::{Profile, Trial};
 
-use super::circle::CircleError;
 use crate::robot::Pose;
 use crate::stiffness::loaded::Buckled;
 use crate::task::Wrench;
@@ -77,6 +76,10 @@ pub enum StiffnessModel {
     Loaded,
 }
 
+/// Largest deflection, in radii of the circle and apart from what all its points have in common, at which what is left is
+/// still read as a circle: far beyond it the best circle about the points can be quite another one.
+pub const MOST_DEFLECTION: f64 = 0.25;
+
 /// A joint that moves by more than this between neighbouring points of a circle jumps. rad
 const JUMP: f64 = PI / 2.0;
 
@@ -118,19 +121,13 @@ pub enum Obstacle {
     Singularity(usize),
     /// The arm would buckle under the load (loaded stiffness only).
     Buckling,
-    /// The deflected points make no circle any more: the load is out of all proportion.
-    NoCircle,
+    /// The load would deflect the circle by more than a quarter of its radius ([`MOST_DEFLECTION`]).
+    TooSoft,
 }
 
 impl From<Buckled> for Obstacle {
     fn from(_: Buckled) -> Self {
         Self::Buckling
-    }
-}
-
-impl From<CircleError> for Obstacle {
-    fn from(_: CircleError) -> Self {
-        Self::NoCircle
     }
 }
 

@@ -211,3 +211,24 @@ fn the_loaded_arm_is_the_unloaded_one_as_the_load_vanishes() {
     let [far] = [&loaded].map(|b| Trial::new(b, &robot).circularity([1.5, 1.0], class, [1e4], &mut Profile::default()));
     assert_eq!(far, Err(Obstacle::Buckling));
 }
+
+#[test]
+fn a_circle_that_the_arm_is_too_soft_for_has_no_circularity() {
+    let robot = shipped("kuka-kr360-l240.toml");
+    let class = Elbow::Up.forward_class(&robot);
+    for stiffness in [StiffnessModel::Unloaded, StiffnessModel::Loaded] {
+        let benchmark = Benchmark { stiffness, ..published() };
+        let trial = Trial::new(&benchmark, &robot);
+        let mut at = |loads: [f64; 2]| trial.circularity([1.5, 1.0], class, loads, &mut Profile::default());
+        let [light, heavy] = at([1.0, 40.0]).unwrap();
+        assert!(light > 0.0 && light < 2e-3 && heavy.is_infinite());
+        assert_eq!(at([100.0, 40.0]), Err(Obstacle::TooSoft));
+        // Up to the limit, circularity is still in proportion to the load of the unloaded arm.
+        if stiffness == StiffnessModel::Unloaded {
+            let most = (1..40).rev().find(|load| at([f64::from(*load); 2]).is_ok()).unwrap();
+            assert!(most > 10);
+            let [value, _] = at([f64::from(most); 2]).unwrap();
+            assert!((value / light / f64::from(most) - 1.0).abs() < 0.1, "{most} {value} {light}");
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! One arm on the benchmark, circle by circle.
 
-use super::{Benchmark, JUMP, LimitsAt, Obstacle, StiffnessModel, Turning};
+use super::{Benchmark, JUMP, LimitsAt, MOST_DEFLECTION, Obstacle, StiffnessModel, Turning};
 use crate::assessment::circle::least_squares;
 use crate::robot::{Frames, Pose, Posture, PostureClass, Robot, angles::wrap, turns::Range};
 use crate::stiffness::displacement;
@@ -60,10 +60,11 @@ impl<'a> Trial<'a> {
     }
 
     /// Circularity of the circle about `centre` (plane coordinates, m) in a posture class, once for every load: a load of 1 is
-    /// the wrench of the benchmark. `profile` is left with the points of the last load. m
+    /// the wrench of the benchmark. Infinite under a load that the arm is too soft for (see [`Obstacle::TooSoft`] and
+    /// [`Obstacle::Buckling`]). `profile` is left with the points of the last load. m
     ///
     /// # Errors
-    /// The first [`Obstacle`] met on the way round.
+    /// The first [`Obstacle`] met on the way round, or that of the first load where the arm is too soft for all.
     pub fn circularity<const N: usize>(
         &self,
         centre: [f64; 2],
@@ -77,16 +78,20 @@ impl<'a> Trial<'a> {
         if linear {
             self.displace(1.0, profile)?;
         }
+        let mut obstacle = None;
         for (slot, load) in circularities.iter_mut().zip(loads) {
-            if linear {
-                self.assemble(load, profile);
-            } else {
-                self.displace(load, profile)?;
-                self.assemble(1.0, profile);
-            }
-            *slot = least_squares(&profile.points)?.circularity;
+            let scale = if linear { load } else { 1.0 };
+            let moved = if linear { Ok(()) } else { self.displace(load, profile) };
+            let machined = moved.and_then(|()| self.machine(scale, profile));
+            *slot = machined.unwrap_or_else(|why| {
+                obstacle.get_or_insert(why);
+                f64::INFINITY
+            });
         }
-        Ok(circularities)
+        match obstacle {
+            Some(obstacle) if circularities.iter().all(|value| value.is_infinite()) => Err(obstacle),
+            _ => Ok(circularities),
+        }
     }
 
     /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the tool,
@@ -215,13 +220,22 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// The nominal circle and so many times the displacements.
-    fn assemble(&self, scale: f64, profile: &mut Profile) {
+    /// Circularity of the nominal circle with so many times the displacements. m
+    fn machine(&self, scale: f64, profile: &mut Profile) -> Result<f64, Obstacle> {
         let radius = self.benchmark.radius;
         let nominal = self.directions.iter().map(|direction| direction.map(|part| radius * part));
         let moves = profile.displacements.iter().map(|moved| moved.map(|part| scale * part));
         profile.points.clear();
         profile.points.extend(nominal.zip(moves).map(|([x, y], [dx, dy])| [x + dx, y + dy]));
+        let count = profile.displacements.len() as f64;
+        let mean = [0, 1].map(|axis| profile.displacements.iter().map(|moved| moved[axis]).sum::<f64>() / count);
+        let off = |moved: &[f64; 2]| libm::hypot(moved[0] - mean[0], moved[1] - mean[1]) * scale;
+        let most = profile.displacements.iter().map(off).fold(0.0, f64::max);
+        // Written so that what is no number is too much as well.
+        if !(most <= MOST_DEFLECTION * radius) {
+            return Err(Obstacle::TooSoft);
+        }
+        least_squares(&profile.points).map(|fit| fit.circularity).map_err(|_| Obstacle::TooSoft)
     }
 }
 

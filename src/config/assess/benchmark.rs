@@ -82,9 +82,9 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
                 )
             })?
         }
-        None => Wrench { force: force.vector3()?, moment: moment.optional(Field::vector3)?.unwrap_or_default() },
+        None => Wrench { force: load(&force)?, moment: moment.optional(load)?.unwrap_or_default() },
     };
-    if libm::hypot(wrench.force.x, wrench.force.y) <= 0.0 {
+    if libm::hypot(wrench.force.x, wrench.force.y) < LEAST_FORCE {
         let rule = "a force with a part in the plane of the circle: [radial, tangential, normal] with the first two not both 0";
         let field = if setting.course.is_some() { setting.milling } else { &force };
         return Err(field.error("gives no force in the plane", rule));
@@ -96,7 +96,7 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     let beta = beta.optional(Field::number)?.unwrap_or_default().to_radians();
     let benchmark = Benchmark {
         plane: setting.plane,
-        radius: radius.positive()? / 1e3,
+        radius: radius.number_where("a number from 0.001 to 100000", |mm| (1e-3..=1e5).contains(&mm))? / 1e3,
         points: points.optional(|field| field.integer(8..=100_000))?.unwrap_or(72) as usize,
         wrench,
         turning: turns.optional(|field| field.one_of(&turnings))?.unwrap_or(Turning::WithTool),
@@ -108,6 +108,14 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     };
     let names = names.optional(|field| field.one_of(&name_words))?.unwrap_or(ElbowNames::Geometric);
     Ok((benchmark, names))
+}
+
+/// No force in the plane is smaller than this. N
+const LEAST_FORCE: f64 = 1e-6;
+
+/// A force or a moment, within what machines can do.
+fn load(field: &Field<'_>) -> Result<Vector3<f64>, InputError> {
+    field.numbers_where("three numbers from -1e7 to 1e7", |part| part.abs() <= 1e7).map(Vector3::from)
 }
 
 /// A direction, made exactly one long.

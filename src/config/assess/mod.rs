@@ -86,7 +86,8 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         inputs.push(input("reference", &named.name, &named.bytes));
         printed_from(&Source::new(&named.file, named.bytes)?)
     })?;
-    let notes = range_note(&robots).into_iter().collect();
+    let asked = !selection.forces.is_empty();
+    let notes = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten()).collect();
     let study = Study { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
     Ok(AssessRun { study, range_share: yields.range_share, course, printed, inputs, notes })
 }
@@ -170,6 +171,9 @@ fn zones_from(table: &Table<'_>, grid: &Grid) -> Result<Vec<usize>, InputError> 
         if (intervals * step_mm - side).abs() > 1e-6 * side {
             return Err(entry.error("is no whole multiple of the step of the map", rule));
         }
+        if zones.contains(&(intervals as usize)) {
+            return Err(entry.error("is there twice", rule));
+        }
         zones.push(intervals as usize);
     }
     Ok(zones)
@@ -184,11 +188,18 @@ fn load_from(table: &Table<'_>) -> Result<(f64, f64), InputError> {
 
 fn selection_from(table: &Table<'_>, gravity: f64) -> Result<Selection, InputError> {
     let [accuracies, forces, share] = table.fields(["accuracies_mm", "forces_n", "remaining_share"])?;
-    let rule = "one or more numbers above 0";
+    let rule = "one or more numbers above 0 in ascending order";
+    let ascending = |field: &Field<'_>| {
+        let numbers = field.numbers(rule, |v| v > 0.0)?;
+        if numbers.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(field.error("is not in ascending order", rule));
+        }
+        Ok(numbers)
+    };
     let unit = |field: &Field<'_>| field.number_where("a number above 0 and not above 1", |v| v > 0.0 && v <= 1.0);
     Ok(Selection {
-        accuracies: accuracies.numbers(rule, |v| v > 0.0)?.into_iter().map(|mm| mm / 1e3).collect(),
-        forces: forces.numbers(rule, |v| v > 0.0)?,
+        accuracies: ascending(&accuracies)?.into_iter().map(|mm| mm / 1e3).collect(),
+        forces: ascending(&forces)?,
         remaining_share: share.optional(unit)?.unwrap_or(1.0),
         gravity,
     })
@@ -202,6 +213,18 @@ fn range_note(robots: &[Robot]) -> Option<String> {
         format!(
             "a joint compliance that the robot file gives as a range is taken as linear in the joint angle ({}): an \
              assumption; stiffness.range_share takes one value of the range instead",
+            names.join(", ")
+        )
+    })
+}
+
+/// Which robots may be chosen for any force.
+fn payload_note(robots: &[Robot]) -> Option<String> {
+    let unknown = robots.iter().filter(|robot| robot.data_sheet().payload.is_none());
+    let names: Vec<&str> = unknown.map(Robot::name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "no payload_kg in the robot file ({}): no rated load, and the selection takes the robot for any force",
             names.join(", ")
         )
     })

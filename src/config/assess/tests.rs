@@ -97,7 +97,8 @@ fn optional_tables_override_the_defaults() {
     let quarter = Compliance::Constant(0.14 / 1e6 + 0.25 * (0.20 / 1e6 - 0.14 / 1e6));
     assert_eq!(run.study.robots[1].joints()[1].compliance, quarter);
     assert_eq!((run.study.rated_share, run.study.selection.gravity), (0.5, 10.0));
-    assert!(run.notes.is_empty());
+    // No range is left, but the KR270-2's payload is not known.
+    assert!(run.notes.len() == 1 && run.notes[0].contains("no payload_kg in the robot file (KUKA KR270-2)"));
 }
 
 #[test]
@@ -153,7 +154,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         ),
         (TEXT.replace("'two.toml'", "'three.toml'"), [":1: robots[2]: ", "cannot be read", "found 'three.toml'"]),
         (TEXT.replace("['one.toml', 'two.toml']", "[]"), [":1: robots: ", "empty", "found []"]),
-        (TEXT.replace("100\nforce", "0\nforce"), [":3: benchmark.radius_mm: ", "above 0", "found 0;"]),
+        (TEXT.replace("100\nforce", "0\nforce"), [":3: benchmark.radius_mm: ", "from 0.001", "found 0;"]),
         (
             TEXT.replace("[-440, -1370, -635]", "[0, 0, -635]"),
             [":4: benchmark.force_n: ", "no force in the plane", "found [0, 0, -635]"],
@@ -172,6 +173,13 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         (TEXT.replace("[500, 1000]", "[1000, 500]"), [":6: map.x_mm: ", "lower end above", "found [1000, 500]"]),
         (TEXT.replace("[100, 400]", "[100, 500]"), [":10: zones.sides_mm[2]: ", "larger than the map", "found 500;"]),
         (TEXT.replace("[100, 400]", "[150]"), [":10: zones.sides_mm[1]: ", "multiple of the step", "found 150;"]),
+        (TEXT.replace("[100, 400]", "[100, 100]"), [":10: zones.sides_mm[2]: ", "twice", "found 100;"]),
+        (TEXT.replace("[0.2]", "[0.2, 0.1]"), [":12: selection.accuracies_mm: ", "ascending", "found [0.2, 0.1]"]),
+        (TEXT.replace("-635]", "1e300]"), [":4: benchmark.force_n[3]: ", "to 1e7", "found 1e300"]),
+        (
+            TEXT.replace("[-440, -1370, -635]", "[1e-300, 0, 0]"),
+            [":4: benchmark.force_n: ", "no force", "found [1e-300"],
+        ),
         (TEXT.replace("[0.2]", "[0]"), [":12: selection.accuracies_mm[1]: ", "above 0", "found 0;"]),
         (
             TEXT.replace("[0.2]", "[0.2]\nremaining_share = 2"),

@@ -30,7 +30,14 @@ pub(super) fn robot_from(source: &Source) -> Result<Robot, InputError> {
     let document = source.parse()?;
     let [name, origin, payload, radius, price, joints] =
         Table::root(&document).fields(["name", "source", PAYLOAD, RADIUS, PRICE, "joints"])?;
-    let name = name.string()?;
+    let rule = "a text in quotes on one line";
+    let name = name.string().and_then(|text| {
+        if text.chars().any(char::is_control) {
+            Err(name.error("has a line break or another control in it", rule))
+        } else {
+            Ok(text)
+        }
+    })?;
     origin.string()?;
     let data_sheet = DataSheet {
         payload: payload.optional(Field::positive)?,

@@ -76,6 +76,7 @@ fn shipped_robots_are_the_paper_and_its_sensitivity() {
 fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
     // Joint 3 stands in lines 19 to 26, joint 5 in 35 to 42.
     for (text, parts) in [
+        (with_line(1, "name = \"a\\nb\""), ["arm.toml:1: name: ", "control", "", "one line"]),
         (with_line(1, "name = 3"), ["arm.toml:1: name: ", "not a text", "found 3", "text in quotes"]),
         (with_line(2, ""), ["arm.toml:1: source: ", "missing", "", "text in quotes"]),
         (with_line(2, "sorce = 'x'"), ["arm.toml:2: sorce: ", "nearest known one: source", "found 'x'", "joints"]),

@@ -73,6 +73,7 @@ fn configuration(configuration: &Configuration) -> Value {
         "load": load(configuration.load),
         "force_n": Unit::FORCE_N.number(configuration.force),
         "circles": configuration.circles,
+        "circles_too_soft": configuration.too_soft,
         "min_mm": value(configuration.least),
         "min_at": place(configuration.least),
         "max_mm": value(configuration.most),

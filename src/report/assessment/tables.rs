@@ -9,7 +9,8 @@ use super::{elbow, load};
 use crate::assessment::printed::{Printed, Quantity};
 use crate::assessment::study::{Assessment, Configuration, RobotResult, Spot, Zones};
 
-/// `map-ROBOT.csv`: every circle that can be milled; the rated column is empty where the payload is not known.
+/// `map-ROBOT.csv`: every circle that can be milled; a column is empty where the arm is too soft for that load, and the rated one where the
+/// payload is not known.
 pub(super) fn map(robot: &RobotResult) -> Result<Vec<u8>, ReportError> {
     let header = ["elbow", "x_mm", "y_mm", "test_mm", "rated_mm"];
     let rows = robot.maps.iter().flat_map(|(name, map)| {
@@ -17,8 +18,8 @@ pub(super) fn map(robot: &RobotResult) -> Result<Vec<u8>, ReportError> {
             let [test, rated] = (*node).ok()?;
             let mut row = vec![elbow(*name).to_owned()];
             row.extend(map.grid.place(index).map(|place| Unit::PLACE_MM.text(place)));
-            row.push(Unit::DEFLECTION_MM.text(test));
-            row.push(Unit::DEFLECTION_MM.text_or_empty(robot.rated_load.map(|_| rated)));
+            let cells = [Some(test), robot.rated_load.map(|_| rated)];
+            row.extend(cells.map(|cell| Unit::DEFLECTION_MM.text_or_empty(cell.filter(|value| value.is_finite()))));
             Some(row)
         })
     });
@@ -90,7 +91,7 @@ pub(super) fn circularity(assessment: &Assessment, printed: Option<&Printed>) ->
 }
 
 const ZONE: [&str; 9] =
-    ["robot", "elbow", "load", "force_n", "side_mm", "largest_mm", "centre_x_mm", "centre_y_mm", "printed_mm"];
+    ["robot", "elbow", "load", "force_n", "size_mm", "largest_mm", "centre_x_mm", "centre_y_mm", "printed_mm"];
 
 /// `optimal-zones.csv` (Klimchik 2017, Table 6).
 pub(super) fn optimal_zones(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {

@@ -1,8 +1,9 @@
 //! The short tables for people.
 
-use super::super::number::fixed;
+use super::super::number::{figures, fixed};
 use super::super::text::aligned;
 use super::{AssessmentContext, elbow, load};
+use crate::assessment::benchmark::MOST_DEFLECTION;
 use crate::assessment::printed::{Printed, Quantity};
 use crate::assessment::study::{Assessment, Configuration, RobotResult, obstacle_words};
 
@@ -17,6 +18,16 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
             let why = obstacle_words(&map.obstacles(), map.nodes.len());
             text += &format!("{}, elbow {}: the circle fits nowhere ({why})\n", robot.name, elbow(*name));
         }
+    }
+    let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
+    for (robot, configuration) in every.filter(|(_, configuration)| configuration.too_soft > 0) {
+        text += &format!(
+            "{}, elbow {}, {} load: {} circles left out, deflected by more than {MOST_DEFLECTION} of the radius\n",
+            robot.name,
+            elbow(configuration.elbow),
+            load(configuration.load),
+            configuration.too_soft
+        );
     }
     if !assessment.capable.is_empty() {
         let mut forces: Vec<f64> = assessment.capable.iter().map(|cell| cell.force).collect();
@@ -67,10 +78,11 @@ fn configuration_rows(assessment: &Assessment, printed: Option<&Printed>) -> Vec
 
 /// Our value, and the published one in parentheses.
 fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, printed: Option<&Printed>) -> String {
-    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| fixed(value * 1e3, 2));
-    let ours = number(quantity.of(of));
+    let number =
+        |value: Option<f64>, write: fn(f64) -> String| value.map_or_else(|| "-".to_owned(), |v| write(v * 1e3));
+    let ours = number(quantity.of(of), figures);
     match printed.and_then(|printed| printed.value(&robot.name, of.elbow, of.load, quantity)) {
-        Some(value) => format!("{ours} ({})", number(value)),
+        Some(value) => format!("{ours} ({})", number(value, |mm| fixed(mm, 2))),
         None => ours,
     }
 }

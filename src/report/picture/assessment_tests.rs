@@ -46,7 +46,7 @@ fn small() -> &'static (Study, Assessment) {
     static SMALL: OnceLock<(Study, Assessment)> = OnceLock::new();
     SMALL.get_or_init(|| {
         let study = study(10);
-        let assessment = assess(&study, &|_, _| ()).unwrap();
+        let assessment = assess(&study, &|_, _| true).unwrap();
         (study, assessment)
     })
 }
@@ -72,7 +72,7 @@ fn a_map_of_ten_thousand_circles_is_small() {
     let mut study = study(40);
     study.benchmark.points = 8;
     study.robots.truncate(1);
-    let assessment = assess(&study, &|_, _| ()).unwrap();
+    let assessment = assess(&study, &|_, _| true).unwrap();
     let result = &assessment.robots[0];
     let circles: Vec<usize> = result.maps.iter().map(|(_, map)| map.count()).collect();
     assert!(circles.iter().sum::<usize>() > 10_000, "{circles:?}");

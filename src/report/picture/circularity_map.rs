@@ -4,11 +4,12 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, exact, picture};
 use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder_mark};
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
-use super::lettering::{figures, lines, whole_or_figures};
+use super::lettering::{lines, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView, Window};
 use crate::assessment::map::{Elbow, Map};
 use crate::assessment::study::{Configuration, ElbowNames, Load, RobotResult, Study, Zones, obstacle_words};
 use crate::assessment::zone::Zone;
+use crate::report::number::figures;
 use crate::report::output::ReportError;
 use plotters::style::{BLACK, RGBColor};
 

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
 use super::colour::{INDICATORS, INK};
-use super::lettering::figures;
 use crate::assessment::study::{Assessment, Load, RobotResult};
+use crate::report::number::figures;
 use crate::report::number::fixed;
 use crate::report::output::ReportError;
 use plotters::style::RGBColor;

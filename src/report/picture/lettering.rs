@@ -1,22 +1,8 @@
 //! Figures and labels of pictures: numbers of few digits, lines of a given width, and labels that do not cover each other.
 
 use super::canvas::{Canvas, Drawn, Lettering, Pixel};
-use crate::report::number::fixed;
+use crate::report::number::{figures, fixed};
 use plotters::style::RGBColor;
-
-/// A number with three significant digits, or all digits before the point where there are more; very small and very large
-/// ones with a power of ten.
-pub(super) fn figures(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let exponent = libm::floor(libm::log10(value.abs()));
-    if (-4.0..9.0).contains(&exponent) {
-        fixed(value, (2.0 - exponent).max(0.0) as usize)
-    } else {
-        format!("{value:.2e}")
-    }
-}
 
 /// A whole number without decimals, any other as [`figures`].
 pub(super) fn whole_or_figures(value: f64) -> String {

@@ -3,6 +3,7 @@
 use super::axes::{Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, nearest, picture};
 use super::colour::{BLUE, GREEN, GREY, GRID, INK, PALE, RED};
+use super::lettering::whole_or_figures;
 use crate::assessment::roundness::Roundness;
 use crate::report::number::fixed;
 use crate::report::output::ReportError;
@@ -19,6 +20,10 @@ const RIM: f64 = 320.0;
 const DOTS: usize = 400;
 /// Directions that are told apart: where there are more points, the extremes of each stand for all.
 const DIRECTIONS: usize = 1440;
+/// Least half width of a zone that is magnified to the whole ring, in radii.
+const LEAST_HALF: f64 = 1e-7;
+/// Two points are joined by an arc of steps of this angle, since a chord would dip inwards. rad
+const ARC: f64 = PI / 180.0;
 /// Points farther apart than this are not joined: so many times their mean distance, but no less than 2 deg.
 const GAP: f64 = 3.0;
 
@@ -33,7 +38,7 @@ pub fn polar(name: &str, found: &Roundness) -> Result<String, ReportError> {
         canvas.text(&format!("Roundness of {name}"), (30, 28), Lettering::new(17.0).bold())?;
         let magnification = format!(
             "Deviation from the reference circle, magnified {} times",
-            fixed(plot.scale * found.circles.mzc.circle.radius / REFERENCE, 0)
+            whole_or_figures((plot.scale * found.circles.mzc.circle.radius / REFERENCE * 1e3).round() / 1e3)
         );
         canvas.text(&magnification, (30, 52), Lettering::new(13.0).coloured(INK))?;
         plot.grid(canvas)?;
@@ -69,8 +74,8 @@ impl<'a> Plot<'a> {
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             thinned(points)
         };
-        // A zone without width is shown with one that rounding alone would make.
-        let half = (0.5 * found.circles.mzc.circularity).max(1e-12 * circle.radius);
+        // A perfect circle is shown as one, and not as what rounding makes of it.
+        let half = (0.5 * found.circles.mzc.circularity).max(LEAST_HALF * circle.radius);
         Self { found, kept: of(false), excluded: of(true), scale: ZONE / half }
     }
 
@@ -121,14 +126,24 @@ impl<'a> Plot<'a> {
         let gap = (GAP * TAU / self.kept.len().max(1) as f64).max(PI / 90.0);
         for run in points.chunk_by(|a, b| b.0 - a.0 < gap) {
             if run.len() > 1 {
-                let places: Vec<Place> = run.iter().map(|(angle, deviation)| self.place(*angle, *deviation)).collect();
-                canvas.curve(&places, BLUE, 2)?;
+                let arcs = run.windows(2).flat_map(|pair| self.arc(pair[0], pair[1]));
+                let last = self.place(run[run.len() - 1].0, run[run.len() - 1].1);
+                canvas.curve(&arcs.chain([last]).collect::<Vec<_>>(), BLUE, 2)?;
             }
         }
         if self.kept.len() <= DOTS {
             self.kept.iter().try_for_each(|(a, d)| canvas.dot(self.place(*a, *d), 2, PROFILE))?;
         }
         Ok(())
+    }
+
+    /// Places from one point towards the next, without the next.
+    fn arc(&self, from: Polar, to: Polar) -> impl Iterator<Item = Place> + '_ {
+        let steps = ((to.0 - from.0) / ARC).ceil().clamp(1.0, 360.0) as u32;
+        (0..steps).map(move |k| {
+            let part = f64::from(k) / f64::from(steps);
+            self.place(from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1))
+        })
     }
 
     fn left_out(&self, canvas: &Canvas<'_>) -> Drawn {
@@ -163,19 +178,20 @@ impl<'a> Plot<'a> {
         }
         y += 40;
         canvas.text("Shown: minimum zone (MZC)", (left, y), heading)?;
-        let [x, centre_y] = circles.mzc.circle.center;
-        for (name, value) in [
+        let ([x, centre_y], z) = self.found.center(&circles.mzc);
+        let zone = [
             ("radius of reference", circles.mzc.circle.radius),
             ("outer zone circle", circles.mzc.largest),
             ("inner zone circle", circles.mzc.smallest),
             ("centre x", x),
             ("centre y", centre_y),
-        ] {
+        ];
+        for (name, value) in zone.into_iter().chain(z.map(|z| ("centre z", z))) {
             y += 22;
             canvas.text(name, (left, y), lettering)?;
             canvas.text(&fixed(value, 4), (left + 210, y), lettering.ending())?;
         }
-        let note = if self.found.plane.is_some() { "mm, in the frame of the fitted plane" } else { "mm" };
+        let note = "mm, places in the frame of the file";
         canvas.text(note, (left, y + 22), lettering.coloured(GREY))?;
         y += 62;
         let excluded = self.found.points.len() - self.found.kept().count();
