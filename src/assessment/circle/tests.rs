@@ -168,6 +168,35 @@ fn zone_circumscribed_and_inscribed_are_the_best_of_all_candidates() {
 }
 
 #[test]
+fn points_of_a_square_grid_are_no_harder() {
+    // Cuts through corners of a cell, along its sides and its diagonals are exact for such points, and leave cells without
+    // any area.
+    let fixed: [&[[f64; 2]]; 2] = [
+        &[[0.0, 2.0], [2.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
+        &[[5.0, 0.0], [3.0, 4.0], [0.0, 5.0], [1.0, 4.0], [4.0, 4.0], [4.0, 2.0], [5.0, 1.0], [1.0, 5.0]],
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut next = |end: f64| libm::floor(end * uniform(&mut random));
+    let mut compared = 0;
+    for round in 0..400 {
+        let points: Points = match fixed.get(round) {
+            Some(points) => points.to_vec(),
+            None => (0..3 + round % 7).map(|_| [next(5.0), next(5.0)]).collect(),
+        };
+        let (Ok(mcc), Ok(mic)) = (minimum_circumscribed(&points), maximum_inscribed(&points)) else { continue };
+        let [zone, around, inside] = brute_force(&points);
+        assert!((mcc.circle.radius / around - 1.0).abs() < 1e-12, "MCC {points:?}");
+        assert!((mic.circle.radius - inside).abs() < 1e-11, "MIC {points:?}: {} {inside}", mic.circle.radius);
+        match minimum_zone(&points) {
+            Ok(mzc) => assert!((mzc.circularity - zone).abs() < 1e-11, "MZC {points:?}: {} {zone}", mzc.circularity),
+            Err(error) => assert_eq!(error, CircleError::Straight, "{points:?}"),
+        }
+        compared += 1;
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+#[test]
 fn no_centre_of_a_grid_is_better() {
     for kind in 0..SHAPES {
         let points = shape(kind, 60, 99);
