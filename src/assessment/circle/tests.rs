@@ -274,6 +274,30 @@ fn least_squares_is_the_minimum_over_a_grid_and_its_neighbourhood() {
     }
 }
 
+/// The last step counts: sums of squares see no difference between a centre and one that is 1e-10 off.
+#[test]
+fn least_squares_has_no_slope_left() {
+    for seed in [273, 1, 2, 3] {
+        let points: Points = shape(1, 40, seed);
+        let (sine, cosine) = libm::sincos(1.580435795957136);
+        let image = |p: &[f64; 2]| {
+            [cosine * p[0] - sine * p[1] + 5.403499666945094, sine * p[0] + cosine * p[1]]
+                .map(|c| 262.11568439944966 * c)
+        };
+        for points in [points.iter().map(image).collect(), points] {
+            let fit = least_squares(&points).unwrap();
+            let ([x, y], radius) = (fit.circle.center, fit.circle.radius);
+            let slope = points.iter().fold([0.0; 2], |[gx, gy], p| {
+                let (dx, dy) = (p[0] - x, p[1] - y);
+                let distance = libm::hypot(dx, dy);
+                let share = (distance - radius) / distance;
+                [gx + share * dx, gy + share * dy]
+            });
+            assert!(libm::hypot(slope[0], slope[1]) < 40.0 * 1e-14 * radius, "{seed}: {slope:?}");
+        }
+    }
+}
+
 /// Points whose coordinates have so few digits that moving them by 2^13 rounds nothing.
 fn coarse(points: &[[f64; 2]]) -> Points {
     let unit = 0.5_f64.powi(38);
