@@ -196,6 +196,43 @@ fn a_circle_across_axis_1_is_no_circle_of_one_posture() {
 }
 
 #[test]
+fn a_circle_is_closed_from_its_last_point_to_its_first() {
+    // Level, and across axis 1 between the points at -5 and 0 deg: the only jump is that from the last to the first.
+    let robot = shipped("kuka-kr120-r3900.toml");
+    let class = Elbow::Up.forward_class(&robot);
+    let plane = Plane { origin: Vector3::zeros(), x: Vector3::x(), y: Vector3::y() };
+    let base_from_tool = point_from_tool(0.0);
+    let level = Benchmark { plane, base_from_tool, flange_from_tool: None, limits_at: LimitsAt::Centre, ..published() };
+    let (sine, cosine) = libm::sincos(-2.5_f64.to_radians());
+    let at = |radius: f64| {
+        let centre = [-radius * cosine, -radius * sine];
+        Trial::new(&level, &robot).circularity(centre, class, [1.0], &mut Profile::default())
+    };
+    assert_eq!(at(0.1), Err(Obstacle::Singularity(1)));
+    // A little farther off nothing jumps.
+    assert!(at(0.15).is_ok());
+}
+
+#[test]
+fn a_flipped_wrist_yields_by_its_own_angles() {
+    let robot = shipped("kuka-kr500.toml");
+    let class = Elbow::Up.forward_class(&robot);
+    let circularity = |min: f64, max: f64, at_min: f64, at_max: f64, limits_at: LimitsAt| {
+        let mut joints = robot.joints().clone();
+        (joints[4].min, joints[4].max) = (min, max);
+        joints[4].compliance = crate::robot::Compliance::Range { at_min, at_max };
+        let arm = Robot::new("bent to one side", joints).unwrap();
+        let benchmark = Benchmark { limits_at, ..published() };
+        Trial::new(&benchmark, &arm).circularity([1.7, 0.8], class, [1.0], &mut Profile::default()).unwrap()[0]
+    };
+    for limits_at in [LimitsAt::Circle, LimitsAt::Centre] {
+        let plain = circularity(0.0, 2.2, 1e-6, 4e-5, limits_at);
+        let flipped = circularity(-2.2, 0.0, 4e-5, 1e-6, limits_at);
+        assert!((flipped - plain).abs() < 1e-12, "{flipped} {plain}");
+    }
+}
+
+#[test]
 fn the_loaded_arm_is_the_unloaded_one_as_the_load_vanishes() {
     let robot = shipped("kuka-kr100-ha.toml");
     let class = Elbow::Up.forward_class(&robot);

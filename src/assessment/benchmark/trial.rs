@@ -20,6 +20,13 @@ pub struct Trial<'a> {
     directions: Vec<[f64; 2]>,
 }
 
+/// One of the two postures of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Flip {
+    Plain,
+    Flipped,
+}
+
 /// Room for the points of one circle, so that evaluating allocates nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Profile {
@@ -117,24 +124,27 @@ impl<'a> Trial<'a> {
             })
     }
 
-    /// Joint angles at every point of the circle, or why it cannot be gone round.
+    /// Joint angles at every point of the circle, wrapped or not, or why it cannot be gone round.
     fn go_round(&self, centre: [f64; 2], class: PostureClass, angles: &mut Vec<[f64; 6]>) -> Result<(), Obstacle> {
         angles.clear();
         let radius = self.benchmark.radius;
         // Joints 1 to 3 are looked at as they come: most circles that fail do so early.
-        let early = match self.benchmark.limits_at {
-            LimitsAt::Circle => 3,
+        let (early, mut flip) = match self.benchmark.limits_at {
+            LimitsAt::Circle => (3, Flip::Plain),
             LimitsAt::Centre => {
                 let joints = self.joints(centre, class)?;
-                self.within_limits(&joints, &joints)?;
-                0
+                (0, self.within_limits(&joints, &joints)?)
             }
         };
         let mut least = [f64::INFINITY; 6];
         let mut most = [f64::NEG_INFINITY; 6];
         let mut unwrapped = [0.0; 6];
-        for (k, [cosine, sine]) in self.directions.iter().enumerate() {
-            let joints = self.joints([centre[0] + radius * cosine, centre[1] + radius * sine], class)?;
+        // The first point is the last one too: the circle has to be closed.
+        for (k, [cosine, sine]) in self.directions.iter().chain(self.directions.first()).enumerate() {
+            let joints = match angles.first() {
+                Some(first) if k == self.directions.len() => *first,
+                _ => self.joints([centre[0] + radius * cosine, centre[1] + radius * sine], class)?,
+            };
             for j in 0..6 {
                 let step = if k == 0 { 0.0 } else { wrap(joints[j] - unwrapped[j]) };
                 if step.abs() > JUMP {
@@ -147,25 +157,32 @@ impl<'a> Trial<'a> {
                     return Err(Obstacle::JointLimit(j + 1));
                 }
             }
-            angles.push(joints);
+            if k < self.directions.len() {
+                angles.push(joints);
+            }
         }
-        match self.benchmark.limits_at {
-            LimitsAt::Circle => self.within_limits(&least, &most),
-            LimitsAt::Centre => Ok(()),
+        if self.benchmark.limits_at == LimitsAt::Circle {
+            flip = self.within_limits(&least, &most)?;
         }
+        if flip == Flip::Flipped && !self.robot.flips_yield_alike() {
+            for [_, _, _, fourth, fifth, sixth] in angles {
+                (*fourth, *fifth, *sixth) = (*fourth + PI, -*fifth, *sixth + PI);
+            }
+        }
+        Ok(())
     }
 
-    /// Whether one of the two wrist flips keeps all joints within their limits between the given angles of the unflipped
-    /// one.
-    fn within_limits(&self, least: &[f64; 6], most: &[f64; 6]) -> Result<(), Obstacle> {
+    /// Which of the two wrist flips keeps all joints within their limits between the given angles of the unflipped one; that
+    /// one, if both do.
+    fn within_limits(&self, least: &[f64; 6], most: &[f64; 6]) -> Result<Flip, Obstacle> {
         let unflipped = (0..6).find(|j| !fits(&self.ranges[*j], least[*j], most[*j]));
-        let Some(joint) = unflipped else { return Ok(()) };
+        let Some(joint) = unflipped else { return Ok(Flip::Plain) };
         let flipped = (0..6).all(|j| match j {
             3 | 5 => fits(&self.ranges[j], least[j] + PI, most[j] + PI),
             4 => fits(&self.ranges[j], -most[j], -least[j]),
             _ => fits(&self.ranges[j], least[j], most[j]),
         });
-        if flipped { Ok(()) } else { Err(Obstacle::JointLimit(joint + 1)) }
+        if flipped { Ok(Flip::Flipped) } else { Err(Obstacle::JointLimit(joint + 1)) }
     }
 
     /// Joint angles with the tip at a point of the plane, wrapped, in the posture of the class that is not flipped. rad

@@ -99,12 +99,14 @@ impl Set<'_> {
             let length = libm::hypot(step[0], step[1]);
             let next = self.state(state.middle.moved(step), state.mean);
             let is_better = next.sum < state.sum * (1.0 - 1e-12);
-            let is_as_good = next.sum <= state.sum * (1.0 + 1e-12) + f64::MIN_POSITIVE;
+            // The change that so short a step makes may be less than the rounding of the sums.
+            let is_last = is_newton && length < LAST;
+            let is_as_good = is_last || next.sum <= state.sum * (1.0 + 1e-12) + f64::MIN_POSITIVE;
             if is_better || (is_as_good && next.steepness() < state.steepness()) {
                 let rechart = next.middle.recharted();
                 state = if rechart == next.middle { next } else { self.state(rechart, 0.0) };
                 damping = if damping > 1e-6 * state.stiffness() { 0.1 * damping } else { 0.0 };
-                if is_newton && length < LAST {
+                if is_last {
                     break;
                 }
             } else if length < LAST {

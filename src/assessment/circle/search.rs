@@ -17,7 +17,7 @@ const RELATIVE: f64 = 1e-13;
 const ABSOLUTE: f64 = 2e-15;
 /// A cell of this size has no better centre in it than its own, but for rounding.
 const SMALLEST: f64 = 1e-15;
-/// A cut that leaves more than this part of a cell calls for a split.
+/// A cut that leaves this part of a cell, or more, calls for a split.
 const TOO_LITTLE: f64 = 0.7;
 /// Of lists longer than this only one in [`STRIDE`] points is looked at first, which gives weaker cuts for less work.
 const LONG: usize = 8192;
@@ -101,7 +101,7 @@ impl Search<'_> {
             }
             let (left, centre) = cell.polygon.area_and_centroid();
             if thin.is_some() {
-                if left > TOO_LITTLE * area {
+                if left >= TOO_LITTLE * area {
                     thin = None;
                 }
                 continue;
@@ -110,7 +110,8 @@ impl Search<'_> {
                 // The cell has only become smaller, so the size about the former middle is still good.
                 cell.lists = Rc::new(cell.lists.filtered::<C>(&at, &view, size));
             }
-            if left > TOO_LITTLE * area {
+            // As good as no area is left of a cell that a cut has narrowed to a line: it is split until it is short.
+            if left >= TOO_LITTLE * area {
                 let halves = cell.polygon.split(centre);
                 return Some(halves.map(|polygon| Cell { polygon, lists: Rc::clone(&cell.lists) }));
             }

@@ -168,6 +168,35 @@ fn zone_circumscribed_and_inscribed_are_the_best_of_all_candidates() {
 }
 
 #[test]
+fn points_of_a_square_grid_are_no_harder() {
+    // Cuts through corners of a cell, along its sides and its diagonals are exact for such points, and leave cells without
+    // any area.
+    let fixed: [&[[f64; 2]]; 2] = [
+        &[[0.0, 2.0], [2.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
+        &[[5.0, 0.0], [3.0, 4.0], [0.0, 5.0], [1.0, 4.0], [4.0, 4.0], [4.0, 2.0], [5.0, 1.0], [1.0, 5.0]],
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut next = |end: f64| libm::floor(end * uniform(&mut random));
+    let mut compared = 0;
+    for round in 0..400 {
+        let points: Points = match fixed.get(round) {
+            Some(points) => points.to_vec(),
+            None => (0..3 + round % 7).map(|_| [next(5.0), next(5.0)]).collect(),
+        };
+        let (Ok(mcc), Ok(mic)) = (minimum_circumscribed(&points), maximum_inscribed(&points)) else { continue };
+        let [zone, around, inside] = brute_force(&points);
+        assert!((mcc.circle.radius / around - 1.0).abs() < 1e-12, "MCC {points:?}");
+        assert!((mic.circle.radius - inside).abs() < 1e-11, "MIC {points:?}: {} {inside}", mic.circle.radius);
+        match minimum_zone(&points) {
+            Ok(mzc) => assert!((mzc.circularity - zone).abs() < 1e-11, "MZC {points:?}: {} {zone}", mzc.circularity),
+            Err(error) => assert_eq!(error, CircleError::Straight, "{points:?}"),
+        }
+        compared += 1;
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+#[test]
 fn no_centre_of_a_grid_is_better() {
     for kind in 0..SHAPES {
         let points = shape(kind, 60, 99);
@@ -241,6 +270,30 @@ fn least_squares_is_the_minimum_over_a_grid_and_its_neighbourhood() {
                     assert!(residuals(&points, grid) >= least - rounding, "{kind} {seed} {grid:?} {centre:?}");
                 }
             }
+        }
+    }
+}
+
+/// The last step counts: sums of squares see no difference between a centre and one that is 1e-10 off.
+#[test]
+fn least_squares_has_no_slope_left() {
+    for seed in [273, 1, 2, 3] {
+        let points: Points = shape(1, 40, seed);
+        let (sine, cosine) = libm::sincos(1.580435795957136);
+        let image = |p: &[f64; 2]| {
+            [cosine * p[0] - sine * p[1] + 5.403499666945094, sine * p[0] + cosine * p[1]]
+                .map(|c| 262.11568439944966 * c)
+        };
+        for points in [points.iter().map(image).collect(), points] {
+            let fit = least_squares(&points).unwrap();
+            let ([x, y], radius) = (fit.circle.center, fit.circle.radius);
+            let slope = points.iter().fold([0.0; 2], |[gx, gy], p| {
+                let (dx, dy) = (p[0] - x, p[1] - y);
+                let distance = libm::hypot(dx, dy);
+                let share = (distance - radius) / distance;
+                [gx + share * dx, gy + share * dy]
+            });
+            assert!(libm::hypot(slope[0], slope[1]) < 40.0 * 1e-14 * radius, "{seed}: {slope:?}");
         }
     }
 }

@@ -96,7 +96,7 @@ impl Compensator {
         (pull - cosine).scale(self.spring_stiffness * self.a * self.l)
     }
 
-    /// Refuses a spring that is nowhere taut or that makes the joint give way somewhere between its limits.
+    /// Refuses a spring whose two ends meet, or that makes the joint give way, somewhere between the limits.
     ///
     /// K_eq is concave in the cosine of psi: the derivative of `(a + l c) (l + a c) / s^3` by c is
     /// `1 / (4 s) + 3 (a^2 - l^2)^2 / (4 s^5)`, and s grows with c. So its least value between two limits, like the least
