@@ -1,7 +1,7 @@
 //! Published results to set beside ours, and how far the two agree.
 
 use super::map::Elbow;
-use super::ranking::{Competitor, order};
+use super::ranking::{Capable, Competitor, order};
 use super::study::{Assessment, Configuration, Load};
 
 /// Published tables of an assessment.
@@ -59,15 +59,16 @@ pub struct Agreement {
     pub one_sided: usize,
     /// The printed order of the robots, the most accurate at its best place first.
     pub order: Vec<String>,
-    /// Whether the most accurate robot is the same.
+    /// Whether the most accurate of the robots in both is the same.
     pub same_best: bool,
-    /// Whether the least accurate robot is the same.
+    /// Whether the least accurate of them is the same.
     pub same_worst: bool,
-    /// Whether the whole order is the same.
+    /// Whether their whole order is the same.
     pub same_order: bool,
     /// Cells of the printed table of accuracies, and how many of ours round to the same.
     pub accuracies: (usize, usize),
-    /// Cells of the printed table of capable robots, and how many of ours name the same robots.
+    /// Cells of the printed table of capable robots, and in how many of them ours names the same robots, those apart
+    /// that are not printed.
     pub capable: (usize, usize),
 }
 
@@ -146,6 +147,7 @@ impl Printed {
             }
         }
         let printed_order = self.order(ours);
+        let shared: Vec<String> = ours.order.iter().filter(|name| printed_order.contains(name)).cloned().collect();
         let rounded = |value: Option<f64>| value.map(|value| (value * 1e5).round());
         let cells = ours.accuracies.iter().filter_map(|cell| {
             self.accuracy(&cell.robot, cell.force).map(|printed| rounded(printed) == rounded(cell.circularity))
@@ -156,14 +158,19 @@ impl Printed {
                 && self.accuracies.iter().any(|(_, f, _)| (f - force).abs() < SAME_FORCE)
         };
         let named = ours.capable.iter().filter(|cell| heads(cell.accuracy, cell.force));
-        let named: Vec<bool> = named.map(|cell| self.robots(cell.accuracy, cell.force) == cell.robots).collect();
+        let same = |cell: &Capable| {
+            let printed = self.robots(cell.accuracy, cell.force);
+            let found: Vec<&String> = cell.robots.iter().filter(|name| printed_order.contains(name)).collect();
+            found.len() == printed.len() && found.iter().all(|name| printed.contains(&name.as_str()))
+        };
+        let named: Vec<bool> = named.map(same).collect();
         Agreement {
             rms: if readings > 0 { libm::sqrt(squares / f64::from(readings)) } else { 0.0 },
             readings: readings as usize,
             one_sided,
-            same_best: ours.order.first() == printed_order.first(),
-            same_worst: ours.order.last() == printed_order.last(),
-            same_order: ours.order == printed_order,
+            same_best: !shared.is_empty() && shared.first() == printed_order.first(),
+            same_worst: !shared.is_empty() && shared.last() == printed_order.last(),
+            same_order: !shared.is_empty() && shared == printed_order,
             order: printed_order,
             accuracies: (cells.len(), cells.iter().filter(|same| **same).count()),
             capable: (named.len(), named.iter().filter(|same| **same).count()),

@@ -256,7 +256,7 @@ fn a_circle_that_the_arm_is_too_soft_for_has_no_circularity() {
     for stiffness in [StiffnessModel::Unloaded, StiffnessModel::Loaded] {
         let benchmark = Benchmark { stiffness, ..published() };
         let trial = Trial::new(&benchmark, &robot);
-        let mut at = |loads: [f64; 2]| trial.circularity([1.5, 1.0], class, loads, &mut Profile::default());
+        let at = |loads: [f64; 2]| trial.circularity([1.5, 1.0], class, loads, &mut Profile::default());
         let [light, heavy] = at([1.0, 40.0]).unwrap();
         assert!(light > 0.0 && light < 2e-3 && heavy.is_infinite());
         assert_eq!(at([100.0, 40.0]), Err(Obstacle::TooSoft));

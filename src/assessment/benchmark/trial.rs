@@ -248,8 +248,7 @@ impl<'a> Trial<'a> {
         let mean = [0, 1].map(|axis| profile.displacements.iter().map(|moved| moved[axis]).sum::<f64>() / count);
         let off = |moved: &[f64; 2]| libm::hypot(moved[0] - mean[0], moved[1] - mean[1]) * scale;
         let most = profile.displacements.iter().map(off).fold(0.0, f64::max);
-        // Written so that what is no number is too much as well.
-        if !(most <= MOST_DEFLECTION * radius) {
+        if most.is_nan() || most > MOST_DEFLECTION * radius {
             return Err(Obstacle::TooSoft);
         }
         least_squares(&profile.points).map(|fit| fit.circularity).map_err(|_| Obstacle::TooSoft)

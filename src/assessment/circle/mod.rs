@@ -39,6 +39,8 @@ pub mod plane;
 mod polygon;
 mod search;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod tests;
 
 pub use lsc::least_squares;

@@ -53,6 +53,7 @@ pub(super) struct Setting<'a> {
     pub yields: Yields,
     pub course: Option<&'a Course>,
     pub milling: &'a Field<'a>,
+    pub spindle: &'a Field<'a>,
 }
 
 pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result<(Benchmark, ElbowNames), InputError> {
@@ -93,6 +94,10 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     let limit_words = [("circle", LimitsAt::Circle), ("centre", LimitsAt::Centre)];
     let name_words = [("geometric", ElbowNames::Geometric), ("swapped", ElbowNames::Swapped)];
     let is_tool = traced.optional(|field| field.one_of(&[("tool", true), ("wrist-centre", false)]))?.unwrap_or(true);
+    if !is_tool && setting.spindle.is_given() {
+        let problem = "leaves out the spindle, but there is a table [spindle]";
+        return Err(traced.error(problem, "\"tool\" with a table [spindle], or \"wrist-centre\" without"));
+    }
     let beta = beta.optional(Field::number)?.unwrap_or_default().to_radians();
     let benchmark = Benchmark {
         plane: setting.plane,

@@ -64,12 +64,13 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
             "reference",
         ])?;
     let plane = plane.optional(|field| plane_from(&field.table()?))?.unwrap_or(Plane::XOZ);
-    let spindle = spindle.optional(|field| spindle_from(&field.table()?))?;
+    let mounted = spindle.optional(|field| spindle_from(&field.table()?))?;
     let cut = milling.optional(|field| milling_from(&field.table()?))?;
     let course = cut.map(|(tool, engagement)| Course::new(&tool, &engagement));
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
-    let flange_from_tool = spindle.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
-    let setting = Setting { plane, flange_from_tool, yields, course: course.as_ref(), milling: &milling };
+    let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
+    let setting =
+        Setting { plane, flange_from_tool, yields, course: course.as_ref(), milling: &milling, spindle: &spindle };
     let (benchmark, elbow_names) = benchmark_from(&benchmark.table()?, &setting)?;
     let grid = grid_from(&map.table()?)?;
     let zones = zones.optional(|field| zones_from(&field.table()?, &grid))?.unwrap_or_default();

@@ -173,6 +173,11 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         (TEXT.replace("[500, 1000]", "[1000, 500]"), [":6: map.x_mm: ", "lower end above", "found [1000, 500]"]),
         (TEXT.replace("[100, 400]", "[100, 500]"), [":10: zones.sides_mm[2]: ", "larger than the map", "found 500;"]),
         (TEXT.replace("[100, 400]", "[150]"), [":10: zones.sides_mm[1]: ", "multiple of the step", "found 150;"]),
+        (
+            TEXT.replace("radius_mm = 100", "radius_mm = 100\ntraced = 'wrist-centre'")
+                + "[spindle]\nxyz_mm = [0, 0, 1]\nrotation = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
+            [":4: benchmark.traced: ", "leaves out the spindle", "found 'wrist-centre'"],
+        ),
         (TEXT.replace("[100, 400]", "[100, 100]"), [":10: zones.sides_mm[2]: ", "twice", "found 100;"]),
         (TEXT.replace("[0.2]", "[0.2, 0.1]"), [":12: selection.accuracies_mm: ", "ascending", "found [0.2, 0.1]"]),
         (TEXT.replace("-635]", "1e300]"), [":4: benchmark.force_n[3]: ", "to 1e7", "found 1e300"]),
