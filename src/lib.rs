@@ -44,6 +44,7 @@
 
 pub mod assessment;
 pub mod cli;
+pub mod compensation;
 pub mod config;
 pub mod cutting;
 pub mod input;

@@ -7,6 +7,7 @@
 
 pub mod equilibrium;
 pub mod loaded;
+pub mod rotation;
 
 use crate::robot::{Frames, scalar::Scalar};
 use nalgebra::Vector3;
