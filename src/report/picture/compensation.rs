@@ -1,0 +1,89 @@
+//! The deflection along a path before and after its compensation.
+
+use super::axes::{Panel, Scale, Ticks};
+use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
+use super::colour::{GREEN, INK, PALE, RED};
+use super::lettering::figures;
+use crate::compensation::{Compensated, Deflection, Outcome, reduction};
+use crate::report::number::fixed;
+use crate::report::output::ReportError;
+use plotters::style::RGBColor;
+
+const LEFT: i32 = 95;
+const RIGHT: i32 = 970;
+
+/// Deflection above, its part normal to the feed below, over the points of the path: before and after. Segments are parted by
+/// thin lines.
+///
+/// # Errors
+/// [`ReportError::Format`] when the drawing fails.
+pub fn compensation(outcome: &Outcome) -> Result<String, ReportError> {
+    picture("the picture of the compensation", (1000, 780), |canvas| {
+        canvas.text("Deflection before and after compensation", (LEFT, 26), Lettering::new(17.0).bold())?;
+        let reduced =
+            |pair| reduction(pair).map_or_else(String::new, |share| format!(", {} % less", fixed(share * 100.0, 1)));
+        for (top, title, pair, y_label, value) in [
+            (
+                84,
+                "Deflection",
+                outcome.deflections(),
+                "deflection (mm)",
+                (|deflection| deflection.linear.norm()) as fn(&Deflection) -> f64,
+            ),
+            (444, "Part normal to the feed", outcome.normal_parts(), "normal part (mm)", |deflection| {
+                deflection.normal
+            }),
+        ] {
+            let [before, after] = pair.map(|figures_| figures(figures_.mean * 1e3));
+            let title = format!("{title}: mean magnitude {before} mm before, {after} mm after{}", reduced(pair));
+            canvas.text(&title, (LEFT, top - 16), Lettering::new(13.0).bold().coloured(INK))?;
+            draw(canvas, outcome, top, y_label, value)?;
+        }
+        legend(canvas)
+    })
+}
+
+fn draw(
+    canvas: &Canvas<'_>,
+    outcome: &Outcome,
+    top: i32,
+    y_label: &'static str,
+    value: fn(&Deflection) -> f64,
+) -> Drawn {
+    let points = &outcome.points;
+    let values = points.iter().flat_map(|point| [value(&point.before), value(&point.after)]);
+    let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), v| (low.min(v * 1e3), high.max(v * 1e3)));
+    let margin = 0.06 * (high - low);
+    let x = Scale::new(0.0, (points.len() - 1) as f64, LEFT, RIGHT);
+    let y = Scale::new(if low < 0.0 { low - margin } else { 0.0 }, high + margin, top + 260, top);
+    let (x_ticks, y_ticks) = (Ticks::round(&x, 12), Ticks::round(&y, 8));
+    let panel = Panel { x, y, x_ticks, y_ticks, x_label: "path point", y_label };
+    panel.draw_grid(canvas)?;
+    let zero = panel.y.pixel(0.0);
+    canvas.line(vec![(LEFT, zero), (RIGHT, zero)], INK, 1)?;
+    let mut first = 0;
+    for segment in points.chunk_by(|a, b| a.segment == b.segment) {
+        if first > 0 {
+            let between = panel.x.pixel(first as f64 - 0.5);
+            canvas.line(vec![(between, panel.y.start), (between, panel.y.end)], PALE, 1)?;
+        }
+        let curve = |of: fn(&Compensated) -> &Deflection, colour: RGBColor| {
+            let place = |(k, point): (usize, &Compensated)| panel.place((first + k) as f64, value(of(point)) * 1e3);
+            let places: Vec<Place> = segment.iter().enumerate().map(place).collect();
+            if let [alone] = places[..] { canvas.dot(alone, 3, colour) } else { canvas.curve(&places, colour, 2) }
+        };
+        curve(|point| &point.before, RED)?;
+        curve(|point| &point.after, GREEN)?;
+        first += segment.len();
+    }
+    panel.draw_frame(canvas)
+}
+
+/// The legend, in one line under the title.
+fn legend(canvas: &Canvas<'_>) -> Drawn {
+    for (left, label, colour) in [(LEFT, "before", RED), (LEFT + 110, "after", GREEN)] {
+        canvas.line(vec![(left, 46), (left + 28, 46)], colour, 2)?;
+        canvas.text(label, (left + 36, 46), Lettering::new(12.0))?;
+    }
+    Ok(())
+}
