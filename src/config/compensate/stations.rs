@@ -11,8 +11,7 @@ use crate::input::InputError;
 use crate::placement::problem::{Placement, Problem};
 use crate::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use crate::stiffness::displacement;
-use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::TAU;
+use nalgebra::Vector3;
 use std::path::Path;
 
 /// A plan that fits its run.
@@ -30,97 +29,115 @@ const POSITION_TOLERANCE: f64 = 1e-5;
 const DIRECTION_TOLERANCE: f64 = 1e-4;
 /// A joint angle of a plan may miss the one of its pose by this much. rad
 const JOINT_TOLERANCE: f64 = 2e-4;
+/// A joint angle may be beyond its limit by what it is rounded to. rad
+const LIMIT_TOLERANCE: f64 = 2e-6;
 /// A force may be off by this much in N, and by this share.
 const FORCE_TOLERANCE: (f64, f64) = (1e-3, 1e-5);
 /// A deflection that is off by more than this in m, and by more than this share, is that of other compliances.
 const DEFLECTION_TOLERANCE: (f64, f64) = (1e-7, 1e-3);
 
-const ALLOWED: &str = "a row of the plan that stead place wrote for this run";
+/// What does not fit in a row: the columns, and a sentence on them with the values.
+type Misfit = (String, String);
 
 /// Puts the rows of a plan on the task of its run.
 ///
 /// # Errors
 /// [`InputError`] at the line of the first row that does not fit the run or the other rows.
 pub(super) fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
-    let fail = |row: &PlanRow, field: &str, problem: String| {
-        InputError::new(file, problem).at_line(row.line).in_field(field).allowed(ALLOWED)
+    let located = |row: &PlanRow, (columns, problem): Misfit| {
+        InputError::new(file, problem)
+            .at_line(row.line)
+            .in_field(columns)
+            .allowed("a row of the plan that stead place wrote for this run")
     };
-    let position_field = POSITION.join(",");
-    let joints_field = format!("{} to {}", JOINTS[0], JOINTS[5]);
-    let mut turned = Vec::with_capacity(rows.len());
+    let mut yaws = Vec::with_capacity(rows.len());
     for (point, row) in rows.iter().enumerate() {
-        let tool = problem.robot.forward(&row.joints).then(&problem.spindle.flange_from_tool);
-        let off = (tool.translation - row.position).norm();
-        if off > POSITION_TOLERANCE {
-            let problem = format!("these angles bring the tool {:.4} mm away from the position of the row", off * 1e3);
-            return Err(fail(row, &joints_field, problem));
-        }
-        let base_from_workpiece = turned_workpiece(problem, point, row, &tool.rotation);
-        let tilt = (base_from_workpiece.column(2) - Vector3::z()).norm();
-        if tilt > DIRECTION_TOLERANCE {
-            let problem = format!(
-                "with these angles the tool is {:.4} deg off the axis that the task has here",
-                tilt.to_degrees()
-            );
-            return Err(fail(row, &joints_field, problem));
-        }
-        turned.push(libm::atan2(base_from_workpiece.m21, base_from_workpiece.m11));
+        check_limits(problem, row).map_err(|misfit| located(row, misfit))?;
+        yaws.push(own_yaw(problem, point, row).map_err(|misfit| located(row, misfit))?);
     }
-    let yaw = agreed(&turned.iter().map(|yaw| wrap(yaw - turned[0])).collect::<Vec<_>>()) + turned[0];
-    for (row, own) in rows.iter().zip(&turned) {
-        let off = wrap(own - yaw).abs();
-        if off > DIRECTION_TOLERANCE {
-            let problem = format!(
-                "with the joint angles it puts the workpiece at a yaw of {:.4} deg, and other rows at {:.4} deg",
-                own.to_degrees(),
-                wrap(yaw).to_degrees()
-            );
-            return Err(fail(row, "beta_deg", problem).found(format!("{:.4}", row.beta.to_degrees())));
-        }
-    }
-    let yaw = wrap(turned.iter().map(|own| wrap(own - yaw)).sum::<f64>() / turned.len() as f64 + yaw);
-    let origin = Placement { x: 0.0, y: 0.0, z: 0.0, yaw }.base_from_workpiece();
-    let origins: Vec<Vector3<f64>> = rows
-        .iter()
-        .zip(problem.task.points())
-        .map(|(row, point)| row.position - origin.point(&point.position))
-        .collect();
-    let middle = Vector3::from_fn(|axis, _| agreed(&origins.iter().map(|own| own[axis]).collect::<Vec<_>>()));
-    for (row, own) in rows.iter().zip(&origins) {
-        let off = (own - middle).norm();
-        if off > POSITION_TOLERANCE {
-            let problem =
-                format!("{:.4} mm away from where the point is with the workpiece as in the other rows", off * 1e3);
-            return Err(fail(row, &position_field, problem));
-        }
-    }
-    let mean = origins.iter().sum::<Vector3<f64>>() / origins.len() as f64;
-    let placement = Placement { x: mean.x, y: mean.y, z: mean.z, yaw };
+    let yaw = common_yaw(&yaws, rows).map_err(|(row, misfit)| located(row, misfit))?;
+    let origin = common_origin(problem, yaw, rows).map_err(|(row, misfit)| located(row, misfit))?;
+    let placement = Placement { x: origin.x, y: origin.y, z: origin.z, yaw };
     let mut stations = Vec::with_capacity(rows.len());
     let mut note = None;
     for (point, row) in rows.iter().enumerate() {
         let station = station(problem, &placement, point, row);
-        let off = (station.force - row.force).norm();
-        if off > FORCE_TOLERANCE.0 + FORCE_TOLERANCE.1 * station.force.norm() {
-            let problem = format!("{off:.4} N away from the force that the task has here");
-            return Err(fail(row, &FORCE.join(","), problem));
-        }
-        check_posture(problem, &station, row).map_err(|(field, problem)| fail(row, field, problem))?;
+        check_force(&station, row).map_err(|misfit| located(row, misfit))?;
+        check_posture(problem, &station, row).map_err(|misfit| located(row, misfit))?;
         note = note.or_else(|| deflection_note(problem, &station, row));
         stations.push(station);
     }
     Ok(PlacedPlan { placement, stations, note })
 }
 
-/// How the workpiece is turned in the base frame, by one row alone.
-fn turned_workpiece(problem: &Problem, point: usize, row: &PlanRow, base_from_tool: &Matrix3<f64>) -> Matrix3<f64> {
-    let workpiece_from_point = problem.task.points()[point].workpiece_from_point();
-    base_from_tool * point_from_tool(row.beta).transpose() * workpiece_from_point.transpose()
+fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {
+    for ((column, angle), joint) in JOINTS.into_iter().zip(row.joints).zip(problem.robot.joints()) {
+        if angle < joint.min - LIMIT_TOLERANCE || angle > joint.max + LIMIT_TOLERANCE {
+            let [angle, min, max] = [angle, joint.min, joint.max].map(f64::to_degrees);
+            let sentence = format!("is {angle:.4}, but the joint of the run's robot goes from {min:.4} to {max:.4}");
+            return Err((column.to_owned(), sentence));
+        }
+    }
+    Ok(())
 }
 
-/// The value that most rows agree on: the median, which a few wrong rows do not move.
-fn agreed(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
+/// The yaw of the workpiece that one row alone tells. rad
+fn own_yaw(problem: &Problem, point: usize, row: &PlanRow) -> Result<f64, Misfit> {
+    let columns = || format!("{} to {}", JOINTS[0], JOINTS[5]);
+    let tool = problem.robot.forward(&row.joints).then(&problem.spindle.flange_from_tool);
+    let off = (tool.translation - row.position).norm();
+    if off > POSITION_TOLERANCE {
+        let sentence = format!("these angles bring the tool {:.4} mm away from the position of the row", off * 1e3);
+        return Err((columns(), sentence));
+    }
+    let workpiece_from_point = problem.task.points()[point].workpiece_from_point();
+    let base_from_point = tool.rotation * point_from_tool(row.beta).transpose();
+    let base_from_workpiece = base_from_point * workpiece_from_point.transpose();
+    let tilt = (base_from_workpiece.column(2) - Vector3::z()).norm();
+    if tilt > DIRECTION_TOLERANCE {
+        let tilt_deg = tilt.to_degrees();
+        return Err((
+            columns(),
+            format!("these angles tilt the tool {tilt_deg:.4} deg off the axis of the task's point"),
+        ));
+    }
+    Ok(libm::atan2(base_from_workpiece.m21, base_from_workpiece.m11))
+}
+
+/// The yaw of the workpiece that all rows agree on, or the first row that does not agree with most. rad
+fn common_yaw<'a>(yaws: &[f64], rows: &'a [PlanRow]) -> Result<f64, (&'a PlanRow, Misfit)> {
+    let middle = median(yaws.iter().map(|yaw| wrap(yaw - yaws[0]))) + yaws[0];
+    for (row, yaw) in rows.iter().zip(yaws) {
+        if wrap(yaw - middle).abs() > DIRECTION_TOLERANCE {
+            let [beta, own, others] = [row.beta, *yaw, wrap(middle)].map(f64::to_degrees);
+            let sentence = format!(
+                "is {beta:.4}, which with the joint angles puts the workpiece at a yaw of {own:.4} deg, and other rows at {others:.4} deg"
+            );
+            return Err((row, ("beta_deg".to_owned(), sentence)));
+        }
+    }
+    Ok(wrap(yaws.iter().map(|yaw| wrap(yaw - middle)).sum::<f64>() / yaws.len() as f64 + middle))
+}
+
+/// The workpiece origin that all rows agree on, or the first row that does not agree with most. m
+fn common_origin<'a>(problem: &Problem, yaw: f64, rows: &'a [PlanRow]) -> Result<Vector3<f64>, (&'a PlanRow, Misfit)> {
+    let turned = Placement { x: 0.0, y: 0.0, z: 0.0, yaw }.base_from_workpiece();
+    let pairs = rows.iter().zip(problem.task.points());
+    let origins: Vec<Vector3<f64>> = pairs.map(|(row, point)| row.position - turned.point(&point.position)).collect();
+    let middle = Vector3::from_fn(|axis, _| median(origins.iter().map(|origin| origin[axis])));
+    for (row, origin) in rows.iter().zip(&origins) {
+        let off = (origin - middle).norm();
+        if off > POSITION_TOLERANCE {
+            let sentence = format!("{:.4} mm away from where the other rows place this point of the task", off * 1e3);
+            return Err((row, (POSITION.join(","), sentence)));
+        }
+    }
+    Ok(origins.iter().sum::<Vector3<f64>>() / origins.len() as f64)
+}
+
+/// The value in the middle, which a few wrong rows do not move.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted[sorted.len() / 2]
 }
@@ -142,22 +159,27 @@ fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow
     }
 }
 
+fn check_force(station: &Station, row: &PlanRow) -> Result<(), Misfit> {
+    let off = (station.force - row.force).norm();
+    if off > FORCE_TOLERANCE.0 + FORCE_TOLERANCE.1 * station.force.norm() {
+        return Err((FORCE.join(","), format!("{off:.4} N away from the force that the task has here")));
+    }
+    Ok(())
+}
+
 /// Whether the joint angles are those of the posture.
-fn check_posture(problem: &Problem, station: &Station, row: &PlanRow) -> Result<(), (&'static str, String)> {
+fn check_posture(problem: &Problem, station: &Station, row: &PlanRow) -> Result<(), Misfit> {
     let base_from_flange = station.base_from_tool.then(&problem.spindle.flange_from_tool.inverse());
     let posture = row.posture;
     let angles = problem
         .robot
         .inverse(&base_from_flange, posture)
-        .map_err(|e| ("posture", format!("posture {posture} does not reach this point: {e}")))?;
-    for ((name, own), angle) in JOINTS.into_iter().zip(row.joints).zip(angles) {
+        .map_err(|e| ("posture".to_owned(), format!("posture {posture} does not reach this point: {e}")))?;
+    for ((column, own), angle) in JOINTS.into_iter().zip(row.joints).zip(angles) {
         if wrap(own - angle).abs() > JOINT_TOLERANCE {
-            let turns = ((own - angle) / TAU).round();
-            let expected = (angle + TAU * turns).to_degrees();
-            return Err((
-                name,
-                format!("is {:.4}, but in posture {posture} the joint stands at {expected:.4}", own.to_degrees()),
-            ));
+            let [own, expected] = [own, own - wrap(own - angle)].map(f64::to_degrees);
+            let sentence = format!("is {own:.4}, but in posture {posture} the joint stands at {expected:.4}");
+            return Err((column.to_owned(), sentence));
         }
     }
     Ok(())

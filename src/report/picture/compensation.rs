@@ -4,7 +4,7 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
 use super::lettering::figures;
-use crate::compensation::{Compensated, Deflection, Outcome, reduction};
+use crate::compensation::{Compensated, Deflection, Figures, Outcome, reduction};
 use crate::report::number::fixed;
 use crate::report::output::ReportError;
 use plotters::style::RGBColor;
@@ -20,8 +20,6 @@ const RIGHT: i32 = 970;
 pub fn compensation(outcome: &Outcome) -> Result<String, ReportError> {
     picture("the picture of the compensation", (1000, 780), |canvas| {
         canvas.text("Deflection before and after compensation", (LEFT, 26), Lettering::new(17.0).bold())?;
-        let reduced =
-            |pair| reduction(pair).map_or_else(String::new, |share| format!(", {} % less", fixed(share * 100.0, 1)));
         for (top, title, pair, y_label, value) in [
             (
                 84,
@@ -34,12 +32,20 @@ pub fn compensation(outcome: &Outcome) -> Result<String, ReportError> {
                 deflection.normal
             }),
         ] {
-            let [before, after] = pair.map(|figures_| figures(figures_.mean * 1e3));
-            let title = format!("{title}: mean magnitude {before} mm before, {after} mm after{}", reduced(pair));
+            let [before, after] = pair.map(|sizes| figures(sizes.mean * 1e3));
+            let title = format!("{title}: mean magnitude {before} mm before, {after} mm after{}", change(pair));
             canvas.text(&title, (LEFT, top - 16), Lettering::new(13.0).bold().coloured(INK))?;
             draw(canvas, outcome, top, y_label, value)?;
         }
         legend(canvas)
+    })
+}
+
+/// By how much the mean changes, to go on with.
+fn change(pair: [Figures; 2]) -> String {
+    reduction(pair).map_or_else(String::new, |share| {
+        let word = if share < 0.0 { "more" } else { "less" };
+        format!(", {} % {word}", fixed(share.abs() * 100.0, 1))
     })
 }
 
