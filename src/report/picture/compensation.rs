@@ -93,3 +93,40 @@ fn legend(canvas: &Canvas<'_>) -> Drawn {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testing::assert_well_formed;
+    use super::*;
+    use crate::compensation::compensate;
+    use crate::config::read_compensation;
+    use std::path::Path;
+
+    fn outcome() -> Outcome {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
+        let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
+        compensate(&run.job).unwrap()
+    }
+
+    #[test]
+    fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {
+        let outcome = outcome();
+        let svg = compensation(&outcome).unwrap();
+        assert_eq!(svg, compensation(&outcome).unwrap());
+        assert_well_formed(&svg);
+        assert!(svg.len() < 100_000, "{}", svg.len());
+        for label in ["deflection (mm)", "normal part (mm)", "before", "after", "path point", "77.0 % more"] {
+            assert!(svg.contains(label), "{label}");
+        }
+    }
+
+    #[test]
+    fn a_path_of_one_point_is_a_dot() {
+        let mut outcome = outcome();
+        outcome.points.truncate(1);
+        let svg = compensation(&outcome).unwrap();
+        assert_well_formed(&svg);
+        assert!(svg.contains("<circle"));
+    }
+}
