@@ -24,6 +24,8 @@ pub(super) enum Command {
     Explain(ExplainOptions),
     /// Tell how good robots are for machining: maps of circularity, best zones, and which robot for which task
     Assess(AssessOptions),
+    /// Correct the path of a plan so that the loaded tool follows the path that is wanted
+    Compensate(CompensateOptions),
     /// Roundness of measured points: the four reference circles of ISO 12181
     Circularity(CircularityOptions),
 }
@@ -90,6 +92,21 @@ pub(super) struct ExplainOptions {
     /// Free angle beta about the tool axis in degrees
     #[arg(long, value_name = "B", value_parser = finite, allow_hyphen_values = true)]
     pub beta_deg: f64,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompensateOptions {
+    /// Compensation file (TOML)
+    pub config: PathBuf,
+    /// Robot file (TOML) to play the corrected path on, of the same geometry, instead of the file's `reality`
+    #[arg(long, value_name = "ROBOT")]
+    pub reality: Option<PathBuf>,
+    /// Folder for the results [default: results/<name of the compensation file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub json: bool,

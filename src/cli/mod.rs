@@ -7,12 +7,14 @@
 mod arguments;
 mod assess;
 mod circularity;
+mod compensate;
 mod explain;
 mod place;
 mod progress;
 mod score;
 
 use crate::assessment::study::AssessError;
+use crate::compensation::NotCompensated;
 use crate::input::InputError;
 use crate::placement::place::NothingFeasible;
 use crate::report::output::{Folder, ReportError};
@@ -40,6 +42,9 @@ enum Failure {
     /// No robot can mill the benchmark, or nobody wants to know any more.
     #[error("{0}")]
     Assessment(#[from] AssessError),
+    /// Some points of a path cannot be compensated.
+    #[error("{0}")]
+    NotCompensated(#[from] NotCompensated),
     /// The job itself failed.
     #[error("{0}")]
     Job(String),
@@ -49,7 +54,7 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Usage(_) | Failure::Output(_) => 2,
-            Failure::Nothing(_) | Failure::Assessment(_) | Failure::Job(_) => 1,
+            Failure::Nothing(_) | Failure::Assessment(_) | Failure::NotCompensated(_) | Failure::Job(_) => 1,
         }
     }
 }
@@ -62,6 +67,7 @@ pub fn main() -> ExitCode {
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
         Command::Assess(options) => assess::run(&options),
+        Command::Compensate(options) => compensate::run(&options),
         Command::Circularity(options) => circularity::run(&options),
     };
     match result {

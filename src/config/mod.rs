@@ -19,6 +19,7 @@
 
 mod arrays;
 mod assess;
+mod compensate;
 mod cutting;
 mod milling;
 mod points;
@@ -32,6 +33,7 @@ mod tables;
 mod testing;
 
 pub use assess::{AssessRun, read_assessment};
+pub use compensate::{CompensateRun, read_compensation};
 pub use points::{PointFile, read_points};
 pub use robot::read_robot;
 pub use run::{Run, read_run};

@@ -4,6 +4,7 @@
 
 pub mod assessment;
 pub mod circularity;
+pub mod compensation;
 pub mod cutting;
 pub mod evaluation;
 pub mod json;

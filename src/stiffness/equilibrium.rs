@@ -7,8 +7,9 @@
 
 use super::Displacement;
 use super::loaded::{inverse_tangent, load_hessian, roots};
+use super::rotation::rotation_vector;
 use crate::robot::{Frames, Robot};
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
 /// A load acting at a point of the tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,15 +112,6 @@ fn settle(
 
 fn turned(theta: &[f64; 6], roots: &Vector6<f64>, deflection: &Vector6<f64>) -> [f64; 6] {
     std::array::from_fn(|j| theta[j] + roots[j] * deflection[j])
-}
-
-/// The vector along the axis of a rotation, as long as its angle, below half a turn. rad
-fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
-    let sine =
-        Vector3::new(rotation.m32 - rotation.m23, rotation.m13 - rotation.m31, rotation.m21 - rotation.m12) * 0.5;
-    let length = sine.norm();
-    let angle = libm::atan2(length, (rotation.trace() - 1.0) * 0.5);
-    if length > 0.0 { sine * (angle / length) } else { sine }
 }
 
 #[cfg(test)]
@@ -259,13 +251,5 @@ mod tests {
         assert!((share - 0.5).abs() < 1e-3, "{share}");
         let load = Load { point, force: vector![f64::NAN, 0.0, 0.0], moment: Vector3::zeros() };
         assert_eq!(equilibrium(&robot, &theta, &load), Err(NoEquilibrium { share: 0.0 }));
-    }
-
-    #[test]
-    fn rotation_vectors_come_back() {
-        for v in [vector![0.3, -0.2, 0.9], vector![1e-9, 2e-9, -3e-9], vector![2.0, 1.5, -1.0], Vector3::zeros()] {
-            let found = rotation_vector(nalgebra::Rotation3::new(v).matrix());
-            assert!((found - v).norm() < 1e-14, "{found}");
-        }
     }
 }

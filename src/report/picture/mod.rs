@@ -6,6 +6,7 @@ mod cell;
 mod circularity_map;
 mod circularity_panel;
 mod colour;
+mod compensation;
 mod contour;
 mod convergence;
 mod cutting;
@@ -20,6 +21,7 @@ mod scene;
 
 pub use cell::cell;
 pub use circularity_map::circularity_map;
+pub use compensation::compensation;
 pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;

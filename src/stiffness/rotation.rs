@@ -1,0 +1,50 @@
+//! Rotation vectors: along the axis of a rotation, as long as its angle.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// The vector of a rotation by less than half a turn. rad
+pub fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let sine =
+        Vector3::new(rotation.m32 - rotation.m23, rotation.m13 - rotation.m31, rotation.m21 - rotation.m12) * 0.5;
+    let length = sine.norm();
+    let angle = libm::atan2(length, (rotation.trace() - 1.0) * 0.5);
+    if length > 0.0 { sine * (angle / length) } else { sine }
+}
+
+/// The rotation of a vector (rad): the formula of Rodrigues.
+pub fn rotation_from_vector(vector: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = vector.norm();
+    if angle <= 0.0 {
+        return Matrix3::identity();
+    }
+    let cross = vector.cross_matrix();
+    let half = libm::sin(angle / 2.0) / (angle / 2.0);
+    Matrix3::identity() + cross * (libm::sin(angle) / angle) + cross * cross * (half * half / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+    use proptest::prelude::*;
+
+    #[test]
+    fn small_large_and_no_rotations_come_back() {
+        for v in [vector![0.3, -0.2, 0.9], vector![1e-9, 2e-9, -3e-9], vector![2.0, 1.5, -1.0], Vector3::zeros()] {
+            let found = rotation_vector(nalgebra::Rotation3::new(v).matrix());
+            assert!((found - v).norm() < 1e-14, "{found}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn formula_agrees_with_the_rotations_of_nalgebra(v in prop::array::uniform3(-1.8..1.8_f64), scale in 0..9_i32) {
+            let v = Vector3::from(v) * libm::pow(10.0, -f64::from(scale));
+            let found = rotation_from_vector(&v);
+            prop_assert!((found - nalgebra::Rotation3::new(v).matrix()).norm() < 1e-15 * 8.0, "{}", found);
+            if v.norm() < 3.0 {
+                prop_assert!((rotation_vector(&found) - v).norm() < 1e-14, "{}", v);
+            }
+        }
+    }
+}
