@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
-use super::lettering::figures;
 use crate::compensation::{Compensated, Deflection, Figures, Outcome, reduction};
+use crate::report::number::figures;
 use crate::report::number::fixed;
 use crate::report::output::ReportError;
 use plotters::style::RGBColor;
