@@ -1,7 +1,7 @@
 //! The placement job: search, refine, plan, map.
 
 use super::control::{Control, Progress};
-use super::criterion::state;
+use super::criterion::{normal_part_by_parameters, state};
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::genetic::{self, Found, Individual};
 use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement};
@@ -217,9 +217,15 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
     let [x, y, z, yaw] = *pose;
     let base_from_workpiece = Placement { x, y, z, yaw }.base_from_workpiece();
     let mut points = Vec::with_capacity(problem.task.points().len());
+    let known = problem.robot.uncertainty();
+    let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = state(problem, point, pose, plan.betas[place], plan.posture) else { continue };
+            let sign = if s.normal_part < 0.0 { -1.0 } else { 1.0 };
+            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, pose, &s.joints)) {
+                *sum += sign * slope;
+            }
             points.push(PlanPoint {
                 point,
                 segment: segment + 1,
@@ -234,6 +240,7 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
                 normal_part: s.normal_part,
                 axial_part: s.axial_part,
                 score: s.score(),
+                deviation: s.deviation,
             });
         }
     }
@@ -241,6 +248,7 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
         mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
         max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
         points,
     }
 }

@@ -59,7 +59,7 @@ fn curvature(
     centre: &State<Dual<LOCAL>>,
 ) -> Matrix5<f64> {
     let sign = if centre.normal_part.value < 0.0 { -1.0 } else { 1.0 };
-    let slope = |s: &State<Dual<LOCAL>>, k: usize| sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k];
+    let slope = |s: &State<Dual<LOCAL>>, k: usize| sign * s.normal_part.gradient[k] + s.added().gradient[k];
     let mut hessian = Matrix5::zeros();
     for k in 0..LOCAL {
         let shifted = |h: f64| {

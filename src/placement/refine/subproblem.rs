@@ -2,7 +2,7 @@
 //!
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present mean). Minimised
 //! is the mean of t plus the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what force errors
-//! add); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
+//! and the uncertainty of the compliances add); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out.
 
 use super::super::problem::{Interval, Problem};
@@ -93,7 +93,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
     let swing = |terms: &[(usize, f64)]| 2.0 * question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
 
     for (i, local) in locals.iter().enumerate() {
-        let (c, u) = (&local.state.normal_part, &local.state.uncertainty);
+        let (c, u) = (&local.state.normal_part, &local.state.added());
         for sign in [1.0, -1.0] {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
             let row = terms(i, &slope).into_iter().chain([(epigraph + i, -1.0)]);
