@@ -135,6 +135,9 @@ fn by_parameters<T: Scalar>(robot: &Robot, joints: &[T; 6], parts: &[T; 6]) -> V
 }
 
 #[cfg(test)]
+mod uncertainty_tests;
+
+#[cfg(test)]
 mod tests {
     use super::super::testing::{five_segments, five_segments_compensated};
     use super::*;
