@@ -38,11 +38,6 @@ impl<T: Scalar> State<T> {
     pub fn score(&self) -> T {
         self.normal_part.abs() + self.uncertainty + self.margin
     }
-
-    /// What the score adds to c_i. m
-    pub fn added(&self) -> T {
-        self.uncertainty + self.margin
-    }
 }
 
 /// Evaluates path point `point` for a workpiece at `pose` (x, y, z in m, yaw in rad), free angle `beta` (rad) and a
@@ -101,14 +96,15 @@ pub fn state<T: Scalar>(
 /// parameter; empty where no uncertainty is known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
-pub fn normal_part_by_parameters(problem: &Problem, point: usize, pose: &[f64; 4], joints: &[f64; 6]) -> Vec<f64> {
+pub fn normal_part_by_parameters<T: Scalar>(problem: &Problem, point: usize, pose: &[T; 4], joints: &[T; 6]) -> Vec<T> {
     let frames = Frames::new(&problem.robot, joints);
     let workpiece = base_from_workpiece(pose);
     let path_point = &problem.task.points()[point];
     let wrench = &problem.task.wrenches()[point];
-    let tip = workpiece.point(&path_point.position);
-    let normal = (workpiece.rotation * path_point.workpiece_from_point()).column(1).into_owned();
-    let (force, moment) = (workpiece.rotation * wrench.force, workpiece.rotation * wrench.moment);
+    let tip = workpiece.point(&cast(&path_point.position));
+    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
+    let normal = axes.column(1).into_owned();
+    let (force, moment) = (workpiece.rotation * cast(&wrench.force), workpiece.rotation * cast(&wrench.moment));
     let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
     by_parameters(&problem.robot, joints, &parts)
 }

@@ -125,7 +125,7 @@ proptest! {
             let (Ok(up), Ok(down)) = (at(h), at(-h)) else { continue };
             let slope = (up.margin - down.margin) / (2.0 * h);
             prop_assert!((exact.margin.gradient[k] - slope).abs() < 1e-8, "{} {}", exact.margin.gradient[k], slope);
-            let whole = sign * exact.normal_part.gradient[k] + exact.added().gradient[k];
+            let whole = sign * exact.normal_part.gradient[k] + exact.margin.gradient[k];
             prop_assert_eq!(whole, exact.score().gradient[k]);
         }
     }

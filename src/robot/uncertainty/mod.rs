@@ -190,15 +190,16 @@ impl Uncertainty {
     /// Standard deviation `sqrt(g^T Sigma g)` of a quantity whose derivatives by the parameters are `gradient`, in their
     /// order and in SI units. Exactly zero, with derivatives of zero, where no error is seen.
     pub fn standard_deviation<T: Scalar>(&self, gradient: &[T]) -> T {
-        let mut variance = T::zero();
-        for direction in &self.directions {
-            let mut seen = T::zero();
-            for (share, slope) in direction.iter().zip(gradient) {
-                seen += slope.scale(*share);
-            }
-            variance += seen * seen;
-        }
-        variance.sqrt()
+        self.changes(gradient).fold(T::zero(), |variance, change| variance + change * change).sqrt()
+    }
+
+    /// By how much each of [`Uncertainty::directions`] changes a quantity whose derivatives by the parameters are
+    /// `gradient`: the standard deviation is the Euclidean norm of these changes.
+    pub fn changes<T: Scalar>(&self, gradient: &[T]) -> impl Iterator<Item = T> {
+        self.directions.iter().map(move |direction| {
+            let shares = direction.iter().zip(gradient);
+            shares.fold(T::zero(), |change, (share, slope)| change + slope.scale(*share))
+        })
     }
 }
 
