@@ -19,12 +19,15 @@ pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0
 pub struct Local {
     /// The state with exact gradients.
     pub state: State<Dual<LOCAL>>,
-    /// Changes of c_i by independent errors of the compliances, as often as the criterion asks: their Euclidean norm is
-    /// [`State::margin`]. Empty where it does not ask. m
+    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near. m
+    pub added: Dual<LOCAL>,
+    /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
+    /// criterion asks, whose Euclidean norm is [`State::margin`]. Empty elsewhere. m
     pub changes: Vec<Dual<LOCAL>>,
     /// Real joint angles. rad
     pub joints: [f64; 6],
-    /// Curvature of the score where |c_i| is smooth and the margin is linear in its changes, its negative part left out.
+    /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
+    /// left out.
     /// m per square unit
     pub curvature: Matrix5<f64>,
 }
@@ -39,12 +42,32 @@ pub fn linearise(problem: &Problem, solution: &Solution) -> Option<Vec<Local>> {
         for (place, point) in plan.points.clone().enumerate() {
             let at = [solution.pose[0], solution.pose[1], solution.pose[2], solution.pose[3], plan.betas[place]];
             let centre = gradient(problem, point, at, plan.posture)?;
+            let centre = (centre.0, if is_near_kink(&centre.1) { centre.1 } else { Vec::new() });
             let curvature = curvature(problem, point, at, plan.posture, &centre);
             let (state, changes) = centre;
-            locals.push(Local { state, changes, joints: plan.joints[place], curvature });
+            let margin = if changes.is_empty() { state.margin } else { Dual::constant(0.0) };
+            locals.push(Local {
+                state,
+                added: state.uncertainty + margin,
+                changes,
+                joints: plan.joints[place],
+                curvature,
+            });
         }
     }
     Some(locals)
+}
+
+/// A margin that steps of this size could bring to zero has its kink near; in scaled variables.
+const KINK: f64 = 0.1;
+
+/// Whether a margin, the norm of these changes, can vanish nearby. Elsewhere it is smooth, and better followed with its own
+/// curvature: where the changes only turn, that of their norm and their own cancel.
+fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
+    let square = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |sum, number| sum + number * number);
+    let size = square(&mut changes.iter().map(|change| change.value));
+    let slope = square(&mut changes.iter().flat_map(|change| change.gradient));
+    size < KINK * KINK * slope
 }
 
 /// A state and what the margin of its score is made of.
@@ -81,12 +104,14 @@ fn curvature(
 ) -> Matrix5<f64> {
     let sign = if centre.0.normal_part.value < 0.0 { -1.0 } else { 1.0 };
     let margin = centre.0.margin.value;
-    // The norm of the changes is the subproblem's: here they are followed along their present direction.
+    let is_smooth = centre.1.is_empty();
+    // Near a kink the norm of the changes is the subproblem's: here they are followed along their present direction.
     let share = |change: &Dual<LOCAL>| if margin > 0.0 { change.value / margin } else { 0.0 };
     let shares: Vec<f64> = centre.1.iter().map(share).collect();
     let slope = |(s, changes): &Differentiated, k: usize| {
         let along = shares.iter().zip(changes).map(|(share, change)| share * change.gradient[k]);
-        sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k] + along.sum::<f64>()
+        let margin = if is_smooth { s.margin.gradient[k] } else { along.sum() };
+        sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k] + margin
     };
     let mut hessian = Matrix5::zeros();
     for k in 0..LOCAL {

@@ -65,7 +65,7 @@ fn margins_may_be_driven_to_their_kink() {
     let locals = linearise::linearise(&problem, &solution).unwrap();
     let margins = || locals.iter().map(|local| local.state.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
-    for local in &locals {
+    for local in locals.iter().filter(|local| !local.changes.is_empty()) {
         let [change] = local.changes[..] else { panic!("one uncertain parameter is one change") };
         assert!((change.value.abs() - local.state.margin.value).abs() < 1e-18);
     }
