@@ -5,7 +5,7 @@ use super::{Failure, print, say};
 use crate::config::read_run;
 use crate::placement::outcome::CANCELLED;
 use crate::placement::place::score;
-use crate::placement::problem::{Placement, Problem};
+use crate::placement::problem::{Criterion, Placement, Problem};
 use crate::report::{evaluation, json};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
@@ -30,7 +30,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
 
 /// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
 pub(super) fn mention_cancellation(problem: &Problem, mean: f64) {
-    if mean <= CANCELLED && problem.criterion.force_uncertainty == 0.0 {
+    if mean <= CANCELLED && problem.criterion == Criterion::default() {
         say(
             "note: the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
              makes the score the worst case over force errors",

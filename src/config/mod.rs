@@ -35,5 +35,5 @@ mod testing;
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
 pub use points::{PointFile, read_points};
-pub use robot::read_robot;
+pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run};

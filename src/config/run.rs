@@ -5,8 +5,8 @@ use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
 use super::source::{Source, sha256};
 use super::tables::{
-    cell_from, constraints_from, criterion_from, redundancy_from, reference_from, search_from, spindle_from,
-    transfer_from,
+    cell_from, check_confidence, constraints_from, criterion_from, redundancy_from, reference_from, search_from,
+    spindle_from, transfer_from,
 };
 use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
@@ -59,7 +59,8 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let spindle = spindle_from(&spindle.table()?)?;
     let cell = cell_from(&cell.table()?)?;
     let constraints = constraints_from(&constraints.table()?)?;
-    let criterion = criterion.optional(|field| criterion_from(&field.table()?))?.unwrap_or_default();
+    let scoring = criterion.optional(Field::table)?;
+    let criterion = scoring.as_ref().map(criterion_from).transpose()?.unwrap_or_default();
     let redundancy = redundancy_from(&redundancy.table()?)?;
     let search = search.optional(|field| search_from(&field.table()?))?.unwrap_or_default();
     let transfer = transfer.optional(|field| transfer_from(&field.table()?))?.unwrap_or_default();
@@ -68,6 +69,9 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let robot_file = robot.named_file()?;
     let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
     let robot = robot_from(&robot_source)?;
+    if let Some(table) = &scoring {
+        check_confidence(table, &criterion, &robot)?;
+    }
     let task_file = task.named_file()?;
     let imported = parse_csv(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> =

@@ -4,7 +4,7 @@ use super::reader::{Field, Table};
 use crate::input::{InputError, Reference};
 use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Redundancy};
 use crate::placement::settings::{PostureSearch, SearchSettings, TransferSettings};
-use crate::robot::{Spindle, angles::yaw_from_q4};
+use crate::robot::{Robot, Spindle, angles::yaw_from_q4};
 
 pub(super) fn spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
     let [xyz, rotation] = table.fields(["xyz_mm", "rotation"])?;
@@ -37,10 +37,25 @@ pub(super) fn constraints_from(table: &Table<'_>) -> Result<Constraints, InputEr
     })
 }
 
+const CONFIDENCE: &str = "confidence";
+
+/// Refuses a confidence where nothing is known of the errors of the compliances.
+pub(super) fn check_confidence(table: &Table<'_>, criterion: &Criterion, robot: &Robot) -> Result<(), InputError> {
+    if criterion.confidence > 0.0 && robot.uncertainty().is_none() {
+        return Err(table.field(CONFIDENCE).error(
+            "asks for standard deviations, but the robot file has no table [covariance]",
+            "0, or a robot file that says how well its compliances are known",
+        ));
+    }
+    Ok(())
+}
+
 pub(super) fn criterion_from(table: &Table<'_>) -> Result<Criterion, InputError> {
-    let [uncertainty] = table.fields(["force_uncertainty"])?;
+    let [uncertainty, confidence] = table.fields(["force_uncertainty", CONFIDENCE])?;
     let read = |field: &Field<'_>| field.number_where("a number from 0 to 10", |value| (0.0..=10.0).contains(&value));
-    Ok(Criterion { force_uncertainty: uncertainty.optional(read)?.unwrap_or_default() })
+    let [force_uncertainty, confidence] =
+        [uncertainty.optional(read)?, confidence.optional(read)?].map(Option::unwrap_or_default);
+    Ok(Criterion { force_uncertainty, confidence })
 }
 
 /// Bounds of the number of grid values of beta over a full turn.

@@ -4,7 +4,9 @@
 //! batch evaluator of [`super::kernel`], which is tested against this one.
 
 use super::problem::{Problem, base_from_workpiece};
-use crate::robot::{Frames, Posture, Unreachable, cast, conditioning::inverse_condition, scalar::Scalar};
+use crate::robot::{
+    Frames, Posture, Robot, Uncertainty, Unreachable, cast, conditioning::inverse_condition, scalar::Scalar,
+};
 use crate::stiffness::displacement;
 use nalgebra::Vector3;
 
@@ -25,12 +27,16 @@ pub struct State<T: Scalar> {
     pub axial_part: T,
     /// What a force error of the given relative size can add to c_i: `eps |w| |K^-1 n|`. m
     pub uncertainty: T,
+    /// Standard deviation sigma_i of the normal part, where the uncertainty of the compliances is known. m
+    pub deviation: Option<T>,
+    /// What the score adds for it: `confidence sigma_i`. m
+    pub margin: T,
 }
 
 impl<T: Scalar> State<T> {
-    /// What the point counts in the mean: `c_i + eps |w| |K^-1 n|`. m
+    /// What the point counts in the mean: `c_i + eps |w| |K^-1 n| + confidence sigma_i`. m
     pub fn score(&self) -> T {
-        self.normal_part.abs() + self.uncertainty
+        self.normal_part.abs() + self.uncertainty + self.margin
     }
 }
 
@@ -64,6 +70,14 @@ pub fn state<T: Scalar>(
     } else {
         T::zero()
     };
+    let deviation = problem.robot.uncertainty().map(|known| {
+        let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
+        known.standard_deviation(&by_parameters(&problem.robot, &joints, &parts))
+    });
+    let margin = match deviation {
+        Some(deviation) if problem.criterion.confidence > 0.0 => deviation.scale(problem.criterion.confidence),
+        _ => T::zero(),
+    };
     Ok(State {
         joints,
         inverse_condition: inverse_condition(&frames, &tip, problem.constraints.characteristic_length),
@@ -72,8 +86,52 @@ pub fn state<T: Scalar>(
         normal_part: deflection.dot(&normal),
         axial_part: deflection.dot(&axes.column(2)),
         uncertainty,
+        deviation,
+        margin,
     })
 }
+
+/// Derivatives of the normal part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
+/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `pose`. m per SI unit of each
+/// parameter; empty where no uncertainty is known.
+///
+/// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
+pub fn normal_part_by_parameters<T: Scalar>(problem: &Problem, point: usize, pose: &[T; 4], joints: &[T; 6]) -> Vec<T> {
+    let frames = Frames::new(&problem.robot, joints);
+    let workpiece = base_from_workpiece(pose);
+    let path_point = &problem.task.points()[point];
+    let wrench = &problem.task.wrenches()[point];
+    let tip = workpiece.point(&cast(&path_point.position));
+    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
+    let normal = axes.column(1).into_owned();
+    let (force, moment) = (workpiece.rotation * cast(&wrench.force), workpiece.rotation * cast(&wrench.moment));
+    let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
+    by_parameters(&problem.robot, joints, &parts)
+}
+
+/// What each joint adds to the normal part of the deflection per compliance: `(J_j . n) (J_j . w)`, in m per rad/(N m).
+fn parts_per_compliance<T: Scalar>(
+    frames: &Frames<T>,
+    tip: &Vector3<T>,
+    normal: &Vector3<T>,
+    force: &Vector3<T>,
+    moment: &Vector3<T>,
+) -> [T; 6] {
+    std::array::from_fn(|j| {
+        let (velocity, axis) = frames.twist(j, tip);
+        velocity.dot(normal) * (velocity.dot(force) + axis.dot(moment))
+    })
+}
+
+/// The chain rule from what each joint adds per compliance to the parameters of the joints' laws.
+fn by_parameters<T: Scalar>(robot: &Robot, joints: &[T; 6], parts: &[T; 6]) -> Vec<T> {
+    let parameters = robot.uncertainty().map(Uncertainty::parameters).unwrap_or_default();
+    let slopes = robot.compliance_gradient_at(joints);
+    parameters.iter().zip(slopes).map(|(parameter, slope)| parts[parameter.joint()] * slope).collect()
+}
+
+#[cfg(test)]
+mod uncertainty_tests;
 
 #[cfg(test)]
 mod tests {

@@ -30,8 +30,9 @@ pub(crate) mod testing {
     //! The problem of Caro 2013 for the tests of this room.
     use super::problem::*;
     use crate::robot::testing::{kr270, spindle};
-    use crate::robot::{Compensator, Compliance, Robot};
+    use crate::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
     use crate::task::{Task, read_csv};
+    use nalgebra::DMatrix;
     use std::f64::consts::PI;
     use std::path::Path;
 
@@ -61,6 +62,32 @@ pub(crate) mod testing {
             joints[*joint].compliance = *law;
         }
         problem.robot = Robot::new("laws", joints).unwrap();
+        problem
+    }
+
+    /// The same problem with every parameter of the robot's laws known to about `share` of its value, in correlated errors.
+    pub fn with_uncertainty(mut problem: Problem, share: f64) -> Problem {
+        let mut values = Vec::new();
+        for (j, joint) in problem.robot.joints().iter().enumerate() {
+            match joint.compliance {
+                Compliance::Constant(value) => values.push((Parameter::Compliance(j), value)),
+                Compliance::Range { at_min, at_max } => {
+                    values.extend([(Parameter::ComplianceAtMin(j), at_min), (Parameter::ComplianceAtMax(j), at_max)]);
+                }
+                Compliance::Compensated { alone, compensator } => values.extend([
+                    (Parameter::Compliance(j), alone),
+                    (Parameter::SpringStiffness(j), compensator.spring_stiffness),
+                    (Parameter::FreeLength(j), compensator.free_length),
+                ]),
+            }
+        }
+        let (parameters, values): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
+        let count = values.len();
+        // Rows of unit size that point in different directions.
+        let factor = DMatrix::from_fn(count, count, |k, r| libm::sin((7 * k + 3 * r + k * r) as f64));
+        let factor = DMatrix::from_fn(count, count, |k, r| share * values[k] * factor[(k, r)] / factor.row(k).norm());
+        let uncertainty = Uncertainty::new(parameters, &factor * factor.transpose()).unwrap();
+        problem.robot = problem.robot.with_uncertainty(uncertainty).unwrap();
         problem
     }
 

@@ -31,8 +31,10 @@ pub struct PlanPoint {
     pub normal_part: f64,
     /// Part along the tool axis, positive towards the robot. m
     pub axial_part: f64,
-    /// What the point counts: |normal part| and what force errors can add to it. m
+    /// What the point counts: |normal part|, what force errors can add to it, and what it counts for its deviation. m
     pub score: f64,
+    /// Standard deviation of the normal part, where the robot's uncertainty is known. m
+    pub deviation: Option<f64>,
 }
 
 /// A redundancy plan with its posture scheme, for one placement.
@@ -46,6 +48,9 @@ pub struct Plan {
     pub mean: f64,
     /// Largest score. m
     pub max: f64,
+    /// Standard deviation of the mean of |normal part|, where the robot's uncertainty is known: the points err together, so
+    /// that it does not shrink with their number. m
+    pub mean_deviation: Option<f64>,
 }
 
 /// One of the four cases of Table III.

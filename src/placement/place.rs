@@ -1,7 +1,7 @@
 //! The placement job: search, refine, plan, map.
 
 use super::control::{Control, Progress};
-use super::criterion::state;
+use super::criterion::{normal_part_by_parameters, state};
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::genetic::{self, Found, Individual};
 use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement};
@@ -217,9 +217,15 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
     let [x, y, z, yaw] = *pose;
     let base_from_workpiece = Placement { x, y, z, yaw }.base_from_workpiece();
     let mut points = Vec::with_capacity(problem.task.points().len());
+    let known = problem.robot.uncertainty();
+    let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = state(problem, point, pose, plan.betas[place], plan.posture) else { continue };
+            let sign = if s.normal_part < 0.0 { -1.0 } else { 1.0 };
+            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, pose, &s.joints)) {
+                *sum += sign * slope;
+            }
             points.push(PlanPoint {
                 point,
                 segment: segment + 1,
@@ -234,6 +240,7 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
                 normal_part: s.normal_part,
                 axial_part: s.axial_part,
                 score: s.score(),
+                deviation: s.deviation,
             });
         }
     }
@@ -241,73 +248,10 @@ fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
         mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
         max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
         points,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::control::Unwatched;
-    use super::super::settings::PostureSearch;
-    use super::super::testing::five_segments;
-    use super::*;
-
-    fn small() -> SearchSettings {
-        SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
-    }
-
-    #[test]
-    fn four_cases_are_ordered_and_complete() {
-        let mut problem = five_segments();
-        problem.redundancy.beta_count = 40;
-        for postures in [PostureSearch::Exact, PostureSearch::Genetic] {
-            // A random scheme is rarely feasible, so the published way needs more individuals to find any.
-            let population = if postures == PostureSearch::Genetic { 80 } else { 16 };
-            let settings = SearchSettings { postures, population, ..small() };
-            let outcome = place(&problem, &settings, &TransferSettings::default(), &Unwatched).unwrap();
-            let means: Vec<f64> = outcome.cases.iter().map(|c| c.plan.mean).collect();
-            assert!(means[0] <= means[1] && means[2] <= means[3] && means[0] <= means[2], "{means:?}");
-            assert!(outcome.cases.iter().all(|c| c.plan.points.len() == 105 && c.plan.postures.len() == 5));
-            assert_eq!(outcome.cases[0].placement, outcome.cases[1].placement);
-            assert!(outcome.refinements.iter().all(|r| match r.goal {
-                Goal::Best => r.end_mean <= r.start_mean,
-                Goal::Worst => r.end_mean >= r.start_mean,
-            }));
-            assert!(!outcome.interrupted);
-        }
-    }
-
-    #[test]
-    fn a_cell_out_of_reach_says_why() {
-        let mut problem = five_segments();
-        problem.redundancy.beta_count = 24;
-        problem.cell.position[1] = super::super::problem::Interval { min: -6.0, max: -5.0 };
-        let nothing = place(&problem, &small(), &TransferSettings::default(), &Unwatched).unwrap_err();
-        assert!(nothing.searched && !nothing.findings.is_empty());
-        assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");
-    }
-
-    #[test]
-    fn stopping_early_still_returns_a_result() {
-        struct Stop;
-        impl Control for Stop {
-            fn should_stop(&self) -> bool {
-                true
-            }
-        }
-        let mut problem = five_segments();
-        problem.redundancy.beta_count = 24;
-        let outcome = place(&problem, &small(), &TransferSettings::default(), &Stop).unwrap();
-        assert!(outcome.interrupted && outcome.refinements.is_empty());
-        assert_eq!(outcome.evaluations, 32);
-    }
-
-    #[test]
-    fn score_agrees_with_the_prototype() {
-        let problem = five_segments();
-        let yaw = crate::robot::angles::yaw_from_q4(0.9258);
-        let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
-        assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
-        assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
-    }
-}
+mod tests;

@@ -125,6 +125,10 @@ pub struct Criterion {
     /// Relative size eps of the force error in any direction that a score must cover: the score is
     /// `c_i + eps |w| |K^-1 n|`, the worst case over all such errors. Zero gives eq. 11 as published.
     pub force_uncertainty: f64,
+    /// How many standard deviations sigma_i of c_i a score must cover, from the uncertainty of the robot's compliances: this
+    /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
+    /// uncertainty is not known.
+    pub confidence: f64,
 }
 
 /// How the free angle beta about the tool axis is planned.

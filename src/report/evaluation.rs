@@ -1,6 +1,6 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
-use super::json::placement as placement_json;
+use super::json::{placement as placement_json, put_deviation};
 use super::number::{Unit, fixed};
 use super::text::aligned;
 use super::words;
@@ -18,11 +18,13 @@ const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
 /// What `stead score --json` prints.
 pub fn score_json(score: &Score) -> Value {
     let plan = |plan: &Plan| {
-        json!({
+        let mut value = json!({
             "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
             "max_mm": Unit::DEFLECTION_MM.number(plan.max),
             "postures": plan.postures,
-        })
+        });
+        put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
+        value
     };
     json!({
         "placement": placement_json(&score.placement),
@@ -51,26 +53,28 @@ pub fn infeasible_json(nothing: &NothingFeasible) -> Value {
     })
 }
 
-/// The table of `stead score`.
+/// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
 pub fn score_text(score: &Score) -> String {
     let row = |name: &str, plan: &Plan| {
-        vec![
-            name.to_owned(),
-            fixed(plan.mean * 1e3, 4),
-            fixed(plan.max * 1e3, 4),
-            words::postures_within(&plan.postures, 60),
-        ]
+        let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
+        row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
+        row.push(words::postures_within(&plan.postures, 60));
+        row
     };
-    let header = ["plan", "mean mm", "max mm", "postures"].map(str::to_owned).to_vec();
+    let mut header = vec!["plan", "mean mm", "max mm"];
+    header.extend(score.best.mean_deviation.map(|_| "std mm"));
+    header.push("postures");
+    let last = header.len() - 1;
+    let header = header.into_iter().map(str::to_owned).collect();
     let rows = [header, row("best", &score.best), row("worst", &score.worst)];
-    format!("{}\n\n{}", place_text(&score.placement), aligned(&rows, &[0, 3]))
+    format!("{}\n\n{}", place_text(&score.placement), aligned(&rows, &[0, last]))
 }
 
 /// What `stead explain --json` prints.
 pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> Value {
     let posture = |e: &Explanation| {
         let state = e.state.as_ref();
-        json!({
+        let mut value = json!({
             "posture": e.posture,
             "joints_deg": state.map(|s| s.joints.map(|angle| FINE_DEG.number(angle))),
             "inverse_condition": state.map(|s| Unit::PLAIN.number(s.inverse_condition)),
@@ -78,7 +82,9 @@ pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[
             "score_mm": state.map(|s| FINE_MM.number(s.score())),
             "feasible": e.is_allowed(),
             "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        })
+        });
+        put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.deviation));
+        value
     };
     json!({
         "placement": placement_json(placement),
@@ -90,8 +96,13 @@ pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[
 
 /// The table of `stead explain`.
 pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> String {
-    let header = ["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm", ""];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let states = || postures.iter().filter_map(|e| e.state.as_ref());
+    let mut header =
+        vec!["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
+    header.extend(states().find_map(|s| s.deviation).map(|_| "std mm"));
+    header.push("");
+    let last = header.len() - 1;
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     let mut broken = String::new();
     for e in postures {
         let mut row = vec![e.posture.to_string()];
@@ -99,8 +110,9 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
             Some(s) => {
                 row.extend(s.joints.map(|angle| fixed(angle.to_degrees(), 3)));
                 row.extend([fixed(s.inverse_condition, 4), fixed(s.normal_part.abs() * 1e3, 5)]);
+                row.extend(s.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
             }
-            None => row.extend((0..8).map(|_| "-".to_owned())),
+            None => row.extend((1..last).map(|_| "-".to_owned())),
         }
         row.push(if e.is_allowed() { "allowed" } else { "refused" }.to_owned());
         rows.push(row);
@@ -112,7 +124,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         "{}, point {point}, beta {} deg\n\n{}",
         place_text(placement),
         fixed(beta.to_degrees(), 3),
-        aligned(&rows, &[9])
+        aligned(&rows, &[last])
     );
     if !broken.is_empty() {
         text.push_str("\nbroken constraints\n");

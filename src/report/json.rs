@@ -41,7 +41,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
     document.insert("transfer".to_owned(), transfer_settings(context));
     document.insert("cell".to_owned(), cell(problem));
     document.insert("constraints".to_owned(), constraints(problem));
-    document.insert("criterion".to_owned(), json!({ "force_uncertainty": problem.criterion.force_uncertainty }));
+    document.insert("criterion".to_owned(), criterion(problem));
     document.insert("redundancy".to_owned(), redundancy(problem));
     document.insert("task".to_owned(), task(problem));
     document.insert("cases".to_owned(), cases(outcome, false));
@@ -83,10 +83,18 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
         "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
     });
+    put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, case.plan.mean_deviation);
     if with_plan && let Value::Object(map) = &mut value {
         map.insert("plan".to_owned(), case.plan.points.iter().map(plan_point).collect());
     }
     value
+}
+
+/// Adds a standard deviation to an object where the robot's uncertainty is known.
+pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
+    if let (Some(deviation), Value::Object(map)) = (deviation, object) {
+        map.insert(key.to_owned(), number(unit, deviation));
+    }
 }
 
 /// A placement as every JSON document states it.
@@ -101,7 +109,7 @@ pub fn placement(placement: &Placement) -> Value {
 }
 
 fn plan_point(point: &PlanPoint) -> Value {
-    json!({
+    let mut value = json!({
         "point": point.point,
         "segment": point.segment,
         "beta_deg": number(Unit::ANGLE_DEG, point.beta),
@@ -110,7 +118,9 @@ fn plan_point(point: &PlanPoint) -> Value {
         "inverse_condition": number(Unit::PLAIN, point.inverse_condition),
         "normal_mm": number(Unit::DEFLECTION_MM, point.normal_part),
         "score_mm": number(Unit::DEFLECTION_MM, point.score),
-    })
+    });
+    put_deviation(&mut value, "std_mm", Unit::DEFLECTION_MM, point.deviation);
+    value
 }
 
 fn transfer(transfer: &Transfer) -> Value {
@@ -164,6 +174,15 @@ fn transfer_settings(context: &Context) -> Value {
 fn cell(problem: &Problem) -> Value {
     let [x, y, z] = problem.cell.position.map(|bounds| interval(Unit::PLACE_MM, &bounds));
     json!({ "x_mm": x, "y_mm": y, "z_mm": z, "yaw_deg": interval(Unit::ANGLE_DEG, &problem.cell.yaw) })
+}
+
+/// The confidence is stated where there is something to be confident of.
+fn criterion(problem: &Problem) -> Value {
+    let mut value = json!({ "force_uncertainty": problem.criterion.force_uncertainty });
+    if let (Some(_), Value::Object(map)) = (problem.robot.uncertainty(), &mut value) {
+        map.insert("confidence".to_owned(), json!(problem.criterion.confidence));
+    }
+    value
 }
 
 fn constraints(problem: &Problem) -> Value {

@@ -41,12 +41,15 @@ const PLAN: [&str; 27] = [
 ];
 
 /// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
-/// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg.
+/// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg. The last column, `std_mm`, is there
+/// where the robot's uncertainty is known: the standard deviation of `normal_mm`.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn plan(plan: &Plan) -> Result<Vec<u8>, ReportError> {
-    table("the table of a plan", &PLAN, plan.points.iter().map(plan_row))
+    let mut header = PLAN.to_vec();
+    header.extend(plan.mean_deviation.map(|_| "std_mm"));
+    table("the table of a plan", &header, plan.points.iter().map(plan_row))
 }
 
 fn plan_row(point: &PlanPoint) -> Vec<String> {
@@ -60,16 +63,18 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
     row.extend(vector(Unit::DEFLECTION_MM, &point.deflection));
     let parts = [point.normal_part, point.feed_part, point.axial_part, point.score];
     row.extend(parts.map(|part| Unit::DEFLECTION_MM.text(part)));
+    row.extend(point.deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
     row
 }
 
 /// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
-/// the ratio where case 1 is a cancellation.
+/// the ratio where case 1 is a cancellation. The last column, `mean_std_mm`, is there where the robot's uncertainty is
+/// known: the standard deviation of the mean of |`normal_mm`|.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn placements(cases: &[Case; 4], reference: Option<&Reference>) -> Result<Vec<u8>, ReportError> {
-    let header = [
+    let mut header = vec![
         "case",
         "x_mm",
         "y_mm",
@@ -85,6 +90,7 @@ pub fn placements(cases: &[Case; 4], reference: Option<&Reference>) -> Result<Ve
         "transfer_s",
         "cycle_s",
     ];
+    header.extend(cases[0].plan.mean_deviation.map(|_| "mean_std_mm"));
     let rows = cases.iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number.to_string()];
         row.extend(placement(&case.placement, true));
@@ -96,6 +102,7 @@ pub fn placements(cases: &[Case; 4], reference: Option<&Reference>) -> Result<Ve
         let total = case.cycle.total();
         row.push(Unit::TIME_S.text_or_empty(total.map(|total| total - case.cycle.cutting)));
         row.push(Unit::TIME_S.text_or_empty(total));
+        row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
         row
     });
     table("the table of placements", &header, rows)

@@ -138,7 +138,7 @@ impl Grid {
         }
         let scores = || points.iter().map(|point: &PlanPoint| point.score);
         let (mean, max) = (scores().sum::<f64>() / points.len() as f64, scores().fold(0.0, f64::max));
-        let plan = Plan { postures, mean, max, points };
+        let plan = Plan { postures, mean, max, mean_deviation: None, points };
         let transfer = |k: usize| {
             let duration = (number < 4 || k != 2).then_some(0.4 * k as f64);
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
@@ -188,6 +188,7 @@ impl Grid {
             normal_part: state.normal_part,
             axial_part: state.axial_part,
             score: state.score(),
+            deviation: state.deviation,
         }
     }
 }

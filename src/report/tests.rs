@@ -59,6 +59,39 @@ fn placements_state_ratios_references_and_times() {
 }
 
 #[test]
+fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
+    let mut known = outcome().clone();
+    for (k, case) in known.cases.iter_mut().enumerate() {
+        case.plan.mean_deviation = Some(1e-6 * (k + 1) as f64);
+        case.plan.points.iter_mut().for_each(|point| point.deviation = Some(2e-6 * (point.point + 1) as f64));
+    }
+    let pairs = [
+        (tables::plan(&known.cases[1].plan), tables::plan(&outcome().cases[1].plan), "std_mm", "0.0040000"),
+        (
+            tables::placements(&known.cases, None),
+            tables::placements(&outcome().cases, None),
+            "mean_std_mm",
+            "0.0020000",
+        ),
+    ];
+    for (with, without, name, second) in pairs {
+        let (with, without) = (rows(&with.unwrap()), rows(&without.unwrap()));
+        assert_eq!(column(&with, name)[1], second);
+        let cut: Vec<Vec<String>> = with.iter().map(|row| row[..row.len() - 1].to_vec()).collect();
+        assert_eq!(cut, without);
+    }
+    let timing = Timing { wall: 2.0, threads: 8 };
+    let document = place_json(&known, &context(), &timing);
+    assert_eq!(document["cases"][3]["mean_std_mm"], 0.004);
+    assert_eq!(document["cases"][0]["plan"][9]["std_mm"], 0.02);
+    let bare = place_json(outcome(), &context(), &timing);
+    assert!(bare["cases"][3].get("mean_std_mm").is_none() && bare["cases"][0]["plan"][9].get("std_mm").is_none());
+    assert!(summary_json(problem(), outcome(), &context())["criterion"].get("confidence").is_none());
+    let text = text::placement_text(problem(), &known, &context());
+    assert!(text.contains("std mm") && text.lines().all(|line| line.chars().count() <= 110), "{text}");
+}
+
+#[test]
 fn maps_have_a_row_per_state_with_a_score_or_a_reason() {
     let map = &outcome().map_best;
     let table = rows(&tables::deflection_map(problem(), map).unwrap());

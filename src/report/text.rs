@@ -10,7 +10,8 @@ use crate::placement::problem::Problem;
 const POSTURES_WIDTH: usize = 40;
 
 /// The four cases: first placements and posture schemes, then mean and largest deflection, the ratio to case 1 beside the
-/// published figures where there are any, and times; last the size of the search. Lines are at most 110 characters wide
+/// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
+/// uncertainty is known; last the size of the search. Lines are at most 110 characters wide
 /// and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
     let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
@@ -48,7 +49,9 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
 }
 
 fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<String>> {
-    let mut header = vec!["case", "mean mm", "max mm", "ratio"];
+    let mut header = vec!["case", "mean mm", "max mm"];
+    header.extend(outcome.cases[0].plan.mean_deviation.map(|_| "std mm"));
+    header.push("ratio");
     if reference.is_some() {
         header.extend(["ref mm", "ref ratio"]);
     }
@@ -57,6 +60,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
     for (index, case) in outcome.cases.iter().enumerate() {
         let mut row = vec![case.number.to_string()];
         row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
+        row.extend(case.plan.mean_deviation.map(|value| fixed(value * 1e3, 4)));
         row.push(ratio(&outcome.cases, index).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
         if let Some(Reference { case_mm, .. }) = reference {
             row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);

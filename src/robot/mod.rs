@@ -34,6 +34,7 @@ pub mod posture;
 pub mod scalar;
 mod spindle;
 pub mod turns;
+mod uncertainty;
 
 pub use compliance::{Compensator, Compliance};
 pub use data_sheet::DataSheet;
@@ -42,6 +43,7 @@ pub use geometry::Geometry;
 pub use inverse::Unreachable;
 pub use posture::{Posture, PostureClass};
 pub use spindle::{Spindle, point_from_tool};
+pub use uncertainty::{Parameter, Uncertainty, UncertaintyError};
 
 /// One row of the arm, base first: modified Denavit-Hartenberg parameters, limits, compliance.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +75,7 @@ pub struct Robot {
     joints: [Joint; 6],
     geometry: Geometry,
     data_sheet: DataSheet,
+    uncertainty: Option<Uncertainty>,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -170,7 +173,7 @@ impl Robot {
             check_joint(index + 1, joint)?;
         }
         let geometry = Geometry::new(&joints)?;
-        Ok(Self { name: name.into(), joints, geometry, data_sheet: DataSheet::default() })
+        Ok(Self { name: name.into(), joints, geometry, data_sheet: DataSheet::default(), uncertainty: None })
     }
 
     /// The name given by the robot file.

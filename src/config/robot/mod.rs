@@ -1,12 +1,14 @@
 //! Robot files.
 
 mod compliance;
+pub mod covariance;
 
 use super::reader::{Field, Table};
 use super::source::Source;
 use crate::input::InputError;
 use crate::robot::{DataSheet, Joint, Robot, RobotError};
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
+use covariance::{COVARIANCE, with_covariance};
 use std::path::Path;
 
 /// Reads a robot file: `name`, `source` (where its numbers come from), where known `payload_kg`, `working_radius_mm` and
@@ -16,11 +18,13 @@ use std::path::Path;
 ///
 /// `compliance_urad_per_nm` may be a range `[at min_deg, at max_deg]` ([`Compliance::Range`](crate::robot::Compliance::Range)). A row may be followed by a
 /// table `[joints.compensator]` with `spring_stiffness_n_per_mm`, `a_mm`, `l_mm`, `alpha_deg` and `free_length_mm`
-/// ([`Compensator`](crate::robot::Compensator)); its stiffness or compliance is then that of the joint alone.
+/// ([`Compensator`](crate::robot::Compensator)); its stiffness or compliance is then that of the joint alone. A table
+/// `[covariance]` at the end says how well the compliances are known ([`covariance`]).
 ///
 /// # Errors
 /// [`InputError`] with line and field: a file that cannot be read or is no TOML, a missing or unknown key, a value of
-/// the wrong kind, or an arm that [`Robot::new`] refuses.
+/// the wrong kind, an arm that [`Robot::new`] refuses, or a covariance that
+/// [`Uncertainty::new`](crate::robot::Uncertainty::new) refuses.
 pub fn read_robot(file: &Path) -> Result<Robot, InputError> {
     robot_from(&Source::read(file)?)
 }
@@ -28,8 +32,8 @@ pub fn read_robot(file: &Path) -> Result<Robot, InputError> {
 /// As [`read_robot`], from a file already read.
 pub(super) fn robot_from(source: &Source) -> Result<Robot, InputError> {
     let document = source.parse()?;
-    let [name, origin, payload, radius, price, joints] =
-        Table::root(&document).fields(["name", "source", PAYLOAD, RADIUS, PRICE, "joints"])?;
+    let [name, origin, payload, radius, price, joints, covariance] =
+        Table::root(&document).fields(["name", "source", PAYLOAD, RADIUS, PRICE, "joints", COVARIANCE])?;
     let rule = "a text in quotes on one line";
     let name = name.string().and_then(|text| {
         if text.chars().any(char::is_control) {
@@ -55,7 +59,11 @@ pub(super) fn robot_from(source: &Source) -> Result<Robot, InputError> {
     }
     let arm: [Joint; 6] = arm.try_into().map_err(|_| joints.error("does not make a six-axis arm", "six rows"))?;
     let robot = Robot::new(name, arm).and_then(|robot| robot.with_data_sheet(data_sheet));
-    robot.map_err(|error| locate(&Table::root(&document), &rows, &error))
+    let robot = robot.map_err(|error| locate(&Table::root(&document), &rows, &error))?;
+    match covariance.optional(Field::table)? {
+        Some(table) => with_covariance(robot, &table),
+        None => Ok(robot),
+    }
 }
 
 fn joint_from(row: &Table<'_>) -> Result<Joint, InputError> {

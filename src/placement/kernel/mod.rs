@@ -11,6 +11,7 @@
 
 pub mod lanes;
 mod laws;
+mod spread;
 mod states;
 mod wrist;
 
@@ -21,6 +22,7 @@ use crate::robot::{Posture, PostureClass, Robot, angles::ANGLE_ROUNDING, turns::
 use lanes::{Lanes, Mask, WIDTH};
 use laws::Laws;
 use nalgebra::Vector3;
+use spread::Spread;
 use std::f64::consts::{PI, TAU};
 
 /// What does not change from one placement to the next.
@@ -32,6 +34,7 @@ pub struct Kernel<'a> {
     sine: Vec<f64>,
     limits: [Limit; 6],
     laws: Laws,
+    spread: Option<Spread>,
     flips: Flips,
     forearm_sin_cos: (f64, f64),
 }
@@ -160,6 +163,7 @@ impl<'a> Kernel<'a> {
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
             laws: Laws::new(&problem.robot),
+            spread: Spread::new(problem),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
         }
@@ -192,7 +196,7 @@ impl<'a> Kernel<'a> {
                 self.select(delta_negative, scratch);
                 if !scratch.survivors.is_empty() {
                     let class = PostureClass::ALL[2 * usize::from(back) + usize::from(delta_negative)];
-                    if geometry.uncertainty > 0.0 {
+                    if geometry.uncertainty > 0.0 || self.spread.is_some() {
                         self.wrist::<true>(&geometry, delta_negative, scratch, states.class_mut(class));
                     } else {
                         self.wrist::<false>(&geometry, delta_negative, scratch, states.class_mut(class));

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::placement::criterion::state;
-use crate::placement::testing::{compensated, five_segments, with_laws};
+use crate::placement::problem::Criterion;
+use crate::placement::testing::{compensated, five_segments, with_laws, with_uncertainty};
 use crate::robot::angles::{wrap, yaw_from_q4};
 use crate::robot::testing::odd_arms;
 use crate::robot::{Compensator, Compliance, Posture, Robot};
@@ -140,13 +141,49 @@ fn agrees_with_compliances_that_change_with_the_joint_angle() {
 }
 
 #[test]
+fn agrees_with_uncertain_compliances() {
+    let range = Compliance::Range { at_min: 5e-7, at_max: 1.2e-6 };
+    let mut constant = five_segments();
+    let mut joints = constant.robot.joints().clone();
+    (joints[5].min, joints[5].max) = (-2.5, 3.0);
+    constant.robot = Robot::new("narrow", joints).unwrap();
+    for laws in [
+        vec![],
+        vec![(1, compensated(0.2, 3e-7))],
+        vec![(0, compensated(1.0, 4e-6)), (2, range), (5, range)],
+        // A wrist that yields differently in its two flips.
+        vec![(3, compensated(0.5, 2e-6)), (4, compensated(0.3, 2e-6)), (1, range)],
+    ] {
+        for force_uncertainty in [0.0, 0.1] {
+            let mut problem = with_uncertainty(with_laws(constant.clone(), &laws), 0.1);
+            let sure = problem.clone();
+            problem.criterion = Criterion { force_uncertainty, confidence: 2.0 };
+            problem.constraints.max_deflection = Some(1.5e-3);
+            let mut allowed = 0;
+            for pose in [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]] {
+                allowed += compare(&problem, &pose, (0..105).step_by(3));
+                // The uncertainty is seen, at a million times the tolerance.
+                let scores = [&problem, &sure].map(|p| state(p, 30, &pose, 0.7, Posture::ALL[2]).unwrap().score());
+                assert!(scores[0] - scores[1] > 1e-6, "{scores:?} {laws:?}");
+            }
+            assert!(allowed > 1000, "{allowed} {laws:?}");
+        }
+    }
+}
+
+#[test]
 fn agrees_for_every_sign_of_twist_and_with_offsets() {
     // Springs at every joint, so that each angle's sine and cosine is held against the ordinary evaluator too.
     let compensator = Compensator { spring_stiffness: 4e4, a: 0.5, l: 0.3, alpha: 0.7, free_length: 0.5 };
     let sprung = Compliance::Compensated { alone: 1e-6, compensator };
     for (arm, is_sprung) in odd_arms().into_iter().flat_map(|arm| [(arm.clone(), false), (arm, true)]) {
         let mut problem = five_segments();
-        problem.robot = if is_sprung { arm.with_compliances([sprung; 6]).unwrap() } else { arm };
+        problem.robot = arm.clone();
+        if is_sprung {
+            problem.robot = arm.with_compliances([sprung; 6]).unwrap();
+            problem = with_uncertainty(problem, 0.1);
+            problem.criterion.confidence = 1.0;
+        }
         problem.redundancy.beta_count = 30;
         problem.constraints.min_inverse_condition = 0.05;
         let mut allowed = 0;

@@ -91,8 +91,8 @@ struct Pose {
 }
 
 impl Kernel<'_> {
-    /// Evaluates the surviving states of one class.
-    pub(super) fn wrist<const UNCERTAIN: bool>(
+    /// Evaluates the surviving states of one class; `ROBUST` where scores cover errors of the force or of the compliances.
+    pub(super) fn wrist<const ROBUST: bool>(
         &self,
         geometry: &PointGeometry,
         delta_negative: bool,
@@ -104,12 +104,12 @@ impl Kernel<'_> {
             for (slot, beta) in index.iter_mut().zip(batch) {
                 *slot = *beta as usize;
             }
-            self.batch::<UNCERTAIN>(geometry, delta_negative, scratch, index, batch.len(), &mut states);
+            self.batch::<ROBUST>(geometry, delta_negative, scratch, index, batch.len(), &mut states);
         }
     }
 
     #[inline(always)]
-    fn batch<const UNCERTAIN: bool>(
+    fn batch<const ROBUST: bool>(
         &self,
         geometry: &PointGeometry,
         delta_negative: bool,
@@ -184,7 +184,7 @@ impl Kernel<'_> {
         let (theta2, _) = self.limits[1].canonical(s2.atan2(c2));
         let (theta3, _) = self.limits[2].canonical(sin_delta.atan2(cos_delta) - g.forearm_angle);
         let joints = [theta1, theta2, theta3, theta4, theta5, theta6];
-        let compliances = self.laws.constants().unwrap_or_else(|| {
+        let turned = || {
             let (sin_bar, cos_bar) = self.forearm_sin_cos;
             let third = [sin_delta * cos_bar - cos_delta * sin_bar, cos_delta * cos_bar + sin_delta * sin_bar];
             let is_flipped = self.flips == Flips::Flipped;
@@ -196,9 +196,18 @@ impl Kernel<'_> {
             let fifth = [sine5 * sign, dot46 * (-s5 * s6)];
             let sixth = [z4.dot(y6) * -s5 * per_sine, z4.dot(x6) * s5 * per_sine];
             let angles = [theta1, theta2, theta3, wrist[0], wrist[1], wrist[2]];
-            self.laws.at(&angles, &[[sin1, cos1], [s2, c2], third, fourth, fifth, sixth])
+            (angles, [[sin1, cos1], [s2, c2], third, fourth, fifth, sixth])
+        };
+        let compliances = self.laws.constants().unwrap_or_else(|| {
+            let (angles, directions) = turned();
+            self.laws.at(&angles, &directions)
         });
-        let score = pose.score::<UNCERTAIN>(g.lateral, &compliances, normal, force, moment, geometry.uncertainty);
+        let (mut score, parts) =
+            pose.score::<ROBUST>(g.lateral, &compliances, normal, force, moment, geometry.uncertainty);
+        if ROBUST && let Some(spread) = &self.spread {
+            let (angles, directions) = turned();
+            score = score + spread.margin(&parts, &angles, &directions, &compliances);
+        }
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(limit));
         }
@@ -279,9 +288,10 @@ impl Pose {
         Lanes::splat(6.0) / (norm2 * inverse_norm2).sqrt()
     }
 
-    /// The score: |n . K^-1 w| as a sum over joints, and the force uncertainty's share.
+    /// The score: |n . K^-1 w| as a sum over joints, and the force uncertainty's share; and what each joint adds to
+    /// n . K^-1 w per compliance.
     #[inline(always)]
-    fn score<const UNCERTAIN: bool>(
+    fn score<const ROBUST: bool>(
         &self,
         lateral: f64,
         compliances: &[Lanes; 6],
@@ -289,7 +299,7 @@ impl Pose {
         force: Vector,
         moment: Vector,
         uncertainty: f64,
-    ) -> Lanes {
+    ) -> (Lanes, [Lanes; 6]) {
         let t = self.lever;
         let (px, py) = (self.forward + t.x, t.y + lateral);
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
@@ -312,12 +322,13 @@ impl Pose {
             self.z5.dot(turn_f),
             self.z6.dot(turn_f),
         ];
+        let parts = std::array::from_fn(|j| torque_n[j] * torque_f[j]);
         let mut deflection = Lanes::splat(0.0);
         for j in 0..6 {
-            deflection = deflection + torque_n[j] * torque_f[j] * compliances[j];
+            deflection = deflection + parts[j] * compliances[j];
         }
         let mut score = deflection.abs();
-        if UNCERTAIN {
+        if ROBUST && uncertainty > 0.0 {
             let zero = Lanes::splat(0.0);
             let velocities = [
                 Vector { x: -py, y: px, z: zero },
@@ -333,6 +344,6 @@ impl Pose {
             }
             score = score + response.dot(response).sqrt() * uncertainty;
         }
-        score
+        (score, parts)
     }
 }

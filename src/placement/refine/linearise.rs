@@ -1,9 +1,12 @@
 //! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
 
-use super::super::criterion::{State, state};
+use super::super::criterion::{State, normal_part_by_parameters, state};
 use super::super::problem::Problem;
 use super::{LENGTH_UNIT, Solution};
-use crate::robot::{Posture, scalar::Dual};
+use crate::robot::{
+    Posture,
+    scalar::{Dual, Scalar},
+};
 use nalgebra::{Matrix5, SymmetricEigen};
 
 /// Number of variables of one path point: x, y, z (in [`LENGTH_UNIT`]), yaw and its beta (rad).
@@ -16,9 +19,16 @@ pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0
 pub struct Local {
     /// The state with exact gradients.
     pub state: State<Dual<LOCAL>>,
+    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near. m
+    pub added: Dual<LOCAL>,
+    /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
+    /// criterion asks, whose Euclidean norm is [`State::margin`]. Empty elsewhere. m
+    pub changes: Vec<Dual<LOCAL>>,
     /// Real joint angles. rad
     pub joints: [f64; 6],
-    /// Curvature of the score where |c_i| is smooth, its negative part left out. m per square unit
+    /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
+    /// left out.
+    /// m per square unit
     pub curvature: Matrix5<f64>,
 }
 
@@ -31,23 +41,57 @@ pub fn linearise(problem: &Problem, solution: &Solution) -> Option<Vec<Local>> {
     for plan in &solution.plans {
         for (place, point) in plan.points.clone().enumerate() {
             let at = [solution.pose[0], solution.pose[1], solution.pose[2], solution.pose[3], plan.betas[place]];
-            let state = gradient(problem, point, at, plan.posture)?;
-            let curvature = curvature(problem, point, at, plan.posture, &state);
-            locals.push(Local { state, joints: plan.joints[place], curvature });
+            let centre = gradient(problem, point, at, plan.posture)?;
+            let centre = (centre.0, if is_near_kink(&centre.1) { centre.1 } else { Vec::new() });
+            let curvature = curvature(problem, point, at, plan.posture, &centre);
+            let (state, changes) = centre;
+            let margin = if changes.is_empty() { state.margin } else { Dual::constant(0.0) };
+            locals.push(Local {
+                state,
+                added: state.uncertainty + margin,
+                changes,
+                joints: plan.joints[place],
+                curvature,
+            });
         }
     }
     Some(locals)
 }
 
+/// A margin that steps of this size could bring to zero has its kink near; in scaled variables.
+const KINK: f64 = 0.1;
+
+/// Whether a margin, the norm of these changes, can vanish nearby. Elsewhere it is smooth, and better followed with its own
+/// curvature: where the changes only turn, that of their norm and their own cancel.
+fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
+    let square = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |sum, number| sum + number * number);
+    let size = square(&mut changes.iter().map(|change| change.value));
+    let slope = square(&mut changes.iter().flat_map(|change| change.gradient));
+    size < KINK * KINK * slope
+}
+
+/// A state and what the margin of its score is made of.
+type Differentiated = (State<Dual<LOCAL>>, Vec<Dual<LOCAL>>);
+
 /// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
-fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<State<Dual<LOCAL>>> {
+fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
     let variables: [Dual<LOCAL>; LOCAL] = std::array::from_fn(|k| {
         let mut variable = Dual::variable(at[k], k);
         variable.gradient[k] = UNITS[k];
         variable
     });
     let [x, y, z, yaw, beta] = variables;
-    state(problem, point, &[x, y, z, yaw], beta, posture).ok()
+    let pose = [x, y, z, yaw];
+    let found = state(problem, point, &pose, beta, posture).ok()?;
+    let confidence = problem.criterion.confidence;
+    let changes = match problem.robot.uncertainty() {
+        Some(known) if confidence > 0.0 => {
+            let slopes = normal_part_by_parameters(problem, point, &pose, &found.joints);
+            known.changes(&slopes).map(|change| change.scale(confidence)).collect()
+        }
+        _ => Vec::new(),
+    };
+    Some((found, changes))
 }
 
 /// Differences of exact gradients, made symmetric, without negative eigenvalues: what a convex model can use.
@@ -56,10 +100,19 @@ fn curvature(
     point: usize,
     at: [f64; LOCAL],
     posture: Posture,
-    centre: &State<Dual<LOCAL>>,
+    centre: &Differentiated,
 ) -> Matrix5<f64> {
-    let sign = if centre.normal_part.value < 0.0 { -1.0 } else { 1.0 };
-    let slope = |s: &State<Dual<LOCAL>>, k: usize| sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k];
+    let sign = if centre.0.normal_part.value < 0.0 { -1.0 } else { 1.0 };
+    let margin = centre.0.margin.value;
+    let is_smooth = centre.1.is_empty();
+    // Near a kink the norm of the changes is the subproblem's: here they are followed along their present direction.
+    let share = |change: &Dual<LOCAL>| if margin > 0.0 { change.value / margin } else { 0.0 };
+    let shares: Vec<f64> = centre.1.iter().map(share).collect();
+    let slope = |(s, changes): &Differentiated, k: usize| {
+        let along = shares.iter().zip(changes).map(|(share, change)| share * change.gradient[k]);
+        let margin = if is_smooth { s.margin.gradient[k] } else { along.sum() };
+        sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k] + margin
+    };
     let mut hessian = Matrix5::zeros();
     for k in 0..LOCAL {
         let shifted = |h: f64| {

@@ -1,9 +1,11 @@
 //! The convex subproblem of the refinement, solved by clarabel.
 //!
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present mean). Minimised
-//! is the mean of t plus the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what force errors
-//! add); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
-//! Rows that cannot become active inside the trust region are left out.
+//! is the mean of t plus the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
+//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
+//! Rows that cannot become active inside the trust region are left out. Where the margin of a
+//! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
+//! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
 
 use super::super::problem::{Interval, Problem};
 use super::linearise::{LOCAL, Local, UNITS, linearise};
@@ -12,8 +14,8 @@ use crate::robot::angles::wrap;
 use crate::robot::scalar::Dual;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
-    ZeroConeT,
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    SupportedConeT, ZeroConeT,
 };
 use nalgebra::{Matrix4, Vector4};
 
@@ -77,7 +79,8 @@ impl Rows {
 /// The status of clarabel, in words, when it found no solution.
 pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, String> {
     let n = locals.len();
-    let (beta, epigraph) = (4, 4 + n);
+    let (beta, epigraph, margins) = (4, 4 + n, 4 + 2 * n);
+    let kinked: Vec<usize> = (0..n).filter(|i| !locals[*i].changes.is_empty()).collect();
     let unit = solution.mean();
     let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
     if question.pose_stays {
@@ -93,10 +96,11 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
     let swing = |terms: &[(usize, f64)]| 2.0 * question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
 
     for (i, local) in locals.iter().enumerate() {
-        let (c, u) = (&local.state.normal_part, &local.state.uncertainty);
+        let (c, u) = (&local.state.normal_part, &local.added);
         for sign in [1.0, -1.0] {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let row = terms(i, &slope).into_iter().chain([(epigraph + i, -1.0)]);
+            let margin = kinked.binary_search(&i).ok().map(|place| (margins + place, 1.0));
+            let row = terms(i, &slope).into_iter().chain([(epigraph + i, -1.0)]).chain(margin);
             rows.add(row, -(sign * c.value + u.value) / unit);
         }
         if let Some(limit) = problem.constraints.max_deflection {
@@ -138,14 +142,23 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
         rows.add([(beta + i, -1.0)], question.trust);
     }
 
-    let variables = 4 + 2 * n;
+    let inequalities = rows.bound.len() - equalities;
+    let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
+    for (place, i) in kinked.iter().enumerate() {
+        rows.add([(margins + place, -1.0)], 0.0);
+        let changes = &locals[*i].changes;
+        for change in changes {
+            rows.add(terms(*i, &change.gradient.map(|slope| -slope / unit)), change.value / unit);
+        }
+        cones.push(SecondOrderConeT(1 + changes.len()));
+    }
+
+    let variables = margins + kinked.len();
     let mut linear = vec![0.0; variables];
-    linear[epigraph..].fill(1.0 / n as f64);
+    linear[epigraph..margins].fill(1.0 / n as f64);
     let curvature =
         if question.curved { curvature(locals, variables, unit) } else { CscMatrix::zeros((variables, variables)) };
     let matrix = CscMatrix::new_from_triplets(rows.bound.len(), variables, rows.row, rows.column, rows.value);
-    let inequalities = rows.bound.len() - equalities;
-    let cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
     let found = programme(&curvature, &linear, &matrix, &rows.bound, &cones)?;
     let mut pose = [0.0; 4];
     let mut pose_gradient = [0.0; 4];

@@ -3,7 +3,8 @@
 use super::*;
 use crate::placement::problem::Interval;
 use crate::placement::testing::{five_segments, five_segments_compensated};
-use crate::robot::angles::yaw_from_q4;
+use crate::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
+use nalgebra::DMatrix;
 
 fn published_optimum() -> [f64; 4] {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
@@ -47,6 +48,28 @@ fn best_gets_better_and_stays_allowed() {
             }
         }
     }
+}
+
+#[test]
+fn margins_may_be_driven_to_their_kink() {
+    // With one uncertain joint the best betas make its torque vanish at many points, where the margin has a kink.
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    problem.criterion.confidence = 3.0;
+    let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
+    problem.robot = problem.robot.with_uncertainty(known).unwrap();
+    let planner = Planner::new(&problem);
+    let (solution, report) = refine(&planner, &published_optimum(), Goal::Best, None).unwrap();
+    assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
+    assert_allowed(&problem, &solution);
+    let locals = linearise::linearise(&problem, &solution).unwrap();
+    let margins = || locals.iter().map(|local| local.state.margin.value);
+    assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
+    for local in locals.iter().filter(|local| !local.changes.is_empty()) {
+        let [change] = local.changes[..] else { panic!("one uncertain parameter is one change") };
+        assert!((change.value.abs() - local.state.margin.value).abs() < 1e-18);
+    }
+    assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
 }
 
 #[test]

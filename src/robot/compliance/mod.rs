@@ -5,6 +5,8 @@
 //! joint are published (Table 4 there: 0.28 to 0.55 urad/(N m) for joint 2 of a KR 100 HA), by a [`Compliance::Range`].
 //! Whatever needs compliances takes them from [`Robot::compliances_at`], so that all jobs see the same arm.
 
+mod slope;
+
 use super::{Joint, Robot, RobotError, scalar::Scalar, turns::Range};
 use std::f64::consts::PI;
 
@@ -206,7 +208,8 @@ impl Robot {
         self.joints()[3..].iter().all(|joint| matches!(joint.compliance, Compliance::Constant(_)))
     }
 
-    /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification.
+    /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well the
+    /// old ones were known ([`Robot::uncertainty`]) says nothing of them, and is left out.
     ///
     /// # Errors
     /// [`RobotError`] for a compliance that [`Robot::new`] refuses.
