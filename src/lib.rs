@@ -46,6 +46,7 @@ pub mod assessment;
 pub mod cli;
 pub mod config;
 pub mod cutting;
+pub mod identification;
 pub mod input;
 pub mod placement;
 pub mod report;
