@@ -8,6 +8,7 @@ mod arguments;
 mod assess;
 mod circularity;
 mod explain;
+mod identify;
 mod place;
 mod progress;
 mod score;
@@ -62,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
         Command::Assess(options) => assess::run(&options),
+        Command::Identify(command) => identify::run(&command),
         Command::Circularity(options) => circularity::run(&options),
     };
     match result {

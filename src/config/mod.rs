@@ -20,18 +20,21 @@
 mod arrays;
 mod assess;
 mod cutting;
+mod identify;
 mod milling;
 mod points;
 mod printed;
 pub mod reader;
 mod robot;
 mod run;
+mod sheet;
 pub mod source;
 mod tables;
 #[cfg(test)]
 mod testing;
 
 pub use assess::{AssessRun, read_assessment};
+pub use identify::{IdentifyRun, read_identification};
 pub use points::{PointFile, read_points};
 pub use robot::read_robot;
 pub use run::{Run, read_run};

@@ -57,3 +57,31 @@ impl Sheet {
         if self.is_full_pose() { 6 } else { 3 }
     }
 }
+
+/// The columns of a sheet without orientations, as `stead identify fit` reads them.
+pub const COLUMNS: &str = "configuration,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,theta6_deg,\
+                           force_x_n,force_y_n,force_z_n,moment_x_nm,moment_y_nm,moment_z_nm,point,\
+                           unloaded_x_mm,unloaded_y_mm,unloaded_z_mm,loaded_x_mm,loaded_y_mm,loaded_z_mm";
+
+impl Sheet {
+    /// The sheet as CSV with [`COLUMNS`]: so many decimals of places in mm, all digits of angles and wrench; names must have no
+    /// comma or quote in them. Orientations are left out.
+    pub fn csv(&self, decimals: usize) -> String {
+        let mut text = format!("{COLUMNS}\n");
+        for reading in &self.readings {
+            let Configuration { name, theta, force, moment, .. } = &self.configurations[reading.configuration];
+            let angles = theta.iter().map(|angle| angle.to_degrees());
+            let given: Vec<String> = angles
+                .chain(force.iter().copied())
+                .chain(moment.iter().copied())
+                // Sums of rounding from the unit are beyond the ninth decimal.
+                .map(|value| ((value * 1e9).round() / 1e9).to_string())
+                .collect();
+            let read = reading.unloaded.iter().chain(&reading.loaded);
+            let read: Vec<String> = read.map(|value| format!("{:.decimals$}", value * 1e3)).collect();
+            let point = &self.points[reading.point];
+            text += &format!("{name},{},{point},{}\n", given.join(","), read.join(","));
+        }
+        text
+    }
+}

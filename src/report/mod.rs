@@ -6,6 +6,7 @@ pub mod assessment;
 pub mod circularity;
 pub mod cutting;
 pub mod evaluation;
+pub mod identification;
 pub mod json;
 pub mod number;
 pub mod output;

@@ -10,6 +10,7 @@ mod contour;
 mod convergence;
 mod cutting;
 mod deflection_map;
+mod deflections;
 mod hatch;
 mod indicators;
 mod lettering;
@@ -23,6 +24,7 @@ pub use circularity_map::circularity_map;
 pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
+pub use deflections::deflections;
 pub use indicators::indicators;
 pub use polar::polar;
 
