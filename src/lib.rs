@@ -14,7 +14,7 @@
 //! | 6 | the binary | starts the command line, returns its exit code |
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
-//! | 3 | [`placement`], [`assessment`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile |
+//! | 3 | [`placement`], [`assessment`], [`identification`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; how much its joints yield |
 //! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |
 //! | 1 | [`robot`], [`task`] | what the arm is, what is to be cut |
 //! | 0 | [`input`] | the one error for anything that a file can get wrong |

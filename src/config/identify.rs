@@ -8,7 +8,8 @@ use crate::identification::Problem;
 use crate::identification::law::Law;
 use crate::identification::spring::Geometry;
 use crate::input::{InputError, InputFile};
-use crate::robot::{Compliance, Pose, Robot, Spindle};
+use crate::robot::{Compliance, Robot, Spindle};
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,7 @@ pub struct IdentifyRun {
 /// Keys: `robot`, `sheet` (paths relative to the folder of the file), `load_point_mm` (where the wrench acts, flange frame);
 /// optionally `noise_mm` and `noise_deg` (standard deviation of one coordinate of one reading; both are needed for sheets with
 /// orientations), `[compensator]` (`joint`, `a_mm`, `l_mm`, `alpha_deg`; else that of the robot file, if it has one), `[base]`
-/// (`xyz_mm`, `rotation`: where to start looking for the robot base in the tracker's frame) and `[fit]` (`reduce`,
+/// (`rotation` from the robot base to the tracker's frame, to start from) and `[fit]` (`reduce`,
 /// `distinct_q2`, `angle_tolerance_deg`). The shipped file explains each.
 ///
 /// # Errors
@@ -157,12 +158,11 @@ fn varying_from(
     (varying, note)
 }
 
-fn base_from(table: &Table<'_>) -> Result<Pose<f64>, InputError> {
-    let [xyz, rotation] = table.fields(["xyz_mm", "rotation"])?;
-    let translation = xyz.vector3()? / 1e3;
-    let placed = Spindle::new(rotation.matrix3()?, translation).map_err(|problem| {
+fn base_from(table: &Table<'_>) -> Result<Matrix3<f64>, InputError> {
+    let [rotation] = table.fields(["rotation"])?;
+    let placed = Spindle::new(rotation.matrix3()?, Vector3::zeros()).map_err(|problem| {
         let tolerance = Spindle::ROTATION_TOLERANCE;
         rotation.error(problem, format!("a right-handed rotation matrix [row, row, row] within {tolerance}"))
     })?;
-    Ok(placed.flange_from_tool)
+    Ok(placed.flange_from_tool.rotation)
 }

@@ -72,7 +72,10 @@ pub enum LawError {
         joint: usize,
     },
     /// What fits best is no compensator.
-    #[error("joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero")]
+    #[error(
+        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the distinct angles do not tell the \
+         compensator; take more of them, wider apart, or leave out the table [compensator]"
+    )]
     NoSpring {
         /// Number of the joint, from 1.
         joint: usize,

@@ -14,6 +14,7 @@
 //! Nothing is regularised: what cannot be seen is refused by name, or on request held at its value in the starting robot.
 
 pub mod distribution;
+mod found;
 mod job;
 pub mod law;
 pub mod model;

@@ -40,7 +40,7 @@ impl Layout {
         order.sort_by(|a, b| angle(*a).total_cmp(&angle(*b)));
         let mut group_of = vec![0; order.len()];
         let mut angles = Vec::new();
-        for group in grouped(&order, |index| angle(index), tolerance) {
+        for group in grouped(&order, angle, tolerance) {
             for index in group {
                 group_of[*index] = angles.len();
             }

@@ -62,7 +62,7 @@ const STEPS: usize = 60;
 /// Estimates base transform and reference points from the unloaded readings for which `kept` holds.
 ///
 /// `flanges` are the poses of the flange in the base frame, one for each configuration. Without a `start` for
-/// `tracker_from_base` the best of 24 orientations all round is taken.
+/// the rotation of `tracker_from_base` the best of 24 orientations all round is taken.
 ///
 /// # Errors
 /// [`SetupError`] when the readings do not tell them.
@@ -70,7 +70,7 @@ pub fn estimate(
     sheet: &Sheet,
     flanges: &[Pose<f64>],
     kept: &[bool],
-    start: Option<&Pose<f64>>,
+    start: Option<&Matrix3<f64>>,
 ) -> Result<Setup, SetupError> {
     let all: Vec<usize> = (0..sheet.readings.len()).filter(|index| kept[*index]).collect();
     let unknowns = 6 + 3 * sheet.points.len();
@@ -80,9 +80,10 @@ pub fn estimate(
     let whole = Problem::new(sheet, flanges, &all);
     whole.check_spread()?;
     let stride = sheet.configurations.len().div_ceil(START);
-    let few: Vec<usize> = all.iter().copied().filter(|i| sheet.readings[*i].configuration % stride == 0).collect();
+    let few: Vec<usize> =
+        all.iter().copied().filter(|i| sheet.readings[*i].configuration.is_multiple_of(stride)).collect();
     let sample = Problem::new(sheet, flanges, &few);
-    let rotations = start.map_or_else(cube_rotations, |pose| vec![pose.rotation]);
+    let rotations = start.map_or_else(cube_rotations, |rotation| vec![*rotation]);
     let mut best: Option<(f64, State)> = None;
     for rotation in rotations {
         let found = sample.descend(sample.state_at(rotation));

@@ -70,3 +70,23 @@ pub(super) fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let inverse = factor.inverse();
     Some(DMatrix::from_fn(size, size, |a, b| (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Compensator;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn rows_give_the_stiffness_of_the_compensator(
+            angle in -3.0..3.0_f64, alpha in -3.0..3.0_f64, a in 0.5..1.0_f64, l in 0.1..0.4_f64, free_length in 0.1..1.0_f64
+        ) {
+            let compensator = Compensator { spring_stiffness: 3e5, a, l, alpha, free_length };
+            let row = Geometry { a, l, alpha }.row(angle);
+            let unknowns = Vector3::new(2e6, 3e5, 3e5 * free_length);
+            let expected = 2e6 + compensator.stiffness(angle);
+            prop_assert!((row.dot(&unknowns) - expected).abs() < 1e-9 * 2e6);
+        }
+    }
+}

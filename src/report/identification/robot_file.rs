@@ -137,7 +137,10 @@ fn covariance(found: &Identified) -> Table {
         array.set_trailing_comma(true);
     }
     let mut table = Table::new();
-    table.decor_mut().set_prefix("\n");
+    table.decor_mut().set_prefix(format!(
+        "\n# The compliances above are identified by stead {} from measurements, with this covariance.\n",
+        env!("CARGO_PKG_VERSION")
+    ));
     table.insert("parameters", Item::Value(Value::from(names)));
     table.insert("matrix", Item::Value(Value::from(matrix)));
     table
