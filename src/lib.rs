@@ -14,7 +14,7 @@
 //! | 6 | the binary | starts the command line, returns its exit code |
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
-//! | 3 | [`placement`], [`assessment`], [`compensation`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; what to command so that the loaded tool follows the path |
+//! | 3 | [`placement`], [`assessment`], [`identification`], [`compensation`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; how much its joints yield; what to command so that the loaded tool follows the path |
 //! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |
 //! | 1 | [`robot`], [`task`] | what the arm is, what is to be cut |
 //! | 0 | [`input`] | the one error for anything that a file can get wrong |
@@ -47,6 +47,7 @@ pub mod cli;
 pub mod compensation;
 pub mod config;
 pub mod cutting;
+pub mod identification;
 pub mod input;
 pub mod placement;
 pub mod report;

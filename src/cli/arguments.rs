@@ -26,6 +26,9 @@ pub(super) enum Command {
     Assess(AssessOptions),
     /// Correct the path of a plan so that the loaded tool follows the path that is wanted
     Compensate(CompensateOptions),
+    /// Joint compliances from measured deflections, with their uncertainty
+    #[command(subcommand)]
+    Identify(IdentifyCommand),
     /// Roundness of measured points: the four reference circles of ISO 12181
     Circularity(CircularityOptions),
 }
@@ -64,6 +67,24 @@ pub(super) struct AssessOptions {
     /// Number of threads [default: as many as processors]; it does not change the result
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum IdentifyCommand {
+    /// Fit compliances, compensator and their covariance to a filled measurement sheet, and write a robot file
+    Fit(IdentifyFitOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct IdentifyFitOptions {
+    /// Identification file (TOML)
+    pub config: PathBuf,
+    /// Folder for the results [default: results/<name of the identification file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub json: bool,

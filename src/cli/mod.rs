@@ -9,6 +9,7 @@ mod assess;
 mod circularity;
 mod compensate;
 mod explain;
+mod identify;
 mod place;
 mod progress;
 mod score;
@@ -68,6 +69,7 @@ pub fn main() -> ExitCode {
         Command::Explain(options) => explain::run(&options),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),
+        Command::Identify(command) => identify::run(&command),
         Command::Circularity(options) => circularity::run(&options),
     };
     match result {

@@ -21,12 +21,14 @@ mod arrays;
 mod assess;
 mod compensate;
 mod cutting;
+mod identify;
 mod milling;
 mod points;
 mod printed;
 pub mod reader;
 mod robot;
 mod run;
+mod sheet;
 pub mod source;
 mod tables;
 #[cfg(test)]
@@ -34,6 +36,7 @@ mod testing;
 
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
+pub use identify::{IdentifyRun, read_identification};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run};

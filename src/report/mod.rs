@@ -7,6 +7,7 @@ pub mod circularity;
 pub mod compensation;
 pub mod cutting;
 pub mod evaluation;
+pub mod identification;
 pub mod json;
 pub mod number;
 pub mod output;

@@ -11,6 +11,7 @@ mod contour;
 mod convergence;
 mod cutting;
 mod deflection_map;
+mod deflections;
 mod hatch;
 mod indicators;
 mod lettering;
@@ -25,6 +26,7 @@ pub use compensation::compensation;
 pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
+pub use deflections::deflections;
 pub use indicators::indicators;
 pub use polar::polar;
 

@@ -1,0 +1,102 @@
+//! `stead identify`: joint compliances from measurements.
+
+use super::arguments::{IdentifyCommand, IdentifyFitOptions};
+use super::{Failure, out_folder, print, say};
+use crate::config::{IdentifyRun, read_identification};
+use crate::identification::law::LawError;
+use crate::identification::model::{Layout, Parameter};
+use crate::identification::normal::Unseen;
+use crate::identification::setup::SetupError;
+use crate::identification::{IdentifyError, identify};
+use crate::input::InputError;
+use crate::report::identification::{identify_json, identify_text, write_identified};
+use crate::report::json;
+
+pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
+    match command {
+        IdentifyCommand::Fit(options) => fit(options),
+    }
+}
+
+fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
+    let run = read_identification(&options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config)?;
+    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    let found = identify(&run.problem).map_err(|error| {
+        out.give_up();
+        failure(&run, error)
+    })?;
+    let written = write_identified(&out.folder, &run, &found);
+    if options.json {
+        print(&json::bytes(&identify_json(&run, &found)));
+    } else {
+        let where_to = match &written {
+            Ok(_) => format!("\nresults in {}\n", out.folder.path().display()),
+            Err(_) => String::new(),
+        };
+        print((identify_text(&run, &found) + &where_to).as_bytes());
+    }
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+}
+
+/// What is wrong with the sheet is bad input, at its line where there is one; what comes out of a sound sheet is not.
+fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
+    let bad = |problem: String| InputError::new(&run.sheet_file, problem);
+    let first = run.problem.sheet.readings.first().map_or(1, |reading| reading.line);
+    match error {
+        IdentifyError::TooFar { line, .. } => bad(error.to_string())
+            .at_line(line)
+            .in_field("loaded_x_mm")
+            .allowed("places in millimetres, both of the same point, and wrenches in N and N m")
+            .into(),
+        IdentifyError::Setup(SetupError::Scale { .. }) => bad(error.to_string())
+            .at_line(first)
+            .in_field("unloaded_x_mm")
+            .allowed("places in millimetres, and joint angles in degrees as the robot counts them")
+            .into(),
+        IdentifyError::Setup(_) => bad(error.to_string())
+            .at_line(first)
+            .in_field("unloaded_x_mm")
+            .allowed("more configurations, with the flange turned every way")
+            .into(),
+        IdentifyError::TooFew { .. } => bad(error.to_string())
+            .at_line(first)
+            .allowed("at least as many loaded coordinates as compliances: more configurations, or more at the same q2")
+            .into(),
+        IdentifyError::NoiseUnknown { .. } => {
+            bad(error.to_string()).at_line(first).allowed("more readings, or noise_mm in the config").into()
+        }
+        IdentifyError::Unseen { unseen, layout } => bad(unseen_words(&unseen, &layout))
+            .at_line(first)
+            .allowed("loads that turn every joint, each in its own way; or fit.reduce = true to keep what is not seen")
+            .into(),
+        IdentifyError::Law(LawError::TooFewAngles { joint, .. } | LawError::Unseen { joint }) => bad(error.to_string())
+            .at_line(first)
+            .in_field(format!("theta{joint}_deg"))
+            .allowed("three or more distinct angles, wide apart")
+            .into(),
+        IdentifyError::Law(LawError::NoSpring { .. }) | IdentifyError::NotPositive { .. } | IdentifyError::Robot(_) => {
+            Failure::Job(error.to_string())
+        }
+    }
+}
+
+/// Every parameter or combination that is not seen, by name.
+fn unseen_words(unseen: &[Unseen], layout: &Layout) -> String {
+    let name = |parameter: &Parameter| {
+        let joint = layout.joint(*parameter) + 1;
+        match layout.angle(*parameter) {
+            Some(angle) => format!("k_{joint} at {:.2} deg", angle.to_degrees()),
+            None => format!("k_{joint}"),
+        }
+    };
+    let words = |unseen: &Unseen| {
+        let names: Vec<String> = unseen.parameters.iter().map(name).collect();
+        match &names[..] {
+            [alone] => format!("{alone} turns under no load"),
+            several => format!("{} cannot be told apart", several.join(", ")),
+        }
+    };
+    let all: Vec<String> = unseen.iter().map(words).collect();
+    format!("the readings do not see every compliance: {}", all.join("; "))
+}

@@ -1,0 +1,293 @@
+//! From the compliances seen to those of the arm: one constant for each joint, or joint, spring and its free length where a
+//! compensator stands beside one.
+//!
+//! The compliances at the distinct angles of a joint become stiffnesses, which are linear in (K_theta, K_GC, s_0 K_GC)
+//! (Klimchik et al. 2017, eq. 21 and 22, with the sign of its eq. 14 corrected), weighted by their covariance. From there
+//! Gauss-Newton on the compliances themselves, together with those of the other joints, gives the least sum of squares over
+//! all readings: the errors are normal in the compliances, not in their inverses.
+
+use super::normal::{Normal, Solution};
+use super::spring::{Geometry, scaled_inverse, spring_start};
+use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+
+/// How the compliance of the varying joint depends on its angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Not at all.
+    Constant,
+    /// By a compensator of known geometry.
+    Spring(Geometry),
+}
+
+/// A number of the arm that has been estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArmParameter {
+    /// Which joint, from 0.
+    pub joint: usize,
+    /// Which of its numbers.
+    pub quantity: Quantity,
+}
+
+/// What a number of the arm is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Compliance of the joint, without its compensator. rad/(N m)
+    Compliance,
+    /// Stiffness of the spring beside it. N/m
+    SpringStiffness,
+    /// Length of that spring without load. m
+    FreeLength,
+}
+
+/// The arm's numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArmFit {
+    /// What they are, joint by joint.
+    pub parameters: Vec<ArmParameter>,
+    /// Their values, SI.
+    pub values: DVector<f64>,
+    /// Their covariance for equations of unit variance, SI.
+    pub covariance: DMatrix<f64>,
+    /// The compliances of the joints that do not vary, free or held. rad/(N m)
+    pub joints: Vector6<f64>,
+    /// At each distinct angle the compliance by the law, and its derivatives by the values. rad/(N m)
+    pub groups: Vec<(f64, DVector<f64>)>,
+}
+
+/// Why the compensator cannot be told from the compliances at the distinct angles.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum LawError {
+    /// Fewer distinct angles than unknowns.
+    #[error("{found} distinct angles of joint {joint} do not tell the three unknowns of a compensator")]
+    TooFewAngles {
+        /// How many there are.
+        found: usize,
+        /// Number of the joint, from 1.
+        joint: usize,
+    },
+    /// The angles are too much alike.
+    #[error("the distinct angles of joint {joint} do not tell its own stiffness from its compensator's")]
+    Unseen {
+        /// Number of the joint, from 1.
+        joint: usize,
+    },
+    /// What fits best is no compensator.
+    #[error(
+        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the distinct angles do not tell the \
+         compensator; take more of them, wider apart, or leave out the table [compensator]"
+    )]
+    NoSpring {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// Which number.
+        what: &'static str,
+        /// What it comes out as.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+}
+
+const STEPS: usize = 60;
+
+/// Fits the arm's numbers to the sums of the readings. `joints` says which joints are free, `seen` is the estimate with one
+/// compliance for each distinct angle, at `angles` in rad.
+///
+/// # Errors
+/// [`LawError`] where the law is a spring that the angles do not tell.
+pub fn fit(normal: &Normal, joints: [bool; 6], seen: &Solution, angles: &[f64], law: Law) -> Result<ArmFit, LawError> {
+    let fit = Fit::new(normal, joints, angles, law);
+    let number = normal.varying.map_or(0, |joint| joint + 1);
+    let unseen = LawError::Unseen { joint: number };
+    let start = match (normal.varying, law) {
+        (None, _) => vec![],
+        (Some(_), Law::Constant) => vec![seen.groups.first().copied().unwrap_or_default()],
+        (Some(_), Law::Spring(_)) if angles.len() < 3 => {
+            return Err(LawError::TooFewAngles { found: angles.len(), joint: number });
+        }
+        (Some(_), Law::Spring(geometry)) => {
+            let rows: Vec<_> = angles.iter().map(|angle| geometry.row(*angle)).collect();
+            spring_start(normal, seen, &rows).ok_or(unseen)?.iter().copied().collect()
+        }
+    };
+    let mut state = State { joints: seen.joints, law: start };
+    for _ in 0..STEPS {
+        let step = fit.step(&state).ok_or(unseen)?;
+        let next = fit.moved(&state, &step.0).ok_or(unseen)?;
+        let change = step.0.component_div(&step.1).amax();
+        state = next;
+        if change < 1e-14 {
+            break;
+        }
+    }
+    fit.finish(state, number, unseen)
+}
+
+struct State {
+    joints: Vector6<f64>,
+    /// Compliance, or (K_theta, K_GC, s_0 K_GC), or nothing.
+    law: Vec<f64>,
+}
+
+struct Fit<'a> {
+    normal: &'a Normal,
+    law: Law,
+    rows: Vec<Vector3<f64>>,
+    parameters: Vec<ArmParameter>,
+}
+
+impl<'a> Fit<'a> {
+    fn new(normal: &'a Normal, joints: [bool; 6], angles: &[f64], law: Law) -> Self {
+        let mut parameters = Vec::new();
+        for joint in 0..6 {
+            let quantities: &[Quantity] = match (normal.varying == Some(joint), law) {
+                (false, _) if !joints[joint] => &[],
+                (false, _) | (true, Law::Constant) => &[Quantity::Compliance],
+                (true, Law::Spring(_)) => &[Quantity::Compliance, Quantity::SpringStiffness, Quantity::FreeLength],
+            };
+            parameters.extend(quantities.iter().map(|quantity| ArmParameter { joint, quantity: *quantity }));
+        }
+        let row = |angle: &f64| match law {
+            Law::Constant => Vector3::zeros(),
+            Law::Spring(geometry) => geometry.row(*angle),
+        };
+        Self { normal, law, rows: angles.iter().map(row).collect(), parameters }
+    }
+
+    /// Which number of the law a parameter is.
+    fn place(&self, parameter: &ArmParameter) -> Option<usize> {
+        (self.normal.varying == Some(parameter.joint)).then_some(match parameter.quantity {
+            Quantity::Compliance => 0,
+            Quantity::SpringStiffness => 1,
+            Quantity::FreeLength => 2,
+        })
+    }
+
+    /// Compliance at a distinct angle and its derivatives by the numbers of the law.
+    fn compliance(&self, law: &[f64], group: usize) -> (f64, Vector3<f64>) {
+        match (self.law, law) {
+            (Law::Spring(_), [joint, spring, pull]) => {
+                let row = self.rows[group];
+                let stiffness = row.dot(&Vector3::new(*joint, *spring, *pull));
+                (1.0 / stiffness, -row / (stiffness * stiffness))
+            }
+            _ => (law.first().copied().unwrap_or_default(), Vector3::x()),
+        }
+    }
+
+    /// Normal matrix and gradient of the sum of squares in the parameters.
+    fn equations(&self, state: &State) -> (DMatrix<f64>, DVector<f64>) {
+        let size = self.parameters.len();
+        let normal = self.normal;
+        let own: Vec<Option<usize>> = self.parameters.iter().map(|parameter| self.place(parameter)).collect();
+        let joint = |index: usize| self.parameters[index].joint;
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut gradient = DVector::zeros(size);
+        let mut shared_gradient = normal.shared_rhs - normal.shared * state.joints;
+        for (index, group) in normal.groups.iter().enumerate() {
+            let (compliance, slope) = self.compliance(&state.law, index);
+            shared_gradient -= group.coupling * compliance;
+            let rest = group.rhs - group.coupling.dot(&state.joints) - group.diagonal * compliance;
+            for a in 0..size {
+                let Some(place) = own[a] else { continue };
+                gradient[a] += slope[place] * rest;
+                for b in 0..size {
+                    matrix[(a, b)] += slope[place]
+                        * own[b].map_or_else(|| group.coupling[joint(b)], |other| slope[other] * group.diagonal);
+                }
+            }
+        }
+        for a in (0..size).filter(|a| own[*a].is_none()) {
+            gradient[a] = shared_gradient[joint(a)];
+            for b in 0..size {
+                matrix[(a, b)] = match own[b] {
+                    None => normal.shared[(joint(a), joint(b))],
+                    Some(_) => matrix[(b, a)],
+                };
+            }
+        }
+        (matrix, gradient)
+    }
+
+    /// A Gauss-Newton step, and the size of each parameter.
+    fn step(&self, state: &State) -> Option<(DVector<f64>, DVector<f64>)> {
+        let (matrix, gradient) = self.equations(state);
+        let step = scaled_inverse(&matrix)? * gradient;
+        let size = |parameter: &ArmParameter| match self.place(parameter) {
+            Some(place) => state.law[place].abs().max(f64::MIN_POSITIVE),
+            None => state.joints[parameter.joint].abs().max(f64::MIN_POSITIVE),
+        };
+        let sizes = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(size));
+        step.iter().all(|value| value.is_finite()).then_some((step, sizes))
+    }
+
+    /// The state after as much of a step as leaves every stiffness above zero.
+    fn moved(&self, state: &State, step: &DVector<f64>) -> Option<State> {
+        let mut part = 1.0;
+        while part > 1e-6 {
+            let mut next = State { joints: state.joints, law: state.law.clone() };
+            for (parameter, change) in self.parameters.iter().zip(step.iter()) {
+                match self.place(parameter) {
+                    Some(place) => next.law[place] += part * change,
+                    None => next.joints[parameter.joint] += part * change,
+                }
+            }
+            let is_spring = matches!(self.law, Law::Spring(_)) && next.law.len() == 3;
+            if !is_spring || (0..self.rows.len()).all(|group| self.compliance(&next.law, group).0 > 0.0) {
+                return Some(next);
+            }
+            part /= 2.0;
+        }
+        None
+    }
+
+    /// From stiffnesses to the numbers that robot files have.
+    fn finish(&self, state: State, number: usize, unseen: LawError) -> Result<ArmFit, LawError> {
+        let (matrix, _) = self.equations(&state);
+        let covariance = scaled_inverse(&matrix).ok_or(unseen)?;
+        let size = self.parameters.len();
+        let mut change = DMatrix::<f64>::identity(size, size);
+        let mut values = DVector::zeros(size);
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            values[index] = match (self.place(parameter), self.law, &state.law[..]) {
+                (None, ..) => state.joints[parameter.joint],
+                (Some(0), Law::Spring(_), [stiffness, ..]) => {
+                    change[(index, index)] = -1.0 / (stiffness * stiffness);
+                    1.0 / stiffness
+                }
+                (Some(2), Law::Spring(_), [_, spring, pull]) => {
+                    change[(index, index)] = 1.0 / spring;
+                    change[(index, index - 1)] = -pull / (spring * spring);
+                    pull / spring
+                }
+                (Some(place), ..) => state.law[place],
+            };
+        }
+        if let (Law::Spring(_), [stiffness, spring, pull]) = (self.law, &state.law[..]) {
+            let length_mm = pull / spring * 1e3;
+            let wrong = |what, value, unit| LawError::NoSpring { joint: number, what, value, unit };
+            if *stiffness <= 0.0 {
+                return Err(wrong("the stiffness without the compensator", *stiffness / 1e6, "MN m/rad"));
+            }
+            if *spring <= 0.0 {
+                return Err(wrong("the stiffness of the spring", *spring / 1e3, "N/mm"));
+            }
+            if length_mm <= 0.0 {
+                return Err(wrong("the free length of the spring", length_mm, "mm"));
+            }
+        }
+        let undo = change.clone().try_inverse().ok_or(unseen)?;
+        let group = |index: usize| {
+            let (compliance, slope) = self.compliance(&state.law, index);
+            let slopes = self.parameters.iter().map(|p| self.place(p).map_or(0.0, |place| slope[place]));
+            (compliance, undo.transpose() * DVector::from_iterator(size, slopes))
+        };
+        Ok(ArmFit {
+            parameters: self.parameters.clone(),
+            values,
+            covariance: &change * covariance * change.transpose(),
+            joints: state.joints,
+            groups: (0..self.rows.len()).map(group).collect(),
+        })
+    }
+}

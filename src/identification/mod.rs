@@ -1,0 +1,35 @@
+//! From measurements to joint compliances, with their uncertainty (Klimchik et al. 2017, section 3.2).
+//!
+//! Makers publish no stiffness. It is identified by loading the arm at known joint angles with a known wrench and reading where
+//! some reference points go. [`identify`] takes such a [`Sheet`] through these steps:
+//!
+//! 1. [`setup`]: where the tracker stands and where the points sit, from the unloaded readings alone (eq. 24);
+//! 2. [`model`]: deflections as linear functions of the compliances, the joint beside a compensator having one for each
+//!    distinct angle (eq. 16, 20);
+//! 3. [`normal`]: least squares with covariance (eq. 18, 19, 23), and which parameters cannot be seen;
+//! 4. [`outliers`]: readings that do not belong with the others;
+//! 5. [`law`]: from the compliances at distinct angles to joint, spring and free length (eq. 21, 22);
+//! 6. [`validate`]: how well a configuration is predicted that was left out.
+//!
+//! Nothing is regularised: what cannot be seen is refused by name, or on request held at its value in the starting robot.
+
+pub mod distribution;
+mod found;
+mod job;
+pub mod law;
+pub mod model;
+pub mod normal;
+pub mod outcome;
+pub mod outliers;
+pub mod rotation;
+pub mod setup;
+pub mod sheet;
+pub mod spring;
+pub mod synthetic;
+#[cfg(test)]
+mod tests;
+pub mod validate;
+
+pub use job::{IdentifyError, Problem, identify};
+pub use outcome::{Estimate, Identified, RowResult};
+pub use sheet::{Configuration, Reading, Sheet};

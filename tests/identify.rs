@@ -1,0 +1,230 @@
+//! `stead identify fit` from outside: what it prints and writes, and what it refuses.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
+mod common;
+
+use common::{Bench, Ended};
+use std::path::Path;
+
+const CONFIG: &str = "configs/identify-example.toml";
+const SHEET: &str = "tasks/identify-example.csv";
+const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";
+
+/// A bench with the shipped example.
+fn bench() -> Bench {
+    let bench = Bench::new();
+    for name in [CONFIG, SHEET] {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
+        bench.write(name, &text);
+    }
+    bench
+}
+
+fn fit(bench: &Bench, more: &[&str]) -> Ended {
+    bench.stead(&[&["identify", "fit", CONFIG, "--out", "out"], more].concat())
+}
+
+/// The fields of a line of the sheet, from 1, changed.
+fn change(bench: &Bench, line: usize, edit: impl Fn(&mut Vec<String>)) {
+    let text = bench.read(SHEET);
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let mut fields: Vec<String> = lines[line - 1].split(',').map(str::to_owned).collect();
+    edit(&mut fields);
+    lines[line - 1] = fields.join(",");
+    bench.write(SHEET, &(lines.join("\n") + "\n"));
+}
+
+/// Asserts exit code 2 with all of some parts, nothing on standard output and no file written.
+#[track_caller]
+fn refused(bench: &Bench, parts: &[&str]) {
+    let before = bench.tree("");
+    let ended = fit(bench, &["--json"]);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+    assert!(ended.stderr.starts_with("error: ") && !ended.stderr.contains("panicked"), "{}", ended.stderr);
+    ended.assert_says(parts);
+    ended.assert_says(&["; allowed: "]);
+    assert_eq!(bench.tree(""), before);
+}
+
+/// Compliances of the arm behind the example. urad/(N m)
+const TRUTH: [f64; 6] = [0.54, 0.3, 0.42, 2.79, 3.48, 2.074];
+
+#[test]
+fn the_example_is_identified_and_its_robot_file_keeps_the_rest() {
+    let bench = bench();
+    let ended = fit(&bench, &["--json"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let document = ended.json();
+    let compliances = document["compliances"].as_array().unwrap();
+    assert_eq!(compliances.len(), 10);
+    for entry in compliances {
+        let joint = entry["joint"].as_u64().unwrap() as usize;
+        assert_eq!(entry.get("q2_deg").is_some(), joint == 2);
+        if joint != 2 {
+            let off = entry["urad_per_nm"].as_f64().unwrap() - TRUTH[joint - 1];
+            assert!(off.abs() < 3.0 * entry["std_urad_per_nm"].as_f64().unwrap(), "{entry}");
+        }
+    }
+    let spring = &document["compensator"];
+    for (name, truth) in [("spring_stiffness_n_per_mm", 4000.0), ("free_length_mm", 600.0)] {
+        let off = spring[name].as_f64().unwrap() - truth;
+        assert!(off.abs() < 3.0 * spring[format!("std_{name}")].as_f64().unwrap(), "{spring}");
+    }
+    assert_eq!(document["outliers"].as_array().unwrap().len(), 0);
+    let residual = document["residual_rms_mm"].as_f64().unwrap();
+    assert!((0.036..0.048).contains(&residual), "{residual}: sqrt(2) times 0.03 is expected");
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&bench.read("out/report.json")).unwrap(), document);
+    assert_eq!(bench.read("out/residuals.csv").lines().count(), 61);
+    assert_eq!(bench.read("out/compliances.csv").lines().count(), 19);
+    assert!(bench.read("out/deflections.svg").contains("</svg>"));
+
+    // Every line of the user's file but those of compliances is there, in order.
+    let (old, new) = (bench.read(ROBOT), bench.read("out/robot-identified.toml"));
+    let mut lines = new.lines();
+    for line in old.lines().filter(|line| !line.starts_with("stiffness_mnm_per_rad")) {
+        assert!(lines.any(|new| new == line), "{line} is not kept");
+    }
+    assert!(new.contains("# as printed, see above"));
+    let parsed: toml::Table = new.parse().unwrap();
+    let names = parsed["covariance"]["parameters"].as_array().unwrap();
+    assert_eq!(names.len(), 8);
+    assert_eq!(names[2].as_str(), Some("joints[2].compensator.spring_stiffness_n_per_mm"));
+    let entry = |i: usize, j: usize| parsed["covariance"]["matrix"][i][j].as_float().unwrap();
+    for i in 0..8 {
+        let deviation = document["arm"][i]["std"].as_f64().unwrap();
+        assert!((libm::sqrt(entry(i, i)) / deviation - 1.0).abs() < 1e-9);
+        assert!((0..8).all(|j| entry(i, j) == entry(j, i)));
+    }
+    assert!(fit(&bench, &[]).stdout.contains("predicting a configuration from the others"));
+}
+
+#[test]
+fn the_robot_file_is_one_that_can_be_read_again() {
+    let bench = bench();
+    assert_eq!(fit(&bench, &[]).code, Some(0));
+    let new = bench.read("out/robot-identified.toml");
+    let arm = new.split("\n# The compliances above").next().unwrap();
+    bench.write("arm.toml", arm);
+    let robot = stead::config::read_robot(&bench.path("arm.toml")).unwrap();
+    let stead::robot::Compliance::Compensated { alone, compensator } = robot.joints()[1].compliance else {
+        panic!("{:?}", robot.joints()[1]);
+    };
+    assert!((alone * 1e6 - 0.3).abs() < 0.01 && compensator.a == 0.75);
+    // What stead has written it can start from: the compensator's geometry is that of the robot file now.
+    let config = bench.read(CONFIG).replace("robots/kuka-kr270-2.toml", "../arm.toml");
+    let table = config.find("[compensator]").unwrap()..config.find("# [base]").unwrap();
+    bench.write(CONFIG, &config.replace(&config[table], ""));
+    assert_eq!(fit(&bench, &[]).code, Some(0));
+    assert_eq!(bench.read("out/robot-identified.toml").matches("[joints.compensator]").count(), 1);
+}
+
+#[test]
+fn outliers_are_named_by_line() {
+    let bench = bench();
+    for line in [5, 23, 40] {
+        change(&bench, line, |fields| fields[18] = format!("{:.3}", fields[18].parse::<f64>().unwrap() + 1.0));
+    }
+    let document = fit(&bench, &["--json"]).json();
+    let lines: Vec<u64> =
+        document["outliers"].as_array().unwrap().iter().map(|outlier| outlier["line"].as_u64().unwrap()).collect();
+    assert_eq!(lines, [5, 23, 40]);
+    assert!(fit(&bench, &[]).stdout.contains("outlier left out: line 23, configuration c8, point p1: "));
+}
+
+#[test]
+fn bad_sheets_are_refused_at_their_line_and_column() {
+    type Edit = fn(&mut Vec<String>);
+    let cases: [(usize, Edit, &[&str]); 10] = [
+        (4, |f| f[15] = "nan".to_owned(), &["identify-example.csv:4: unloaded_y_mm: ", "finite", "'nan'"]),
+        (4, |f| f[17] = String::new(), &["identify-example.csv:4: loaded_x_mm: ", "finite", "''"]),
+        (
+            5,
+            |f| f[3] = "29.5".to_owned(),
+            &[":5: theta3_deg: ", "limits of the joint", "'29.5'", "-245.0000 to 29.0000"],
+        ),
+        (6, |f| f[4] = "351".to_owned(), &[":6: theta4_deg: ", "limits of the joint", "'351'"]),
+        (7, |f| f[7..13].fill("0".to_owned()), &[":7: force_x_n: ", "all zero", "a load"]),
+        (8, |f| (14..17).for_each(|k| f[k + 3] = f[k].clone()), &[":8: loaded_x_mm: ", "is the unloaded one"]),
+        (9, |f| f[13] = "p1".to_owned(), &[":9: point: ", "line 8 has this point", "'p1'"]),
+        (10, |f| f[0] = "c4".to_owned(), &[":11: configuration: ", "of line 10", "other joint angles", "'c4'"]),
+        (11, |f| f[13] = String::new(), &[":11: point: ", "is blank"]),
+        (
+            12,
+            |f| (17..20).for_each(|k| f[k] = (f[k].parse::<f64>().unwrap() / 1e3).to_string()),
+            &[":12: loaded_x_mm: ", "deflection of", "the load could cause", "millimetres"],
+        ),
+    ];
+    for (line, edit, parts) in cases {
+        let bench = bench();
+        change(&bench, line, edit);
+        // The line above the one whose name changes belongs to another configuration then.
+        refused(&bench, parts);
+    }
+}
+
+#[test]
+fn sheets_that_tell_too_little_are_refused() {
+    let only = |keep: fn(usize) -> bool| {
+        let bench = bench();
+        let text = bench.read(SHEET);
+        let kept: Vec<&str> = text.lines().enumerate().filter(|(k, _)| *k == 0 || keep(*k)).map(|(_, l)| l).collect();
+        bench.write(SHEET, &(kept.join("\n") + "\n"));
+        bench
+    };
+    refused(&only(|_| false), &["identify-example.csv:1: ", "no measurements"]);
+    refused(&only(|k| k <= 3), &["9 unloaded coordinates", "15 unknowns", "more configurations"]);
+    refused(&only(|k| (k - 1) / 3 % 5 < 2), &["theta2_deg", "2 distinct angles of joint 2", "three or more"]);
+
+    let bench = bench();
+    let text = bench.read(SHEET);
+    let metres: Vec<String> = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| {
+            let field = |(at, text): (usize, &str)| match text.parse::<f64>() {
+                Ok(value) if at >= 14 => (value / 1e3).to_string(),
+                _ => text.to_owned(),
+            };
+            if k == 0 { line.to_owned() } else { line.split(',').enumerate().map(field).collect::<Vec<_>>().join(",") }
+        })
+        .collect();
+    bench.write(SHEET, &(metres.join("\n") + "\n"));
+    refused(&bench, &["unloaded_x_mm", "spread over", "millimetres"]);
+}
+
+#[test]
+fn what_the_loads_do_not_show_is_named_and_kept_on_request() {
+    let bench = bench();
+    for line in 2..=61 {
+        change(&bench, line, |fields| {
+            fields[7] = "0".to_owned();
+            fields[8] = "0".to_owned();
+        });
+    }
+    refused(&bench, &["k_1 turns under no load", "fit.reduce = true"]);
+    bench.replace(CONFIG, "reduce = false", "reduce = true");
+    let ended = fit(&bench, &["--json"]);
+    assert_eq!(ended.json()["held"].as_array().unwrap().len(), 1, "{}", ended.stderr);
+    assert!(bench.read("out/robot-identified.toml").contains("stiffness_mnm_per_rad = 0.237        # as printed"));
+}
+
+#[test]
+fn bad_configs_are_refused_at_their_line() {
+    for (from, to, parts) in [
+        ("load_point_mm = [250.0,", "load_point_mm = [inf,", &[":9: load_point_mm[1]: ", "found inf"][..]),
+        ("# noise_mm = 0.03 ", "noise_mm = 0 # ", &["noise_mm: ", "found 0", "above 0"]),
+        ("sheet = \"../tasks", "sheet = \"../tusks", &[":8: sheet: ", "cannot be read", "tusks"]),
+        ("joint = 2", "joint = 7", &["compensator.joint: ", "found 7", "from 1 to 6"]),
+        ("l_mm = 250.0", "l_mm = 750.0", &["compensator.l_mm: ", "meet", "found 750.0"]),
+        ("reduce = false", "redoce = false", &["fit.redoce: ", "nearest known one: reduce"]),
+        ("angle_tolerance_deg = 0.05", "angle_tolerance_deg = -1", &["fit.angle_tolerance_deg: ", "found -1"]),
+    ] {
+        let bench = bench();
+        bench.replace(CONFIG, from, to);
+        refused(&bench, parts);
+    }
+    let bench = bench();
+    bench.replace(SHEET, "point,", "point,unloaded_rx_deg,");
+    refused(&bench, &[":1: unloaded_ry_deg: ", "missing column"]);
+}
