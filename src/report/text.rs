@@ -11,8 +11,7 @@ const POSTURES_WIDTH: usize = 40;
 
 /// The four cases: first placements and posture schemes, then mean and largest deflection, the ratio to case 1 beside the
 /// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
-/// uncertainty is known; last the size of the search. Lines are at most 110 characters wide
-/// and end with a line break.
+/// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
     let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
