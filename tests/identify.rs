@@ -107,14 +107,21 @@ fn the_example_is_identified_and_its_robot_file_keeps_the_rest() {
 fn the_robot_file_is_one_that_can_be_read_again() {
     let bench = bench();
     assert_eq!(fit(&bench, &[]).code, Some(0));
-    let new = bench.read("out/robot-identified.toml");
-    let arm = new.split("\n# The compliances above").next().unwrap();
-    bench.write("arm.toml", arm);
+    bench.write("arm.toml", &bench.read("out/robot-identified.toml"));
     let robot = stead::config::read_robot(&bench.path("arm.toml")).unwrap();
     let Compliance::Compensated { alone, compensator } = robot.joints()[1].compliance else {
         panic!("{:?}", robot.joints()[1]);
     };
     assert!((alone * 1e6 - 0.3).abs() < 0.01 && compensator.a == 0.75);
+    // The covariance goes on into the score of a placement.
+    bench.replace(common::RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
+    let place = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258", "--json"];
+    let score = || bench.stead(&[&["score", common::RUN], &place[..]].concat()).json()["best"].clone();
+    let plain = score();
+    let (mean, deviation) = (plain["mean_mm"].as_f64().unwrap(), plain["mean_std_mm"].as_f64().unwrap());
+    assert!(deviation > 1e-4 * mean && deviation < 0.1 * mean, "{plain}");
+    bench.replace(common::RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.0\nconfidence = 2.0");
+    assert!(score()["mean_mm"].as_f64().unwrap() > mean);
     // What stead has written it can start from: the compensator's geometry is that of the robot file now.
     let config = bench.read(CONFIG).replace("robots/kuka-kr270-2.toml", "../arm.toml");
     let table = config.find("[compensator]").unwrap()..config.find("# [base]").unwrap();
