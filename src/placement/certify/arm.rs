@@ -1,0 +1,367 @@
+//! The closed form of an upright tool: how the arm yields, and what its joints allow, as functions of the radius and height
+//! of the tool centre point and of the spindle's heading against its azimuth.
+//!
+//! Everything is in the radial frame of the tool centre point: x away from axis 1, z along it. Joint 1 is left to
+//! [`super::cost`], and so are joints 4 and 6, whose limits are relaxed.
+
+use super::number::{Bend, Links, Number};
+use crate::placement::kernel::lanes::Mask;
+use crate::placement::problem::Problem;
+use crate::robot::{Geometry, PostureClass, angles::ANGLE_ROUNDING};
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::PI;
+
+/// Number of constraints: elbow, both limits of joints 2 and 3, joint 5, wrist, conditioning.
+pub(super) const CONSTRAINTS: usize = 8;
+
+/// Squared sine of elbow and wrist below which nothing is known, where conditioning asks for less.
+const LEAST_SINE2: f64 = 1e-4;
+
+/// What does not change from state to state.
+#[derive(Debug, Clone)]
+pub(super) struct Arm {
+    geometry: Geometry,
+    /// Tool centre point from the wrist centre, with heading zero. m
+    lever: Vector3<f64>,
+    /// Axis 6 with heading zero.
+    axis6: Vector3<f64>,
+    /// Compliances of joints 2 to 6. rad/(N m)
+    compliances: [f64; 5],
+    /// Limits of joints 2 and 3, rounding included. rad
+    limits: [(f64, f64); 2],
+    /// Smallest cosine of theta_5.
+    least_cosine5: f64,
+    min_inverse_condition: f64,
+    characteristic_length: f64,
+    needs: Needs,
+    links: Links,
+    bend: Bend,
+    /// Whether any force is along axis 1.
+    is_vertical: bool,
+}
+
+/// What the least inverse condition asks of elbow and wrist by themselves, without singularities of its own.
+///
+/// With `6 / (|N| |N^-1|) >= min`, `|N|^2 >= 6 + r^2 / L^2` and `|N^-1| >= |x| / |N x|` for any joint velocity x: joints 2 and
+/// 3 moving the wrist centre least, and joints 4 and 6 turning against each other.
+#[derive(Debug, Clone, Copy)]
+struct Needs {
+    /// min^2 |N|^2 / 36 as `constant + per_radius2 r^2`.
+    constant: f64,
+    per_radius2: f64,
+    /// (L / (upper arm times forearm))^2, to be multiplied by the squared distance of the wrist centre from the shoulder.
+    elbow: f64,
+    /// 1 + |lever|^2 / L^2.
+    wrist: f64,
+}
+
+/// The plane arm, as conditioning needs it.
+struct Plane<T> {
+    forward: T,
+    inverse_forward: T,
+    u: T,
+    u3: T,
+    height: T,
+    height3: T,
+    p2: (T, T),
+    p3: (T, T),
+    /// Sign of the determinant over the lengths of the links.
+    sign: f64,
+    sin_delta: T,
+}
+
+/// The wrist, as conditioning needs it.
+struct Wrist<T> {
+    t: Vector<T>,
+    z4: Vector<T>,
+    z6: Vector<T>,
+    dot46: T,
+    sine5_squared: T,
+    /// Squared part of the lever along axis 5.
+    across: T,
+}
+
+/// How the arm yields and what it allows, in one posture class.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Yield<T> {
+    /// In-plane compliance without joint 1: [[m + d1, d2], [d2, m - d1]]. m/N
+    pub m: T,
+    /// See `m`.
+    pub d1: T,
+    /// See `m`.
+    pub d2: T,
+    /// Compliance between the vertical and the radial, and the vertical and the tangential direction. m/N
+    pub vertical: [T; 2],
+    /// Each of them not negative where the constraint holds: see [`Arm::is_wide`] for limits wider than half a turn.
+    pub constraints: [T; CONSTRAINTS],
+    /// Where the calculation was sure to be regular: up to the elbow constraint, up to the wrist constraint, all of it.
+    pub regular: [Mask; 3],
+    /// Where that of the conditioning was.
+    pub conditioned: Mask,
+}
+
+/// Three components in the frame of joint 1.
+#[derive(Clone, Copy)]
+struct Vector<T> {
+    x: T,
+    y: T,
+    z: T,
+}
+
+impl<T: Number> Vector<T> {
+    #[inline(always)]
+    fn dot(self, o: Self) -> T {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+    #[inline(always)]
+    fn square(self) -> T {
+        self.x.square() + self.y.square() + self.z.square()
+    }
+    #[inline(always)]
+    fn cross(self, o: Self) -> Self {
+        Self { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
+    }
+}
+
+impl Arm {
+    /// For radii of the tool centre point from `nearest` (m) on.
+    pub fn new(problem: &Problem, compliances: &[f64; 6], nearest: f64) -> Self {
+        let robot = &problem.robot;
+        let geometry = robot.geometry().clone();
+        let side = geometry.base_from_root[(2, 2)];
+        let axis = problem.task.points().first().map_or(1.0, |p| p.axis.z) * side;
+        // With heading zero: feed along x, axis up or down, then eq. 10 with beta zero.
+        let root_from_flange = Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis))
+            * Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
+            * problem.spindle.flange_from_tool.inverse().rotation;
+        let mut lever = problem.spindle.flange_from_tool.translation;
+        lever.z += geometry.flange;
+        let joint = |j: usize| &robot.joints()[j];
+        let widest5 = joint(4).min.abs().max(joint(4).max.abs()) + ANGLE_ROUNDING;
+        let (least, length) = (problem.constraints.min_inverse_condition, problem.constraints.characteristic_length);
+        let needs = Needs {
+            constant: least * least / 6.0,
+            per_radius2: least * least / (36.0 * length * length),
+            elbow: (length / (geometry.upper_arm * geometry.forearm)).powi(2),
+            wrist: 1.0 + lever.norm_squared() / (length * length),
+        };
+        // What the elbow and the wrist need at least, anywhere.
+        let needed = needs.constant + needs.per_radius2 * nearest * nearest;
+        let (upper, fore) = (geometry.upper_arm, geometry.forearm);
+        let (square, twice) = (upper * upper + fore * fore, 2.0 * upper * fore);
+        let least_sine = |distance2: f64| (needed * needs.elbow * distance2).clamp(LEAST_SINE2, 0.9);
+        let cosine = |sine2: f64| libm::sqrt(1.0 - sine2);
+        // How far joint 3 can fold the arm.
+        let (min3, max3) = (joint(2).min + geometry.forearm_angle, joint(2).max + geometry.forearm_angle);
+        let shift = std::f64::consts::TAU * ((min3 + max3) / (2.0 * std::f64::consts::TAU)).round();
+        let widest = (min3 - shift).abs().max((max3 - shift).abs()) + ANGLE_ROUNDING;
+        let folded = if widest >= PI { -1.0 } else { libm::cos(widest) };
+        let limits = [
+            square + twice * folded.max(-cosine(least_sine((upper - fore) * (upper - fore)))),
+            square + twice * cosine(least_sine(square)),
+        ];
+        let links = Links { upper_arm: upper, forearm: fore, limits };
+        let bend = Bend { limit: cosine((needed / needs.wrist).clamp(LEAST_SINE2, 0.9)) };
+        Self {
+            geometry,
+            needs,
+            links,
+            bend,
+            is_vertical: problem.task.wrenches().iter().any(|w| w.force.z != 0.0),
+            lever: root_from_flange * lever,
+            axis6: root_from_flange.column(2).into_owned(),
+            compliances: std::array::from_fn(|k| compliances[k + 1]),
+            limits: [1, 2].map(|j| (joint(j).min - ANGLE_ROUNDING, joint(j).max + ANGLE_ROUNDING)),
+            least_cosine5: if widest5 >= PI { -1.0 } else { libm::cos(widest5) },
+            min_inverse_condition: problem.constraints.min_inverse_condition,
+            characteristic_length: problem.constraints.characteristic_length,
+        }
+    }
+
+    /// How large a compliance of the arm is: that of its upper joints at a lever of a metre. m/N
+    pub fn typical(&self) -> f64 {
+        self.compliances[0].max(self.compliances[1]) / 3.0
+    }
+
+    /// Which way the heading turns with beta: +1 for a tool axis along axis 1.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// For joint 2 (0) or 3 (1): whether its limits are wider than half a turn, so that a state is lost only where both of
+    /// its constraints (2k + 1 and 2k + 2) fail, or so wide that nothing is lost (`None`).
+    pub fn is_wide(&self, joint: usize) -> Option<bool> {
+        let (min, max) = self.limits[joint];
+        if max - min >= 2.0 * PI { None } else { Some(max - min > PI) }
+    }
+
+    /// Evaluates one posture class.
+    pub fn evaluate<T: Number>(&self, r: T, z: T, sine: T, cosine: T, class: PostureClass) -> Yield<T> {
+        let g = &self.geometry;
+        let back = if class.postures()[0].is_back() { -1.0 } else { 1.0 };
+        let e = if class.postures()[0].is_delta_negative() { -1.0 } else { 1.0 };
+        let mut regular = Mask::splat(true);
+        let (at_elbow, at_wrist);
+        let turn = |v: &Vector3<f64>| Vector {
+            x: cosine.scale(v.x) - sine.scale(v.y),
+            y: sine.scale(v.x) + cosine.scale(v.y),
+            z: T::constant(v.z),
+        };
+        let lever = turn(&self.lever);
+        let axis6 = turn(&self.axis6);
+        // Wrist centre, and joint 1 against the azimuth.
+        let (wx, wy) = (r - lever.x, -lever.y);
+        let radius2 = wx.square() + wy.square();
+        let forward = radius2.plus(-g.lateral * g.lateral).above(1e-6, &mut regular).sqrt().scale(back);
+        let (cos1, sin1) = if g.lateral == 0.0 {
+            let inverse = radius2.above(1e-6, &mut regular).inverse_sqrt().scale(back);
+            (wx * inverse, wy * inverse)
+        } else {
+            let inverse = radius2.above(1e-6, &mut regular).reciprocal();
+            ((wx * forward + wy.scale(g.lateral)) * inverse, (wy * forward - wx.scale(g.lateral)) * inverse)
+        };
+        let height = z.plus(-self.lever.z - g.shoulder_height);
+        // The plane arm.
+        let u = forward.plus(-g.shoulder_radius);
+        let v = height.scale(g.lift);
+        let distance2 = u.square() + v.square();
+        let bend = 0.5 / (g.upper_arm * g.forearm);
+        let cos_delta = distance2.plus(-g.upper_arm * g.upper_arm - g.forearm * g.forearm).scale(bend);
+        let sin_delta_squared = -cos_delta.square().plus(-1.0);
+        at_elbow = regular;
+        // What the least inverse condition asks of the elbow and of the wrist: see `needs`.
+        let needed = r.square().scale(self.needs.per_radius2).plus(self.needs.constant);
+        let elbow = sin_delta_squared - needed * distance2.scale(self.needs.elbow);
+        let [sin_delta, along, across] = distance2.above(1e-6, &mut regular).elbow(&self.links);
+        let across = across.scale(g.fold * e);
+        let (elbow_u, elbow_v) = (u * along + v * across, v * along - u * across);
+        let (cos2, sin2) = (elbow_u.scale(1.0 / g.upper_arm), elbow_v.scale(1.0 / g.upper_arm));
+        let (sin_bar, cos_bar) = libm::sincos(g.forearm_angle);
+        let sin3 = sin_delta.scale(e * cos_bar) - cos_delta.scale(sin_bar);
+        let cos3 = cos_delta.scale(cos_bar) + sin_delta.scale(e * sin_bar);
+        let u3 = u - elbow_u;
+        let height3 = height - elbow_v.scale(g.lift);
+        // The wrist, in the radial frame: axis 4 along the forearm, axis 6 along with the spindle.
+        let folded = sin_bar * g.fold;
+        let (bar, lift) = (1.0 / g.forearm, g.lift / g.forearm);
+        let cos_psi = u3.scale(bar * cos_bar) + height3.scale(lift * folded);
+        let sin_psi = height3.scale(lift * cos_bar) - u3.scale(bar * folded);
+        let twist4 = g.fold * g.twist[0];
+        let zero = T::constant(0.0);
+        let forearm = sin_psi.scale(twist4);
+        let z4 = Vector { x: forearm * cos1, y: forearm * sin1, z: cos_psi.scale(-twist4 * g.lift) };
+        let dot46 = z4.dot(axis6);
+        let sine5_squared = -dot46.square().plus(-1.0);
+        at_wrist = regular;
+        let inverse5 = dot46.wrist(&self.bend);
+        let wrist = sine5_squared.scale(self.needs.wrist) - needed * dot46.square().plus(1.0);
+        let cosine5 = dot46.scale(-g.twist[1] * g.twist[2]);
+        // Velocity of the tool centre point per joint velocity, joint 5 times sin(theta_5). Those of joints 2 and 3 lie in the
+        // plane of the arm; (z4 x z6) x t = z6 (z4 . t) - z4 (z6 . t).
+        let (z2, z3) = (height.plus(self.lever.z), height3.plus(self.lever.z));
+        let v4 = z4.cross(lever);
+        let (along4, along6) = (z4.dot(lever), self.lever.dot(&self.axis6));
+        let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
+        let v5 = Vector { x: five(axis6.x, z4.x), y: five(axis6.y, z4.y), z: five(axis6.z, z4.z) };
+        let v6 = turn(&self.axis6.cross(&self.lever));
+        let [k2, k3, k4, k5, k6] = self.compliances;
+        let inverse5k = inverse5.scale(k5);
+        let bending = (z2.square().scale(k2) + z3.square().scale(k3)).scale(0.5);
+        let wrists = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * inverse5k + f(&v6).scale(k6);
+        let (cc, ss) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
+        let m = bending + wrists(&|v| v.x.square() + v.y.square()).scale(0.5);
+        let d1 = bending * cc + wrists(&|v| v.x.square() - v.y.square()).scale(0.5);
+        let d2 = bending * ss + wrists(&|v| v.x * v.y);
+        let forward_t = lever.x * cos1 + lever.y * sin1;
+        let (p2, p3) = ((u + forward_t, z2), (u3 + forward_t, z3));
+        let vertical = if self.is_vertical {
+            let shaking = -((p2.0 * z2).scale(k2) + (p3.0 * z3).scale(k3));
+            [shaking * cos1 + wrists(&|v| v.x * v.z), shaking * sin1 + wrists(&|v| v.y * v.z)]
+        } else {
+            [zero; 2]
+        };
+        let limit = |joint: usize, sine: T, cosine: T| {
+            let (min, max) = self.limits[joint];
+            let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
+            [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
+        };
+        let ([min2, max2], [min3, max3]) = (limit(0, sin2, cos2), limit(1, sin3, cos3));
+        let yields = regular;
+        let conditioning = if self.min_inverse_condition > 0.0 {
+            let into = |v: Vector<T>| Vector { x: v.x * cos1 + v.y * sin1, y: v.y * cos1 - v.x * sin1, z: v.z };
+            let (z6, t) = (into(axis6), into(lever));
+            let z4 = Vector { x: forearm, y: zero, z: z4.z };
+            let sign = e * g.fold * g.lift / (g.upper_arm * g.forearm);
+            let inverse_forward = forward.scale(back).above(1e-3, &mut regular).reciprocal().scale(back);
+            let plane = Plane { forward, inverse_forward, u, u3, height, height3, p2, p3, sign, sin_delta };
+            let across = z4.dot(into(turn(&self.axis6.cross(&self.lever)))).square() * inverse5;
+            self.condition(&plane, &Wrist { t, z4, z6, dot46, sine5_squared, across })
+        } else {
+            T::constant(1.0)
+        };
+        Yield {
+            m,
+            d1,
+            d2,
+            vertical,
+            constraints: [elbow, min2, max2, min3, max3, cosine5.plus(-self.least_cosine5), wrist, conditioning],
+            regular: [at_elbow, at_wrist, yields],
+            conditioned: regular,
+        }
+    }
+
+    /// 36 / min^2 - |N|^2 |N^-1|^2 (see the kernel's and [`crate::robot::conditioning`]), times the squared sine of the elbow
+    /// and the fourth power of the wrist's: so nothing is divided by either, and the sign is plain where they vanish.
+    fn condition<T: Number>(&self, a: &Plane<T>, w: &Wrist<T>) -> T {
+        let (lateral, length) = (self.geometry.lateral, self.characteristic_length);
+        let t = w.t;
+        // The lever's length is known.
+        let lever2 = self.lever.norm_squared();
+        let (px, py) = (a.forward + t.x, t.y.plus(lateral));
+        let along4 = w.z4.dot(t);
+        let along6 = self.lever.dot(&self.axis6);
+        let linear2 = px.square() + py.square() + a.p2.0.square() + a.p2.1.square() + a.p3.0.square() + a.p3.1.square()
+            - along4.square()
+            - w.across;
+        let norm2 = linear2.plus(3.0 * lever2 - along6 * along6).scale(1.0 / (length * length)).plus(6.0);
+        // All rows times the sine of the elbow.
+        let slope = a.inverse_forward.scale(lateral);
+        let row = |x: T, z: T| {
+            let x = x.scale(a.sign);
+            Vector { x, y: x * slope, z: z.scale(a.sign) }
+        };
+        let zero = T::constant(0.0);
+        let q1 = Vector { x: zero, y: a.inverse_forward * a.sin_delta, z: zero };
+        let (q2, q3) = (row(a.u3, a.height3), row(-a.u, -a.height));
+        let wy = Vector { x: -(q2.x + q3.x), y: -(q2.y + q3.y), z: -(q2.z + q3.z) };
+        let arm2 = q1.square() + q2.square() + q3.square();
+        let crossed = |q: Vector<T>| q.square().scale(lever2) - q.dot(t).square();
+        let arm_crossed2 = crossed(q1) + crossed(q2) + crossed(q3);
+        // The inverse wrist as a quadratic form, from the dual basis of z4, z5, z6, times the fourth power of its sine;
+        // z5 = (z4 x z6) / sin(theta_5).
+        let same = w.dot46.square().plus(1.0);
+        let mixed = w.dot46.scale(-2.0);
+        let (z4, c, z6) = (w.z4, w.z4.cross(w.z6), w.z6);
+        let form = |a4: T, b4: T, a5: T, b5: T, a6: T, b6: T| {
+            a5 * b5 * w.sine5_squared + same * (a4 * b4 + a6 * b6) + mixed * (a4 * b6 + a6 * b4)
+        };
+        let qxx = form(z4.x, z4.x, c.x, c.x, z6.x, z6.x);
+        let qyy = form(z4.y, z4.y, c.y, c.y, z6.y, z6.y);
+        let qzz = form(z4.z, z4.z, c.z, c.z, z6.z, z6.z);
+        let qxy = form(z4.x, z4.y, c.x, c.y, z6.x, z6.y);
+        let qxz = form(z4.x, z4.z, c.x, c.z, z6.x, z6.z);
+        let qyz = form(z4.y, z4.z, c.y, c.z, z6.y, z6.z);
+        let spin2 = qyy * wy.square() + (qyz * wy.dot(q1)).scale(2.0) + qzz * q1.square();
+        let (cy, cz) = (wy.cross(t), q1.cross(t));
+        let d = a.sin_delta;
+        let my = Vector { x: -cy.x, y: d - cy.y, z: -cy.z };
+        let mz = Vector { x: -cz.x, y: -cz.y, z: d - cz.z };
+        let rest2 = qxx * d.square()
+            + qyy * my.square()
+            + qzz * mz.square()
+            + (d * (qxy * my.x + qxz * mz.x) + qyz * my.dot(mz)).scale(2.0);
+        let s4 = w.sine5_squared.square();
+        let product = norm2 * ((arm2 * s4 + spin2).scale(length * length) + arm_crossed2 * s4 + rest2);
+        s4 * d.square() - product.scale(self.min_inverse_condition * self.min_inverse_condition / 36.0)
+    }
+}

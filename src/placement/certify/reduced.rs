@@ -1,0 +1,360 @@
+//! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
+
+use super::arm::Arm;
+use super::number::{PAIR, PAIRS, VARIABLES};
+use super::region::{Point, Region};
+use super::table::{Extent, FUNCTIONS, Known, Node, Steps, Table};
+use crate::robot::PostureClass;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// An affine function about a node, below what a point costs in one posture class within a step of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Affine {
+    value: f32,
+    slope: [f32; VARIABLES],
+}
+
+const EMPTY: Affine = Affine { value: f32::INFINITY, slope: [0.0; VARIABLES] };
+const ZERO: Affine = Affine { value: 0.0, slope: [0.0; VARIABLES] };
+
+/// Reduced tables, one for each kind of force, in ever coarser levels.
+#[derive(Debug, Clone)]
+pub(super) struct Reduced {
+    levels: Vec<Level>,
+    extent: Extent,
+    steps: Steps,
+    /// For each path point the number of its force; `None` where it is left out.
+    force_of: Vec<Option<usize>>,
+    forces: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Level {
+    counts: [usize; 3],
+    entries: Vec<Affine>,
+}
+
+/// Kinds of force looked at: the most frequent ones.
+const MOST_FORCES: usize = 12;
+
+impl Reduced {
+    pub fn new(arm: &Arm, table: &Table, points: &[Point], first: f64, extent: Extent, steps: Steps) -> Self {
+        let mut forces: Vec<([f64; 3], usize)> = Vec::new();
+        for p in points {
+            match forces.iter_mut().find(|(f, _)| same(f, &p.force)) {
+                Some((_, count)) => *count += 1,
+                None => forces.push((p.force, 1)),
+            }
+        }
+        forces.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        forces.truncate(MOST_FORCES);
+        let force_of = points.iter().map(|p| forces.iter().position(|(f, _)| same(f, &p.force))).collect();
+        let kinds: Vec<[f64; 3]> = forces.iter().map(|(f, _)| *f).collect();
+        let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() as usize + 1;
+        let counts = [along(extent.radius), along(extent.height), steps.headings];
+        let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
+            .into_par_iter()
+            .map(|row| {
+                let r = extent.radius.0 + steps.length * (row / counts[1]) as f64;
+                let z = extent.height.0 + steps.length * (row % counts[1]) as f64;
+                row_of(arm, table, &kinds, first, r, z, steps)
+            })
+            .collect();
+        let mut levels = vec![Level { counts, entries: rows.into_iter().flatten().collect() }];
+        let mut half = [steps.length, steps.length, TAU / steps.headings as f64];
+        for _ in 0..2 {
+            let next = levels.last().map(|level| level.coarser(half, kinds.len()));
+            levels.extend(next);
+            half = half.map(|h| 2.0 * h);
+        }
+        Self { levels, extent, steps, force_of, forces: kinds.len() }
+    }
+
+    /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`
+    /// for a box too large for the tables.
+    pub fn below(&self, points: &[Point], segments: &[std::ops::Range<usize>], region: &Region) -> Option<f64> {
+        let mut totals = [0.0; 8];
+        let [a, b, g] = region.half;
+        let heading = TAU / self.steps.headings as f64;
+        for span in segments {
+            let mut sums = [[0.0f64; 4]; 4];
+            for point in span.clone() {
+                let Some(force) = self.force_of[point] else { continue };
+                let p = points[point].over(region)?;
+                let ratio = (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading) * 2.0;
+                let number = if ratio <= 1.0 { 0 } else if ratio <= 2.0 { 1 } else if ratio <= 4.0 { 2 } else { return None };
+                let level = &self.levels[number];
+                let size = (1usize << number) as f64;
+                let (length, turn) = (self.steps.length * size, heading * size);
+                let i = ((p.r - self.extent.radius.0) / length + 0.5) as usize;
+                let j = ((p.z - self.extent.height.0) / length + 0.5) as usize;
+                if i >= level.counts[0] || j >= level.counts[1] {
+                    return None;
+                }
+                let chi = p.chi.rem_euclid(TAU);
+                let k = (chi / turn + 0.5) as usize;
+                let off = [
+                    p.r - self.extent.radius.0 - length * i as f64,
+                    p.z - self.extent.height.0 - length * j as f64,
+                    chi - turn * k as f64,
+                ];
+                let at = (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.forces + force) * 4;
+                for class in 0..4 {
+                    let e = &level.entries[at + class];
+                    let s = e.slope.map(f64::from);
+                    let sum = &mut sums[class];
+                    sum[0] += f64::from(e.value) + s[0] * off[0] + s[1] * off[1] + s[2] * off[2]
+                        - s[0].abs() * p.rest_r
+                        - s[2].abs() * p.rest_chi;
+                    sum[1] += s[0] * p.slope_r[0] + s[2] * p.slope_chi[0];
+                    sum[2] += s[1];
+                    sum[3] += s[0] * p.slope_r[1] + s[2] * p.slope_chi[1];
+                }
+            }
+            for (corner, total) in totals.iter_mut().enumerate() {
+                let sign = |k: usize| if corner >> k & 1 == 1 { 1.0 } else { -1.0 };
+                let at = |s: &[f64; 4]| s[0] + sign(0) * a * s[1] + sign(1) * b * s[2] + sign(2) * g * s[3];
+                *total += sums.iter().map(at).fold(f64::INFINITY, f64::min);
+            }
+        }
+        Some(totals.iter().copied().fold(f64::INFINITY, f64::min))
+    }
+}
+
+fn same(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + a.abs()))
+}
+
+impl Level {
+    fn coarser(&self, half: [f64; 3], forces: usize) -> Self {
+        let [n0, n1, n2] = self.counts;
+        let counts = [n0.div_ceil(2) + usize::from(n0 % 2 == 0), n1.div_ceil(2) + usize::from(n1 % 2 == 0), n2 / 2];
+        let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
+            .into_par_iter()
+            .map(|row| {
+                let (i, j) = (row / counts[1], row % counts[1]);
+                let near = |k: usize, n: usize| (2 * k).saturating_sub(1)..(2 * k + 2).min(n);
+                let mut out = Vec::with_capacity(counts[2] * forces * 4);
+                for k in 0..counts[2] {
+                    for kind in 0..forces * 4 {
+                        let children = || {
+                            near(i, n0).flat_map(move |i2| near(j, n1).map(move |j2| (i2, j2))).flat_map(move |(i2, j2)| {
+                                (0..3).map(move |d| {
+                                    let k2 = (2 * k + d + n2 - 1) % n2;
+                                    let e = self.entries[((i2 * n1 + j2) * n2 + k2) * forces * 4 + kind];
+                                    let off = [i2 as f64 - 2.0 * i as f64, j2 as f64 - 2.0 * j as f64, d as f64 - 1.0];
+                                    ([off[0] * half[0], off[1] * half[1], off[2] * half[2]], e)
+                                })
+                            })
+                        };
+                        out.push(below_all(children(), children(), half));
+                    }
+                }
+                out
+            })
+            .collect();
+        Self { counts, entries: rows.into_iter().flatten().collect() }
+    }
+}
+
+/// An affine function below several, each true within `half` of its own middle.
+fn below_all(
+    once: impl Iterator<Item = ([f64; 3], Affine)>,
+    again: impl Iterator<Item = ([f64; 3], Affine)>,
+    half: [f64; 3],
+) -> Affine {
+    let lowest = once.filter(|(_, e)| e.value < f32::INFINITY).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let Some((_, lowest)) = lowest else { return EMPTY };
+    if lowest == ZERO {
+        return ZERO;
+    }
+    let slope = lowest.slope.map(f64::from);
+    let mut value = f64::INFINITY;
+    for (off, e) in again.filter(|(_, e)| e.value < f32::INFINITY) {
+        let mut v = f64::from(e.value);
+        for k in 0..3 {
+            v -= slope[k] * off[k] + (f64::from(e.slope[k]) - slope[k]).abs() * half[k];
+        }
+        value = value.min(v);
+    }
+    rounded(value, slope, half)
+}
+
+fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
+    let size = value.abs() + (0..3).map(|k| slope[k].abs() * half[k] * 4.0).sum::<f64>();
+    let value = value - 1e-6 * size;
+    if value <= 0.0 { ZERO } else { Affine { value: value as f32, slope: slope.map(|s| s as f32) } }
+}
+
+/// All directions of the feed, forces and classes at one radius and height.
+fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, r: f64, z: f64, steps: Steps) -> Vec<Affine> {
+    let step = TAU / steps.headings as f64;
+    let half = [steps.length, steps.length, step];
+    let mut out = vec![EMPTY; steps.headings * forces.len() * 4];
+    // sin and cos of the directions of the feed.
+    let directions: Vec<(f64, f64)> = (0..steps.headings).map(|k| libm::sincos(step * k as f64)).collect();
+    for class in PostureClass::ALL {
+        let mut places = Vec::new();
+        let mut unknown = false;
+        for k in 0..steps.headings {
+            unknown |= !collect(arm, table, 0, [r, z, step * k as f64], steps, class, &mut places);
+        }
+        let found: Vec<State> = places
+            .iter()
+            .map(|place| {
+                let values = place.known.values.map(|v| v.map(f64::from));
+                let off = [place.at[0] - r, place.at[1] - z];
+                State::new(values, &place.known.second, place.half, place.at[0], off)
+            })
+            .collect();
+        for (number, force) in forces.iter().enumerate() {
+            for (k, (sine, cosine)) in directions.iter().enumerate() {
+                let place = (k * forces.len() + number) * 4 + class.index();
+                if unknown {
+                    out[place] = ZERO;
+                    continue;
+                }
+                out[place] = minorant(&found, *force, (*sine, *cosine), first, half);
+            }
+        }
+    }
+    out
+}
+
+/// A region of one node that is small enough to be spoken for by one state.
+struct Place<'a> {
+    at: [f64; 3],
+    half: [f64; 3],
+    known: &'a Known,
+}
+
+/// Second-order parts larger than this share of the compliance are cut up, down to the finest level. N-free
+const COARSE: f64 = 0.6;
+
+/// The regions around a state of a level, cut up where their bounds are coarse; false where nothing is known of one.
+fn collect<'a>(
+    arm: &Arm,
+    table: &'a Table,
+    level: usize,
+    at: [f64; 3],
+    steps: Steps,
+    class: PostureClass,
+    out: &mut Vec<Place<'a>>,
+) -> bool {
+    let size = 1.0 / (1u64 << level) as f64;
+    let step = TAU / steps.headings as f64;
+    // Of its neighbours' headings a node of the first level speaks for half.
+    let half = [steps.length * size, steps.length * size, if level == 0 { 0.5 * step } else { step * size }];
+    let finest = level + 1 == table.depth();
+    match table.at(arm, level, at[0], at[1], at[2], class).0 {
+        Node::Empty => return true,
+        Node::Unknown if finest => return false,
+        Node::Known(known) => {
+            let rest = |f: usize| {
+                PAIR.iter().enumerate().map(|(p, (i, j))| f64::from(known.second[f][p]) * half[*i] * half[*j]).sum::<f64>()
+            };
+            if finest || rest(0) + rest(1) <= COARSE * arm.typical() {
+                out.push(Place { at, half, known });
+                return true;
+            }
+        }
+        Node::Unknown => {}
+    }
+    let turns: &[f64] = if level == 0 { &[0.0] } else { &[-0.5, 0.5] };
+    let mut known = true;
+    for (dr, dz) in [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)] {
+        for turn in turns {
+            let next = [at[0] + dr * half[0], at[1] + dz * half[1], at[2] + turn * half[2]];
+            known &= collect(arm, table, level + 1, next, steps, class, out);
+        }
+    }
+    known
+}
+
+/// A state of one heading: compliances with gradients, and bounds of what these leave out over the node.
+struct State {
+    values: [[f64; 4]; 5],
+    /// sum of second derivatives of m, (d1, d2), vertical, each times half the widths.
+    second: [f64; 3],
+    /// How long (d1, d2) and the vertical can get, and how far they can move.
+    most: [f64; 2],
+    moved: [f64; 2],
+    half: [f64; 3],
+    r: f64,
+    /// Radius and height less those of the node. m
+    off: [f64; 2],
+}
+
+impl State {
+    fn new(values: [[f64; 4]; 5], second: &[[f32; PAIRS]; FUNCTIONS], half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+        let sum = |f: usize| {
+            PAIR.iter()
+                .enumerate()
+                .map(|(p, (i, j))| f64::from(second[f][p]) * half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 })
+                .sum::<f64>()
+        };
+        let rest = [sum(0), sum(1), sum(2)];
+        let pair = |a: usize, b: usize, f: usize| {
+            // Slopes change by at most what twice the second-order sum says.
+            let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>();
+            (libm::hypot(values[a][0], values[b][0]), moved + 2.0 * rest[f])
+        };
+        let (d, v) = (pair(1, 2, 1), pair(3, 4, 2));
+        Self { values, second: rest, most: [d.0 + d.1, v.0 + v.1], moved: [d.1, v.1], half, r, off }
+    }
+}
+
+fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first: f64, half: [f64; 3]) -> Affine {
+    if found.is_empty() {
+        return EMPTY;
+    }
+    let [f1, f2, f3] = force;
+    let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
+    let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
+    let length = libm::hypot(f1, f2);
+    let h_chi = half[2];
+    let model = |s: &State| {
+        let (r, h_r) = (s.r, s.half[0]);
+        let far = r + h_r;
+        let joint1 = first
+            * (0.5 * ((f2 + a).abs() + 2.0 * length * h_chi) * h_r * h_r
+                + 2.0 * far * (b.abs() + 2.0 * length * h_chi) * h_r * h_chi
+                + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
+        let of = |k: usize| {
+            let v = |f: usize| s.values[f][k];
+            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
+        };
+        let value = of(0) + first * r * r * 0.5 * (f2 + a);
+        let by_r = of(1) + first * r * (f2 + a);
+        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
+            - f3 * (s.values[3][0] * cosine + s.values[4][0] * sine);
+        let rest = s.second[0] * f2.abs() + s.second[1] * length + s.second[2] * f3.abs()
+            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
+            + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
+            + joint1
+            // The heading is free within its cell.
+            + of(3).abs() * s.half[2];
+        let sign = if value < 0.0 { -1.0 } else { 1.0 };
+        (value.abs() - rest, [by_r * sign, of(2) * sign, by_chi * sign])
+    };
+    let mut lowest = (f64::INFINITY, [0.0; 3]);
+    for s in found {
+        let m = model(s);
+        if m.0 < lowest.0 {
+            lowest = m;
+        }
+    }
+    if lowest.0 <= 0.0 {
+        return ZERO;
+    }
+    let slope = lowest.1;
+    let mut value = f64::INFINITY;
+    for s in found {
+        let m = model(s);
+        let spread = [s.half[0], s.half[1], h_chi];
+        let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
+        value = value.min(m.0 - shifted - (0..3).map(|k| (m.1[k] - slope[k]).abs() * spread[k]).sum::<f64>());
+    }
+    rounded(value, slope, half)
+}
