@@ -98,6 +98,8 @@ pub(super) struct Yield<T> {
     pub regular: [Mask; 3],
     /// Where that of the conditioning was.
     pub conditioned: Mask,
+    /// Where some constraint is sure to fail.
+    pub lost: Mask,
 }
 
 /// Three components in the frame of joint 1.
@@ -195,8 +197,8 @@ impl Arm {
         if max - min >= 2.0 * PI { None } else { Some(max - min > PI) }
     }
 
-    /// Evaluates one posture class.
-    pub fn evaluate<T: Number>(&self, r: T, z: T, sine: T, cosine: T, class: PostureClass) -> Yield<T> {
+    /// Evaluates one posture class; `None` where none of the lanes is allowed.
+    pub fn evaluate<T: Number>(&self, r: T, z: T, sine: T, cosine: T, class: PostureClass) -> Option<Yield<T>> {
         let g = &self.geometry;
         let back = if class.postures()[0].is_back() { -1.0 } else { 1.0 };
         let e = if class.postures()[0].is_delta_negative() { -1.0 } else { 1.0 };
@@ -239,6 +241,22 @@ impl Arm {
         let (sin_bar, cos_bar) = libm::sincos(g.forearm_angle);
         let sin3 = sin_delta.scale(e * cos_bar) - cos_delta.scale(sin_bar);
         let cos3 = cos_delta.scale(cos_bar) + sin_delta.scale(e * sin_bar);
+        let limit = |joint: usize, sine: T, cosine: T| {
+            let (min, max) = self.limits[joint];
+            let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
+            [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
+        };
+        let ([min2, max2], [min3, max3]) = (limit(0, sin2, cos2), limit(1, sin3, cos3));
+        let fails = |joint: usize, pair: [T; 2]| match self.is_wide(joint) {
+            None => Mask::splat(false),
+            Some(true) => pair[0].is_negative() & pair[1].is_negative(),
+            Some(false) => pair[0].is_negative() | pair[1].is_negative(),
+        };
+        let everywhere = Mask::splat(true);
+        let mut lost = elbow.is_negative() & at_elbow | (fails(0, [min2, max2]) | fails(1, [min3, max3])) & regular;
+        if lost.covers(everywhere) {
+            return None;
+        }
         let u3 = u - elbow_u;
         let height3 = height - elbow_v.scale(g.lift);
         // The wrist, in the radial frame: axis 4 along the forearm, axis 6 along with the spindle.
@@ -256,36 +274,14 @@ impl Arm {
         let inverse5 = dot46.wrist(&self.bend);
         let wrist = sine5_squared.scale(self.needs.wrist) - needed * dot46.square().plus(1.0);
         let cosine5 = dot46.scale(-g.twist[1] * g.twist[2]);
-        // Velocity of the tool centre point per joint velocity, joint 5 times sin(theta_5). Those of joints 2 and 3 lie in the
-        // plane of the arm; (z4 x z6) x t = z6 (z4 . t) - z4 (z6 . t).
+        let cosine5 = cosine5.plus(-self.least_cosine5);
+        lost = lost | (wrist.is_negative() | cosine5.is_negative()) & at_wrist;
+        if lost.covers(everywhere) {
+            return None;
+        }
         let (z2, z3) = (height.plus(self.lever.z), height3.plus(self.lever.z));
-        let v4 = z4.cross(lever);
-        let (along4, along6) = (z4.dot(lever), self.lever.dot(&self.axis6));
-        let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
-        let v5 = Vector { x: five(axis6.x, z4.x), y: five(axis6.y, z4.y), z: five(axis6.z, z4.z) };
-        let v6 = turn(&self.axis6.cross(&self.lever));
-        let [k2, k3, k4, k5, k6] = self.compliances;
-        let inverse5k = inverse5.scale(k5);
-        let bending = (z2.square().scale(k2) + z3.square().scale(k3)).scale(0.5);
-        let wrists = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * inverse5k + f(&v6).scale(k6);
-        let (cc, ss) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
-        let m = bending + wrists(&|v| v.x.square() + v.y.square()).scale(0.5);
-        let d1 = bending * cc + wrists(&|v| v.x.square() - v.y.square()).scale(0.5);
-        let d2 = bending * ss + wrists(&|v| v.x * v.y);
         let forward_t = lever.x * cos1 + lever.y * sin1;
         let (p2, p3) = ((u + forward_t, z2), (u3 + forward_t, z3));
-        let vertical = if self.is_vertical {
-            let shaking = -((p2.0 * z2).scale(k2) + (p3.0 * z3).scale(k3));
-            [shaking * cos1 + wrists(&|v| v.x * v.z), shaking * sin1 + wrists(&|v| v.y * v.z)]
-        } else {
-            [zero; 2]
-        };
-        let limit = |joint: usize, sine: T, cosine: T| {
-            let (min, max) = self.limits[joint];
-            let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
-            [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
-        };
-        let ([min2, max2], [min3, max3]) = (limit(0, sin2, cos2), limit(1, sin3, cos3));
         let yields = regular;
         let conditioning = if self.min_inverse_condition > 0.0 {
             let into = |v: Vector<T>| Vector { x: v.x * cos1 + v.y * sin1, y: v.y * cos1 - v.x * sin1, z: v.z };
@@ -299,15 +295,41 @@ impl Arm {
         } else {
             T::constant(1.0)
         };
-        Yield {
+        lost = lost | conditioning.is_negative() & regular;
+        if lost.covers(everywhere) {
+            return None;
+        }
+        // Velocity of the tool centre point per joint velocity, joint 5 times sin(theta_5). Those of joints 2 and 3 lie in the
+        // plane of the arm; (z4 x z6) x t = z6 (z4 . t) - z4 (z6 . t).
+        let v4 = z4.cross(lever);
+        let (along4, along6) = (z4.dot(lever), self.lever.dot(&self.axis6));
+        let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
+        let v5 = Vector { x: five(axis6.x, z4.x), y: five(axis6.y, z4.y), z: five(axis6.z, z4.z) };
+        let v6 = turn(&self.axis6.cross(&self.lever));
+        let [k2, k3, k4, k5, k6] = self.compliances;
+        let inverse5k = inverse5.scale(k5);
+        let bending = (z2.square().scale(k2) + z3.square().scale(k3)).scale(0.5);
+        let wrists = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * inverse5k + f(&v6).scale(k6);
+        let (cc, ss) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
+        let m = bending + wrists(&|v| v.x.square() + v.y.square()).scale(0.5);
+        let d1 = bending * cc + wrists(&|v| v.x.square() - v.y.square()).scale(0.5);
+        let d2 = bending * ss + wrists(&|v| v.x * v.y);
+        let vertical = if self.is_vertical {
+            let shaking = -((p2.0 * z2).scale(k2) + (p3.0 * z3).scale(k3));
+            [shaking * cos1 + wrists(&|v| v.x * v.z), shaking * sin1 + wrists(&|v| v.y * v.z)]
+        } else {
+            [zero; 2]
+        };
+        Some(Yield {
             m,
             d1,
             d2,
             vertical,
-            constraints: [elbow, min2, max2, min3, max3, cosine5.plus(-self.least_cosine5), wrist, conditioning],
+            constraints: [elbow, min2, max2, min3, max3, cosine5, wrist, conditioning],
             regular: [at_elbow, at_wrist, yields],
             conditioned: regular,
-        }
+            lost,
+        })
     }
 
     /// 36 / min^2 - |N|^2 |N^-1|^2 (see the kernel's and [`crate::robot::conditioning`]), times the squared sine of the elbow

@@ -37,6 +37,8 @@ pub(super) trait Number:
     fn elbow(self, links: &Links) -> [Self; 3];
     /// Of the cosine of the angle between axes 4 and 6: one over its squared sine.
     fn wrist(self, bend: &Bend) -> Self;
+    /// Where it is sure to be below zero.
+    fn is_negative(self) -> Mask;
     /// The same, where it is sure to be above `least`; elsewhere the lane leaves `sure`, and anything may come out.
     fn above(self, least: f64, sure: &mut Mask) -> Self;
 }
@@ -237,6 +239,10 @@ impl Number for Slope {
     fn wrist(self, bend: &Bend) -> Self {
         let [value, first, _] = bend.inverse(self.value);
         self.through(value, first)
+    }
+    #[inline(always)]
+    fn is_negative(self) -> Mask {
+        self.value.less(ZERO)
     }
     #[inline(always)]
     fn above(self, least: f64, sure: &mut Mask) -> Self {
@@ -566,6 +572,10 @@ impl Number for Enclosure {
         let least_second = beyond.select(zero, holds_zero.select(Lanes::splat(2.0), c0.min(c1)));
         let second = Interval::between(least_second, c0.max(c1));
         self.through(self.middle.wrist(bend), Interval::between(least, v0.max(v1)), Interval::between(d0, d1), second)
+    }
+    #[inline(always)]
+    fn is_negative(self) -> Mask {
+        self.value.high().less(ZERO)
     }
     #[inline(always)]
     fn above(self, least: f64, sure: &mut Mask) -> Self {

@@ -1,9 +1,9 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
 use super::arm::Arm;
-use super::number::{PAIR, PAIRS, VARIABLES};
+use super::number::VARIABLES;
 use super::region::{Point, Region};
-use super::table::{Extent, FUNCTIONS, Known, Node, Steps, Table};
+use super::table::{Extent, Known, Node, Steps, Table};
 use crate::robot::PostureClass;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -56,9 +56,7 @@ impl Reduced {
         let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
             .into_par_iter()
             .map(|row| {
-                let r = extent.radius.0 + steps.length * (row / counts[1]) as f64;
-                let z = extent.height.0 + steps.length * (row % counts[1]) as f64;
-                row_of(arm, table, &kinds, first, r, z, steps)
+                row_of(arm, table, &kinds, first, [row / counts[1], row % counts[1]], steps)
             })
             .collect();
         let mut levels = vec![Level { counts, entries: rows.into_iter().flatten().collect() }];
@@ -188,26 +186,19 @@ fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
 }
 
 /// All directions of the feed, forces and classes at one radius and height.
-fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, r: f64, z: f64, steps: Steps) -> Vec<Affine> {
+fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, at: [usize; 2], steps: Steps) -> Vec<Affine> {
+    let [r, z] = table.place(0, at);
     let step = TAU / steps.headings as f64;
     let half = [steps.length, steps.length, step];
     let mut out = vec![EMPTY; steps.headings * forces.len() * 4];
     // sin and cos of the directions of the feed.
     let directions: Vec<(f64, f64)> = (0..steps.headings).map(|k| libm::sincos(step * k as f64)).collect();
     for class in PostureClass::ALL {
-        let mut places = Vec::new();
+        let mut found: Vec<State> = Vec::new();
         let mut unknown = false;
-        for k in 0..steps.headings {
-            unknown |= !collect(arm, table, 0, [r, z, step * k as f64], steps, class, &mut places);
+        for cell in 0..steps.headings {
+            unknown |= !collect(arm, table, 0, at, cell, [r, z], class, &mut found);
         }
-        let found: Vec<State> = places
-            .iter()
-            .map(|place| {
-                let values = place.known.values.map(|v| v.map(f64::from));
-                let off = [place.at[0] - r, place.at[1] - z];
-                State::new(values, &place.known.second, place.half, place.at[0], off)
-            })
-            .collect();
         for (number, force) in forces.iter().enumerate() {
             for (k, (sine, cosine)) in directions.iter().enumerate() {
                 let place = (k * forces.len() + number) * 4 + class.index();
@@ -222,64 +213,54 @@ fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, r: f64, z: 
     out
 }
 
-/// A region of one node that is small enough to be spoken for by one state.
-struct Place<'a> {
-    at: [f64; 3],
-    half: [f64; 3],
-    known: &'a Known,
-}
+/// Second-order parts larger than this share of the compliance are cut up, down to the finest level.
+const COARSE: f64 = 0.3;
 
-/// Second-order parts larger than this share of the compliance are cut up, down to the finest level. N-free
-const COARSE: f64 = 0.6;
-
-/// The regions around a state of a level, cut up where their bounds are coarse; false where nothing is known of one.
-fn collect<'a>(
+/// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
+#[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
+fn collect(
     arm: &Arm,
-    table: &'a Table,
+    table: &Table,
     level: usize,
-    at: [f64; 3],
-    steps: Steps,
+    at: [usize; 2],
+    cell: usize,
+    node: [f64; 2],
     class: PostureClass,
-    out: &mut Vec<Place<'a>>,
+    out: &mut Vec<State>,
 ) -> bool {
-    let size = 1.0 / (1u64 << level) as f64;
-    let step = TAU / steps.headings as f64;
-    // Of its neighbours' headings a node of the first level speaks for half.
-    let half = [steps.length * size, steps.length * size, if level == 0 { 0.5 * step } else { step * size }];
     let finest = level + 1 == table.depth();
-    match table.at(arm, level, at[0], at[1], at[2], class).0 {
+    match table.node(arm, level, at, cell, class) {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
-        Node::Known(known) => {
-            let rest = |f: usize| {
-                PAIR.iter().enumerate().map(|(p, (i, j))| f64::from(known.second[f][p]) * half[*i] * half[*j]).sum::<f64>()
-            };
-            if finest || rest(0) + rest(1) <= COARSE * arm.typical() {
-                out.push(Place { at, half, known });
-                return true;
-            }
+        Node::Known(known) if finest || f64::from(known.rest[0] + known.rest[1]) <= COARSE * arm.typical() => {
+            let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
+            let place = table.place(level, at);
+            out.push(State::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
+            return true;
         }
-        Node::Unknown => {}
+        _ => {}
     }
-    let turns: &[f64] = if level == 0 { &[0.0] } else { &[-0.5, 0.5] };
     let mut known = true;
-    for (dr, dz) in [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)] {
-        for turn in turns {
-            let next = [at[0] + dr * half[0], at[1] + dz * half[1], at[2] + turn * half[2]];
-            known &= collect(arm, table, level + 1, next, steps, class, out);
+    for (down, left) in [(true, true), (true, false), (false, true), (false, false)] {
+        let side = |k: usize, low: bool| if low { (2 * k).checked_sub(1) } else { Some(2 * k + 1) };
+        let (Some(i), Some(j)) = (side(at[0], down), side(at[1], left)) else { continue };
+        if !table.holds(level + 1, [i, j]) {
+            continue;
+        }
+        for part in [2 * cell, 2 * cell + 1] {
+            known &= collect(arm, table, level + 1, [i, j], part, node, class, out);
         }
     }
     known
 }
 
-/// A state of one heading: compliances with gradients, and bounds of what these leave out over the node.
+/// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
 struct State {
-    values: [[f64; 4]; 5],
-    /// sum of second derivatives of m, (d1, d2), vertical, each times half the widths.
-    second: [f64; 3],
-    /// How long (d1, d2) and the vertical can get, and how far they can move.
-    most: [f64; 2],
-    moved: [f64; 2],
+    values: [[f64; 4]; 3],
+    rest: [f64; 2],
+    /// How long (d1, d2) can get, and how far it can move.
+    most: f64,
+    moved: f64,
     half: [f64; 3],
     r: f64,
     /// Radius and height less those of the node. m
@@ -287,21 +268,12 @@ struct State {
 }
 
 impl State {
-    fn new(values: [[f64; 4]; 5], second: &[[f32; PAIRS]; FUNCTIONS], half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
-        let sum = |f: usize| {
-            PAIR.iter()
-                .enumerate()
-                .map(|(p, (i, j))| f64::from(second[f][p]) * half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 })
-                .sum::<f64>()
-        };
-        let rest = [sum(0), sum(1), sum(2)];
-        let pair = |a: usize, b: usize, f: usize| {
-            // Slopes change by at most what twice the second-order sum says.
-            let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>();
-            (libm::hypot(values[a][0], values[b][0]), moved + 2.0 * rest[f])
-        };
-        let (d, v) = (pair(1, 2, 1), pair(3, 4, 2));
-        Self { values, second: rest, most: [d.0 + d.1, v.0 + v.1], moved: [d.1, v.1], half, r, off }
+    fn new(known: &Known, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+        let values = known.values.map(|v| v.map(f64::from));
+        let rest = known.rest.map(f64::from);
+        // Slopes change by at most what twice the second-order sum says.
+        let moved = (0..3).map(|k| libm::hypot(values[1][k + 1], values[2][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest[1];
+        Self { values, rest, most: libm::hypot(values[1][0], values[2][0]) + moved, moved, half, r, off }
     }
 }
 
@@ -309,7 +281,7 @@ fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first:
     if found.is_empty() {
         return EMPTY;
     }
-    let [f1, f2, f3] = force;
+    let [f1, f2, _] = force;
     let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
     let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
     let length = libm::hypot(f1, f2);
@@ -323,15 +295,14 @@ fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first:
                 + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
         let of = |k: usize| {
             let v = |f: usize| s.values[f][k];
-            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
+            f2 * v(0) - a * v(1) + b * v(2)
         };
         let value = of(0) + first * r * r * 0.5 * (f2 + a);
         let by_r = of(1) + first * r * (f2 + a);
-        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
-            - f3 * (s.values[3][0] * cosine + s.values[4][0] * sine);
-        let rest = s.second[0] * f2.abs() + s.second[1] * length + s.second[2] * f3.abs()
-            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
-            + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
+        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b;
+        let rest = s.rest[0] * f2.abs() + s.rest[1] * length
+            + h_chi * 2.0 * length * s.moved
+            + h_chi * h_chi * 2.0 * length * s.most
             + joint1
             // The heading is free within its cell.
             + of(3).abs() * s.half[2];

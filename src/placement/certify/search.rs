@@ -58,7 +58,6 @@ fn prepare(problem: &Problem, steps: (f64, usize), with_rate: bool) -> (Bounded,
     let rates = (0..points.len())
         .map(|p| if !with_rate || p == 0 { f64::INFINITY } else { problem.beta_step_limit(p) })
         .collect();
-    let axis = task.points()[0].axis.z * side;
     let bounded = Bounded {
         arm,
         table,
@@ -67,7 +66,6 @@ fn prepare(problem: &Problem, steps: (f64, usize), with_rate: bool) -> (Bounded,
         rates,
         first: compliances[0],
         extent,
-        sense: axis.signum(),
     };
     (bounded, whole)
 }
@@ -97,7 +95,7 @@ fn run_search(bounded: &Bounded, start_with: Vec<(f64, Region)>, incumbent: f64,
     let start = std::time::Instant::now();
     let mut heap = BinaryHeap::new();
     let mut number = 0;
-    let full = Arc::new(Tube::full(n));
+    let full = Arc::new(Tube::full(n, bounded.table.headings(0)));
     for (bound, region) in start_with { number += 1; heap.push(Open { bound, number, region, tube: Arc::clone(&full) }); }
     let (mut nodes, mut states) = (0usize, 0usize);
     let mut closed = f64::INFINITY;
@@ -109,21 +107,23 @@ fn run_search(bounded: &Bounded, start_with: Vec<(f64, Region)>, incumbent: f64,
         if t > shown {
             shown += 1.0;
             println!("{t:.1}s nodes {nodes} states {states} open {} lowest {:.7} gap {:.3} % region {:?} half {:?} cells {} tube {}", heap.len(), lowest / n as f64 * 1e3,
-                (1.0 - lowest / n as f64 / incumbent) * 100.0, batch[0].region.middle, batch[0].region.half, batch[0].tube.count, batch[0].tube.len());
+                (1.0 - lowest / n as f64 / incumbent) * 100.0, batch[0].region.middle, batch[0].region.half, batch[0].tube.level, batch[0].tube.len());
         }
         if t > limit_s { break; }
         let results: Vec<Vec<(Region, Evaluated)>> = batch
             .par_iter()
             .map(|open| {
                 let h = open.region.half;
-                let keys = [h[0] * 1.0, h[1] * 0.7, h[2] * 1.5];
+                let keys = [h[0] / 0.009, h[1] / 0.0125, h[2] / 0.0157];
                 let side = (0..3).max_by(|a, b| keys[*a].total_cmp(&keys[*b])).unwrap();
-                let mut tube = Arc::clone(&open.tube);
-                // Cells as wide as half the box is turned.
-                while PI / tube.count as f64 > h[2] * 1.0 && tube.count < 1024 {
-                    tube = Arc::new(tube.halved());
-                }
-                open.region.split(side).into_iter().map(|half| (half, bounded.below(&half, &tube, ceiling))).collect()
+                let tube = &open.tube;
+                open.region.split(side).into_iter().map(|half| {
+                    let mut tube = (**tube).clone();
+                    let level = bounded.level(&half).unwrap_or(0);
+                    while tube.level < level { tube = tube.halved(); }
+                    let e = bounded.below(&half, &tube, ceiling);
+                    (half, e)
+                }).collect()
             })
             .collect();
         for (open, children) in batch.iter().zip(results) {
@@ -141,25 +141,21 @@ fn run_search(bounded: &Bounded, start_with: Vec<(f64, Region)>, incumbent: f64,
         }
     }
     let lowest = heap.peek().map_or(closed, |o: &Open| o.bound.min(closed));
-    println!("made {:?}", bounded.table.made());
+    println!("made {:?}", bounded.table.count());
     println!("done {:.1}s nodes {nodes} states {states} open {} bound {:.7} gap {:.3} %", start.elapsed().as_secs_f64(), heap.len(), lowest / n as f64 * 1e3, (1.0 - lowest / n as f64 / incumbent) * 100.0);
 }
 
 pub fn trial(problem: &Problem, step: f64, headings: usize, rate: bool, incumbent: f64, gap: f64, limit: f64) {
     let (b, whole) = prepare(problem, (step, headings), rate);
     let t = std::time::Instant::now();
-    if std::env::var("DEBUG").is_ok() { b.debug(&Region { middle: [1.64484375, -0.589875, -3.1354567304382504], half: [0.004843750000000003, 0.012125, 0.006135923151542565] }); return; }
-    {
-        let t = std::time::Instant::now();
-        (0..61usize * 17).into_par_iter().for_each(|row| {
-            let (r, z) = (b.extent.radius.0 + step * (row / 17) as f64, b.extent.height.0 + step * (row % 17) as f64);
-            if z > b.extent.height.1 { return; }
-            for k in 0..headings { for class in crate::robot::PostureClass::ALL { b.table.at(&b.arm, 0, r, z, std::f64::consts::TAU / headings as f64 * k as f64, class); } }
-        });
-        println!("level 0 {:?} {:?} {:?}", t.elapsed(), b.table.made(), b.table.tally());
-    }
+    let t = std::time::Instant::now();
+    let rows = (((b.extent.radius.1 - b.extent.radius.0) / step).ceil() as usize + 1, ((b.extent.height.1 - b.extent.height.0) / step).ceil() as usize + 1);
+    (0..rows.0 * rows.1).into_par_iter().for_each(|row| {
+        for k in 0..headings { for class in crate::robot::PostureClass::ALL { b.table.node(&b.arm, 0, [row / rows.1, row % rows.1], k, class); } }
+    });
+    println!("level 0 {:?} {:?}", t.elapsed(), b.table.count());
     let reduced = super::reduced::Reduced::new(&b.arm, &b.table, &b.points, b.first, b.extent, Steps { length: step, headings });
-    println!("reduced {:?} made {:?}", t.elapsed(), b.table.made());
+    println!("reduced {:?} made {:?}", t.elapsed(), b.table.count());
     let n = b.points.len() as f64;
     let ceiling = incumbent * n * (1.0 - gap);
     let t = std::time::Instant::now();
@@ -172,7 +168,7 @@ pub fn trial(problem: &Problem, step: f64, headings: usize, rate: bool, incumben
         let mut next = Vec::new();
         for (r, bound) in open.iter().zip(bounds) {
             if bound.is_some_and(|v| v >= ceiling) { continue; }
-            let keys = [r.half[0] / 0.009, r.half[1] / 0.0125, r.half[2] / 0.0079];
+            let keys = [r.half[0] / 0.009, r.half[1] / 0.0125, r.half[2] / 0.0157];
             let side = (0..3).max_by(|a, b| keys[*a].total_cmp(&keys[*b])).unwrap();
             if keys[side] <= 1.0 { left.push((bound.unwrap_or(0.0), *r)); } else { next.extend(r.split(side)); }
         }
