@@ -4,35 +4,37 @@
 //! Everything is in the radial frame of the tool centre point: x away from axis 1, z along it. Joint 1 is left to
 //! [`super::cost`], and so are joints 4 and 6, whose limits are relaxed.
 
-use super::number::{Bend, Links, Number};
+use super::elbow::{Bend, Links};
+use super::conditioning::{Plane, Wrist};
+use super::number::Number;
 use crate::placement::kernel::lanes::Mask;
 use crate::placement::problem::Problem;
 use crate::robot::{Geometry, PostureClass, angles::ANGLE_ROUNDING};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Number of constraints: elbow, both limits of joints 2 and 3, joint 5, wrist, conditioning.
 pub(super) const CONSTRAINTS: usize = 8;
 
-/// Squared sine of elbow and wrist below which nothing is known, where conditioning asks for less.
+/// Squared sine of elbow and wrist below which too little is known.
 const LEAST_SINE2: f64 = 1e-4;
 
 /// What does not change from state to state.
 #[derive(Debug, Clone)]
 pub(super) struct Arm {
-    geometry: Geometry,
+    pub(super) geometry: Geometry,
     /// Tool centre point from the wrist centre, with heading zero. m
-    lever: Vector3<f64>,
+    pub(super) lever: Vector3<f64>,
     /// Axis 6 with heading zero.
-    axis6: Vector3<f64>,
+    pub(super) axis6: Vector3<f64>,
     /// Compliances of joints 2 to 6. rad/(N m)
     compliances: [f64; 5],
     /// Limits of joints 2 and 3, rounding included. rad
     limits: [(f64, f64); 2],
     /// Smallest cosine of theta_5.
     least_cosine5: f64,
-    min_inverse_condition: f64,
-    characteristic_length: f64,
+    pub(super) min_inverse_condition: f64,
+    pub(super) characteristic_length: f64,
     needs: Needs,
     links: Links,
     bend: Bend,
@@ -55,30 +57,48 @@ struct Needs {
     wrist: f64,
 }
 
-/// The plane arm, as conditioning needs it.
-struct Plane<T> {
-    forward: T,
-    inverse_forward: T,
-    u: T,
-    u3: T,
-    height: T,
-    height3: T,
-    p2: (T, T),
-    p3: (T, T),
-    /// Sign of the determinant over the lengths of the links.
-    sign: f64,
-    sin_delta: T,
+/// How near to their singularities constraints let the elbow and the wrist come, anywhere in the cell.
+struct Limits {
+    needs: Needs,
+    /// Largest cosines of the elbow angle less half a turn, of the elbow angle, and of the angle between axes 4 and 6.
+    folded: f64,
+    stretched: f64,
+    in_line: f64,
 }
 
-/// The wrist, as conditioning needs it.
-struct Wrist<T> {
-    t: Vector<T>,
-    z4: Vector<T>,
-    z6: Vector<T>,
-    dot46: T,
-    sine5_squared: T,
-    /// Squared part of the lever along axis 5.
-    across: T,
+impl Limits {
+    fn new(problem: &Problem, least: f64, nearest: f64) -> Self {
+        let g = problem.robot.geometry();
+        let length = problem.constraints.characteristic_length;
+        let needs = Needs {
+            constant: least * least / 6.0,
+            per_radius2: least * least / (36.0 * length * length),
+            elbow: (length / (g.upper_arm * g.forearm)).powi(2),
+            wrist: 1.0 + lever(problem).norm_squared() / (length * length),
+        };
+        let needed = needs.constant + needs.per_radius2 * nearest * nearest;
+        let cosine = |sine2: f64| libm::sqrt(1.0 - sine2.clamp(0.0, 0.9));
+        // How far joint 3 can fold the arm.
+        let joint3 = &problem.robot.joints()[2];
+        let (min, max) = (joint3.min + g.forearm_angle, joint3.max + g.forearm_angle);
+        let shift = TAU * ((min + max) / (2.0 * TAU)).round();
+        let widest = (min - shift).abs().max((max - shift).abs()) + ANGLE_ROUNDING;
+        let by_joint = if widest >= PI { 1.0 } else { -libm::cos(widest) };
+        let at = |distance2: f64| cosine(needed * needs.elbow * distance2);
+        Self {
+            needs,
+            folded: at((g.upper_arm - g.forearm) * (g.upper_arm - g.forearm)).min(by_joint),
+            stretched: at(g.upper_arm * g.upper_arm + g.forearm * g.forearm),
+            in_line: cosine(needed / needs.wrist),
+        }
+    }
+}
+
+/// Tool centre point from the wrist centre, in the flange frame. m
+fn lever(problem: &Problem) -> Vector3<f64> {
+    let mut lever = problem.spindle.flange_from_tool.translation;
+    lever.z += problem.robot.geometry().flange;
+    lever
 }
 
 /// How the arm yields and what it allows, in one posture class.
@@ -104,28 +124,47 @@ pub(super) struct Yield<T> {
 
 /// Three components in the frame of joint 1.
 #[derive(Clone, Copy)]
-struct Vector<T> {
-    x: T,
-    y: T,
-    z: T,
+pub(super) struct Vector<T> {
+    pub x: T,
+    pub y: T,
+    pub z: T,
 }
 
 impl<T: Number> Vector<T> {
     #[inline(always)]
-    fn dot(self, o: Self) -> T {
+    pub fn dot(self, o: Self) -> T {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
     #[inline(always)]
-    fn square(self) -> T {
+    pub fn square(self) -> T {
         self.x.square() + self.y.square() + self.z.square()
     }
     #[inline(always)]
-    fn cross(self, o: Self) -> Self {
+    pub fn cross(self, o: Self) -> Self {
         Self { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
     }
 }
 
 impl Arm {
+    /// The inverse condition that constraints must ask for at least, where they ask for less: below it, the elbow and the wrist
+    /// may come so near to their singularities that nothing is known. For radii of the tool centre point from `nearest` (m) on.
+    pub fn least_condition(problem: &Problem, nearest: f64) -> Option<f64> {
+        let asked = problem.constraints.min_inverse_condition;
+        let fits = |least: f64| {
+            let limits = Limits::new(problem, least, nearest);
+            limits.folded.max(limits.stretched).max(limits.in_line) < libm::sqrt(1.0 - LEAST_SINE2)
+        };
+        if fits(asked) {
+            return None;
+        }
+        let (mut low, mut high) = (asked, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if fits(middle) { high = middle } else { low = middle }
+        }
+        Some((high * 1e3).ceil() / 1e3)
+    }
+
     /// For radii of the tool centre point from `nearest` (m) on.
     pub fn new(problem: &Problem, compliances: &[f64; 6], nearest: f64) -> Self {
         let robot = &problem.robot;
@@ -136,39 +175,23 @@ impl Arm {
         let root_from_flange = Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis))
             * Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
             * problem.spindle.flange_from_tool.inverse().rotation;
-        let mut lever = problem.spindle.flange_from_tool.translation;
-        lever.z += geometry.flange;
+        let lever = lever(problem);
         let joint = |j: usize| &robot.joints()[j];
         let widest5 = joint(4).min.abs().max(joint(4).max.abs()) + ANGLE_ROUNDING;
-        let (least, length) = (problem.constraints.min_inverse_condition, problem.constraints.characteristic_length);
-        let needs = Needs {
-            constant: least * least / 6.0,
-            per_radius2: least * least / (36.0 * length * length),
-            elbow: (length / (geometry.upper_arm * geometry.forearm)).powi(2),
-            wrist: 1.0 + lever.norm_squared() / (length * length),
-        };
-        // What the elbow and the wrist need at least, anywhere.
-        let needed = needs.constant + needs.per_radius2 * nearest * nearest;
+        let least = problem.constraints.min_inverse_condition;
+        let limits = Limits::new(problem, least, nearest);
         let (upper, fore) = (geometry.upper_arm, geometry.forearm);
         let (square, twice) = (upper * upper + fore * fore, 2.0 * upper * fore);
-        let least_sine = |distance2: f64| (needed * needs.elbow * distance2).clamp(LEAST_SINE2, 0.9);
-        let cosine = |sine2: f64| libm::sqrt(1.0 - sine2);
-        // How far joint 3 can fold the arm.
-        let (min3, max3) = (joint(2).min + geometry.forearm_angle, joint(2).max + geometry.forearm_angle);
-        let shift = std::f64::consts::TAU * ((min3 + max3) / (2.0 * std::f64::consts::TAU)).round();
-        let widest = (min3 - shift).abs().max((max3 - shift).abs()) + ANGLE_ROUNDING;
-        let folded = if widest >= PI { -1.0 } else { libm::cos(widest) };
-        let limits = [
-            square + twice * folded.max(-cosine(least_sine((upper - fore) * (upper - fore)))),
-            square + twice * cosine(least_sine(square)),
-        ];
-        let links = Links { upper_arm: upper, forearm: fore, limits };
-        let bend = Bend { limit: cosine((needed / needs.wrist).clamp(LEAST_SINE2, 0.9)) };
+        let links = Links {
+            upper_arm: upper,
+            forearm: fore,
+            limits: [square - twice * limits.folded, square + twice * limits.stretched],
+        };
         Self {
             geometry,
-            needs,
+            needs: limits.needs,
             links,
-            bend,
+            bend: Bend { limit: limits.in_line },
             is_vertical: problem.task.wrenches().iter().any(|w| w.force.z != 0.0),
             lever: root_from_flange * lever,
             axis6: root_from_flange.column(2).into_owned(),
@@ -183,11 +206,6 @@ impl Arm {
     /// How large a compliance of the arm is: that of its upper joints at a lever of a metre. m/N
     pub fn typical(&self) -> f64 {
         self.compliances[0].max(self.compliances[1]) / 3.0
-    }
-
-    /// Which way the heading turns with beta: +1 for a tool axis along axis 1.
-    pub fn geometry(&self) -> &Geometry {
-        &self.geometry
     }
 
     /// For joint 2 (0) or 3 (1): whether its limits are wider than half a turn, so that a state is lost only where both of
@@ -330,60 +348,5 @@ impl Arm {
             conditioned: regular,
             lost,
         })
-    }
-
-    /// 36 / min^2 - |N|^2 |N^-1|^2 (see the kernel's and [`crate::robot::conditioning`]), times the squared sine of the elbow
-    /// and the fourth power of the wrist's: so nothing is divided by either, and the sign is plain where they vanish.
-    fn condition<T: Number>(&self, a: &Plane<T>, w: &Wrist<T>) -> T {
-        let (lateral, length) = (self.geometry.lateral, self.characteristic_length);
-        let t = w.t;
-        // The lever's length is known.
-        let lever2 = self.lever.norm_squared();
-        let (px, py) = (a.forward + t.x, t.y.plus(lateral));
-        let along4 = w.z4.dot(t);
-        let along6 = self.lever.dot(&self.axis6);
-        let linear2 = px.square() + py.square() + a.p2.0.square() + a.p2.1.square() + a.p3.0.square() + a.p3.1.square()
-            - along4.square()
-            - w.across;
-        let norm2 = linear2.plus(3.0 * lever2 - along6 * along6).scale(1.0 / (length * length)).plus(6.0);
-        // All rows times the sine of the elbow.
-        let slope = a.inverse_forward.scale(lateral);
-        let row = |x: T, z: T| {
-            let x = x.scale(a.sign);
-            Vector { x, y: x * slope, z: z.scale(a.sign) }
-        };
-        let zero = T::constant(0.0);
-        let q1 = Vector { x: zero, y: a.inverse_forward * a.sin_delta, z: zero };
-        let (q2, q3) = (row(a.u3, a.height3), row(-a.u, -a.height));
-        let wy = Vector { x: -(q2.x + q3.x), y: -(q2.y + q3.y), z: -(q2.z + q3.z) };
-        let arm2 = q1.square() + q2.square() + q3.square();
-        let crossed = |q: Vector<T>| q.square().scale(lever2) - q.dot(t).square();
-        let arm_crossed2 = crossed(q1) + crossed(q2) + crossed(q3);
-        // The inverse wrist as a quadratic form, from the dual basis of z4, z5, z6, times the fourth power of its sine;
-        // z5 = (z4 x z6) / sin(theta_5).
-        let same = w.dot46.square().plus(1.0);
-        let mixed = w.dot46.scale(-2.0);
-        let (z4, c, z6) = (w.z4, w.z4.cross(w.z6), w.z6);
-        let form = |a4: T, b4: T, a5: T, b5: T, a6: T, b6: T| {
-            a5 * b5 * w.sine5_squared + same * (a4 * b4 + a6 * b6) + mixed * (a4 * b6 + a6 * b4)
-        };
-        let qxx = form(z4.x, z4.x, c.x, c.x, z6.x, z6.x);
-        let qyy = form(z4.y, z4.y, c.y, c.y, z6.y, z6.y);
-        let qzz = form(z4.z, z4.z, c.z, c.z, z6.z, z6.z);
-        let qxy = form(z4.x, z4.y, c.x, c.y, z6.x, z6.y);
-        let qxz = form(z4.x, z4.z, c.x, c.z, z6.x, z6.z);
-        let qyz = form(z4.y, z4.z, c.y, c.z, z6.y, z6.z);
-        let spin2 = qyy * wy.square() + (qyz * wy.dot(q1)).scale(2.0) + qzz * q1.square();
-        let (cy, cz) = (wy.cross(t), q1.cross(t));
-        let d = a.sin_delta;
-        let my = Vector { x: -cy.x, y: d - cy.y, z: -cy.z };
-        let mz = Vector { x: -cz.x, y: -cz.y, z: d - cz.z };
-        let rest2 = qxx * d.square()
-            + qyy * my.square()
-            + qzz * mz.square()
-            + (d * (qxy * my.x + qxz * mz.x) + qyz * my.dot(mz)).scale(2.0);
-        let s4 = w.sine5_squared.square();
-        let product = norm2 * ((arm2 * s4 + spin2).scale(length * length) + arm_crossed2 * s4 + rest2);
-        s4 * d.square() - product.scale(self.min_inverse_condition * self.min_inverse_condition / 36.0)
     }
 }

@@ -7,8 +7,11 @@
 
 use super::arm::Arm;
 use super::cost::{CORNERS, Pointwise};
+use super::prepare::Yaws;
 use super::region::{Point, Region};
 use super::table::{Node, Table};
+use super::tube::Tube;
+use super::window::{NOTHING, Window, least, plus};
 use crate::robot::PostureClass;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -18,68 +21,13 @@ use std::ops::Range;
 pub(super) struct Bounded {
     pub arm: Arm,
     pub table: Table,
-    pub extent: super::table::Extent,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
     /// Largest change of beta from the point before. rad; infinite without the rate
     pub rates: Vec<f64>,
     /// Compliance of joint 1. rad/(N m)
     pub first: f64,
-}
-
-/// Which cells of heading are still of interest: for each point and class one bit a cell.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tube {
-    /// Level of the table whose cells they are.
-    pub level: usize,
-    count: usize,
-    words: Vec<u64>,
-}
-
-impl Tube {
-    /// All cells of the coarsest level, `count` in a turn, a multiple of 64.
-    pub fn full(points: usize, count: usize) -> Self {
-        Self { level: 0, count, words: vec![u64::MAX; points * 4 * (count / 64)] }
-    }
-
-    fn cells(&self, point: usize, class: usize) -> impl Iterator<Item = usize> + '_ {
-        let per = self.count / 64;
-        let words = &self.words[(point * 4 + class) * per..][..per];
-        words.iter().enumerate().flat_map(|(w, word)| {
-            let mut left = *word;
-            std::iter::from_fn(move || {
-                if left == 0 {
-                    return None;
-                }
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                Some(w * 64 + bit)
-            })
-        })
-    }
-
-    fn clear(&mut self, point: usize, class: usize, cell: usize) {
-        let per = self.count / 64;
-        self.words[(point * 4 + class) * per + cell / 64] &= !(1 << (cell % 64));
-    }
-
-    fn clear_all(&mut self, point: usize, class: usize) {
-        let per = self.count / 64;
-        self.words[(point * 4 + class) * per..][..per].fill(0);
-    }
-
-    /// The same with cells half as wide.
-    pub fn halved(&self) -> Self {
-        let spread = |word: u32| {
-            (0..32).filter(|bit| word >> bit & 1 == 1).fold(0u64, |out, bit| out | 3 << (2 * bit))
-        };
-        let words = self.words.iter().flat_map(|w| [spread(*w as u32), spread((*w >> 32) as u32)]).collect();
-        Self { level: self.level + 1, count: self.count * 2, words }
-    }
-
-    pub fn len(&self) -> usize {
-        self.words.iter().map(|w| w.count_ones() as usize).sum()
-    }
+    pub yaws: Yaws,
 }
 
 #[derive(Debug, Clone)]
@@ -87,10 +35,7 @@ pub(super) struct Evaluated {
     /// Least sum of the scores; infinite where nothing is feasible. m
     pub sum: f64,
     pub tube: Tube,
-    pub states: usize,
 }
-
-const NOTHING: [f64; CORNERS] = [f64::INFINITY; CORNERS];
 
 impl Bounded {
     /// The finest level whose nodes answer for every point of a box; `None` for a box that is too large.
@@ -105,12 +50,11 @@ impl Bounded {
     /// leave the tube.
     pub fn below(&self, region: &Region, tube: &Tube, ceiling: f64) -> Evaluated {
         let mut tube = tube.clone();
-        let count = tube.count;
+        let count = tube.count();
         let width = TAU / count as f64;
-        let mut states = 0;
         let points: Option<Vec<Pointwise>> =
             self.points.iter().map(|p| Some(Pointwise::new(p, p.over(region)?, self.first))).collect();
-        let Some(points) = points else { return Evaluated { sum: 0.0, tube, states } };
+        let Some(points) = points else { return Evaluated { sum: 0.0, tube } };
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<Ways> = Vec::new();
         let mut bests = Vec::new();
@@ -145,7 +89,6 @@ impl Bounded {
                                 Node::Known(known) => points[point].least(known, off, 0.5 * width, region),
                             },
                         };
-                        states += 1;
                         let sum = if place == 0 { cost } else { plus(&window.out[cell], &cost) };
                         row.sums[cell] = sum;
                         row.cells.push(cell);
@@ -165,14 +108,14 @@ impl Bounded {
                 all.push(ways);
             }
             if best[0] == f64::INFINITY {
-                return Evaluated { sum: f64::INFINITY, tube, states };
+                return Evaluated { sum: f64::INFINITY, tube };
             }
             totals = plus(&totals, &best);
             bests.push(best);
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
         if sum >= ceiling {
-            return Evaluated { sum, tube, states };
+            return Evaluated { sum, tube };
         }
         // From the ends back: what leads to no good leaves the tube.
         for ways in &all {
@@ -199,7 +142,7 @@ impl Bounded {
                 }
             }
         }
-        Evaluated { sum, tube, states }
+        Evaluated { sum, tube }
     }
 
     /// From which to which number of cells a way may step up, to `point` from the one before.
@@ -235,56 +178,4 @@ struct Row {
     cells: Vec<usize>,
     costs: Vec<[f64; CORNERS]>,
     sums: Vec<[f64; CORNERS]>,
-}
-
-#[inline]
-fn plus(a: &[f64; CORNERS], b: &[f64; CORNERS]) -> [f64; CORNERS] {
-    std::array::from_fn(|k| a[k] + b[k])
-}
-
-#[inline]
-fn least(a: &mut [f64; CORNERS], b: &[f64; CORNERS]) {
-    for k in 0..CORNERS {
-        a[k] = if b[k] < a[k] { b[k] } else { a[k] };
-    }
-}
-
-/// Least values over a range of neighbours, around the circle.
-struct Window {
-    out: Vec<[f64; CORNERS]>,
-    scratch: Vec<[f64; CORNERS]>,
-}
-
-impl Window {
-    fn new(count: usize) -> Self {
-        Self { out: vec![NOTHING; count], scratch: vec![NOTHING; count] }
-    }
-
-    /// Into `out`: for each cell k the least of those from k + low to k + high. By doubling: least of 1, 2, 4 ... neighbours.
-    fn least(&mut self, values: &[[f64; CORNERS]], low: isize, high: isize) {
-        let count = values.len();
-        let width = ((high - low + 1).max(0) as usize).min(count);
-        if width == 0 {
-            self.out.fill(NOTHING);
-            return;
-        }
-        self.scratch.copy_from_slice(values);
-        let mut size = 1;
-        while 2 * size <= width {
-            for k in 0..count {
-                let mut best = self.scratch[k];
-                least(&mut best, &self.scratch[(k + size) % count]);
-                self.out[k] = best;
-            }
-            std::mem::swap(&mut self.out, &mut self.scratch);
-            size *= 2;
-        }
-        let shift = low.rem_euclid(count as isize) as usize;
-        for k in 0..count {
-            let from = (k + shift) % count;
-            let mut best = self.scratch[from];
-            least(&mut best, &self.scratch[(from + width - size) % count]);
-            self.out[k] = best;
-        }
-    }
 }

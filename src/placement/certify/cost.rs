@@ -15,6 +15,8 @@ pub(super) struct Pointwise {
     a: f64,
     b: f64,
     length: f64,
+    /// f3, f3 sin chi and f3 cos chi. N
+    vertical: [f64; 3],
     /// Joint 1: value, slopes by r and chi, and what they leave out. m
     joint1: [f64; 4],
     half: [f64; 3],
@@ -23,7 +25,7 @@ pub(super) struct Pointwise {
 impl Pointwise {
     /// With the compliance of joint 1 (rad/(N m)).
     pub fn new(point: &Point, placed: Placed, first: f64) -> Self {
-        let [f1, f2, _] = point.force;
+        let [f1, f2, f3] = point.force;
         let (sine, cosine) = libm::sincos(placed.chi);
         let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
         let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
@@ -36,7 +38,7 @@ impl Pointwise {
                 + 2.0 * far * (b.abs() + swing) * h_r * h_chi
                 + far * far * (a.abs() + swing) * h_chi * h_chi);
         let joint1 = [first * r * r * 0.5 * (f2 + a), first * r * (f2 + a), first * r * r * b, rest];
-        Self { placed, f2, a, b, length, joint1, half: placed.reach }
+        Self { placed, f2, a, b, length, vertical: [f3, f3 * sine, f3 * cosine], joint1, half: placed.reach }
     }
 
     /// Least costs at the corners of the box, in a cell of heading of that half width (rad): `off` is where the point is
@@ -50,20 +52,31 @@ impl Pointwise {
         let at = |f: usize| get(f, 0) + get(f, 1) * off[0] + get(f, 2) * off[1];
         let (d1, d2) = (at(1), at(2));
         let [j_value, j_r, j_chi, j_rest] = self.joint1;
-        let value = self.f2 * at(0) - a * d1 + b * d2 + j_value;
+        let mut value = self.f2 * at(0) - a * d1 + b * d2 + j_value;
         let by = |k: usize| self.f2 * get(0, k) - a * get(1, k) + b * get(2, k);
-        let (by_r, by_z, by_heading) = (by(1) + j_r, by(2), by(3));
-        let by_chi = -2.0 * (b * d1 + a * d2) + j_chi;
+        let (mut by_r, mut by_z, mut by_heading) = (by(1) + j_r, by(2), by(3));
+        let mut by_chi = -2.0 * (b * d1 + a * d2) + j_chi;
         let rest_d = f64::from(known.rest[1]);
         // How far (d1, d2) moves, at most: the sum of magnitudes is not below the length.
         let gradient = |k: usize| get(1, k).abs() + get(2, k).abs();
         let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * rest_d;
-        let rest = f64::from(known.rest[0]) * self.f2.abs()
+        let mut rest = f64::from(known.rest[0]) * self.f2.abs()
             + rest_d * self.length
             + 2.0 * self.length * h_chi * (moved + h_chi * (d1.abs() + d2.abs() + moved))
-            + j_rest
-            + by_r.abs() * p.rest_r
-            + by_chi.abs() * p.rest_chi;
+            + j_rest;
+        let [f3, sine, cosine] = self.vertical;
+        if f3 != 0.0 {
+            let by = |k: usize| get(4, k) * cosine - get(3, k) * sine;
+            let (cr, ct) = (at(3), at(4));
+            value += ct * cosine - cr * sine;
+            (by_r, by_z, by_heading) = (by_r + by(1), by_z + by(2), by_heading + by(3));
+            by_chi -= cr * cosine + ct * sine;
+            let gradient = |k: usize| get(3, k).abs() + get(4, k).abs();
+            let rest_v = f64::from(known.rest[2]);
+            let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * rest_v;
+            rest += f3.abs() * (rest_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)));
+        }
+        rest += by_r.abs() * p.rest_r + by_chi.abs() * p.rest_chi;
         let least = value.abs() - rest - by_heading.abs() * half_cell;
         if least <= 0.0 {
             return [0.0; CORNERS];

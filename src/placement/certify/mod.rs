@@ -1,3 +1,33 @@
-//! prototype
-#![allow(missing_docs, dead_code)]
-pub mod arm; pub mod number; pub mod table; pub mod region; pub mod cost; pub mod bound; pub mod reduced; pub mod search;
+//! Certificates: how far a placement is from the best possible.
+//!
+//! For an upright tool a state depends on the radius and height of the tool centre point and on the spindle's heading against
+//! its azimuth, and, by the direction of the feed against the azimuth, on one more angle. That makes bounds possible that hold
+//! for every placement of the cell, every posture scheme and every plan of beta.
+//!
+//! 1. `arm` is the closed form, evaluated in two number types: `number` (slopes) and `enclosure` (intervals for value,
+//!    gradient and second derivatives; `interval`, `elbow`, `conditioning`).
+//! 2. `table` holds, node by node, an affine model of the compliance with what it leaves out, or that no state is allowed.
+//! 3. `reduced` minimises over the heading once for all placements: minorants over radius, height and direction of the feed.
+//! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
+//! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
+//! 6. `search` goes through the boxes, most promising first.
+
+mod arm;
+mod bound;
+mod conditioning;
+mod cost;
+mod elbow;
+mod enclosure;
+mod interval;
+mod number;
+mod prepare;
+mod reduced;
+mod region;
+mod search;
+mod table;
+mod tube;
+mod window;
+
+pub use prepare::{Unfit, certifiable};
+pub use region::Region;
+pub use search::{Bound, End, State, Watch, best};

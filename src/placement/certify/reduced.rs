@@ -1,9 +1,10 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
 use super::arm::Arm;
+use super::bound::Bounded;
 use super::number::VARIABLES;
 use super::region::{Point, Region};
-use super::table::{Extent, Known, Node, Steps, Table};
+use super::table::{Extent, FUNCTIONS, Known, Node, Steps, Table};
 use crate::robot::PostureClass;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -37,27 +38,18 @@ struct Level {
 
 /// Kinds of force looked at: the most frequent ones.
 const MOST_FORCES: usize = 12;
+/// Kinds of force counted: a task may have as many as points.
+const MOST_LOOKED_AT: usize = 1000;
 
 impl Reduced {
-    pub fn new(arm: &Arm, table: &Table, points: &[Point], first: f64, extent: Extent, steps: Steps) -> Self {
-        let mut forces: Vec<([f64; 3], usize)> = Vec::new();
-        for p in points {
-            match forces.iter_mut().find(|(f, _)| same(f, &p.force)) {
-                Some((_, count)) => *count += 1,
-                None => forces.push((p.force, 1)),
-            }
-        }
-        forces.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        forces.truncate(MOST_FORCES);
-        let force_of = points.iter().map(|p| forces.iter().position(|(f, _)| same(f, &p.force))).collect();
-        let kinds: Vec<[f64; 3]> = forces.iter().map(|(f, _)| *f).collect();
-        let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() as usize + 1;
-        let counts = [along(extent.radius), along(extent.height), steps.headings];
+    pub fn new(bounded: &Bounded) -> Self {
+        let (extent, steps) = bounded.table.grid();
+        let kinds = kinds(&bounded.points);
+        let force_of = bounded.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
+        let counts = counts(extent, steps);
         let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
             .into_par_iter()
-            .map(|row| {
-                row_of(arm, table, &kinds, first, [row / counts[1], row % counts[1]], steps)
-            })
+            .map(|row| row_of(bounded, &kinds, [row / counts[1], row % counts[1]], steps))
             .collect();
         let mut levels = vec![Level { counts, entries: rows.into_iter().flatten().collect() }];
         let mut half = [steps.length, steps.length, TAU / steps.headings as f64];
@@ -69,17 +61,23 @@ impl Reduced {
         Self { levels, extent, steps, force_of, forces: kinds.len() }
     }
 
+    /// What they take. bytes
+    pub fn bytes(extent: Extent, steps: Steps, points: &[Point]) -> u64 {
+        let [a, b, c] = counts(extent, steps).map(|n| n as u64);
+        a * b * c * 4 * kinds(points).len() as u64 * size_of::<Affine>() as u64 * 8 / 7
+    }
+
     /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`
     /// for a box too large for the tables.
-    pub fn below(&self, points: &[Point], segments: &[std::ops::Range<usize>], region: &Region) -> Option<f64> {
+    pub fn below(&self, bounded: &Bounded, region: &Region) -> Option<f64> {
         let mut totals = [0.0; 8];
         let [a, b, g] = region.half;
         let heading = TAU / self.steps.headings as f64;
-        for span in segments {
+        for span in &bounded.segments {
             let mut sums = [[0.0f64; 4]; 4];
             for point in span.clone() {
                 let Some(force) = self.force_of[point] else { continue };
-                let p = points[point].over(region)?;
+                let p = bounded.points[point].over(region)?;
                 let ratio = (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading) * 2.0;
                 let number = if ratio <= 1.0 { 0 } else if ratio <= 2.0 { 1 } else if ratio <= 4.0 { 2 } else { return None };
                 let level = &self.levels[number];
@@ -118,6 +116,26 @@ impl Reduced {
         }
         Some(totals.iter().copied().fold(f64::INFINITY, f64::min))
     }
+}
+
+/// The most frequent forces.
+fn kinds(points: &[Point]) -> Vec<[f64; 3]> {
+    let mut forces: Vec<([f64; 3], usize)> = Vec::new();
+    for p in points {
+        match forces.iter().position(|(f, _)| same(f, &p.force)) {
+            Some(at) => forces[at].1 += 1,
+            None if forces.len() < MOST_LOOKED_AT => forces.push((p.force, 1)),
+            None => {}
+        }
+    }
+    forces.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    forces.truncate(MOST_FORCES);
+    forces.into_iter().map(|(force, _)| force).collect()
+}
+
+fn counts(extent: Extent, steps: Steps) -> [usize; 3] {
+    let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() as usize + 1;
+    [along(extent.radius), along(extent.height), steps.headings]
 }
 
 fn same(a: &[f64; 3], b: &[f64; 3]) -> bool {
@@ -186,8 +204,9 @@ fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
 }
 
 /// All directions of the feed, forces and classes at one radius and height.
-fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, at: [usize; 2], steps: Steps) -> Vec<Affine> {
-    let [r, z] = table.place(0, at);
+fn row_of(bounded: &Bounded, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) -> Vec<Affine> {
+    let (arm, table, first) = (&bounded.arm, &bounded.table, bounded.first);
+    let node = table.place(0, at);
     let step = TAU / steps.headings as f64;
     let half = [steps.length, steps.length, step];
     let mut out = vec![EMPTY; steps.headings * forces.len() * 4];
@@ -197,7 +216,7 @@ fn row_of(arm: &Arm, table: &Table, forces: &[[f64; 3]], first: f64, at: [usize;
         let mut found: Vec<State> = Vec::new();
         let mut unknown = false;
         for cell in 0..steps.headings {
-            unknown |= !collect(arm, table, 0, at, cell, [r, z], class, &mut found);
+            unknown |= !collect(arm, table, 0, at, cell, node, class, &mut found);
         }
         for (number, force) in forces.iter().enumerate() {
             for (k, (sine, cosine)) in directions.iter().enumerate() {
@@ -256,11 +275,11 @@ fn collect(
 
 /// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
 struct State {
-    values: [[f64; 4]; 3],
-    rest: [f64; 2],
-    /// How long (d1, d2) can get, and how far it can move.
-    most: f64,
-    moved: f64,
+    values: [[f64; 4]; FUNCTIONS],
+    rest: [f64; 3],
+    /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
+    most: [f64; 2],
+    moved: [f64; 2],
     half: [f64; 3],
     r: f64,
     /// Radius and height less those of the node. m
@@ -272,8 +291,12 @@ impl State {
         let values = known.values.map(|v| v.map(f64::from));
         let rest = known.rest.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
-        let moved = (0..3).map(|k| libm::hypot(values[1][k + 1], values[2][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest[1];
-        Self { values, rest, most: libm::hypot(values[1][0], values[2][0]) + moved, moved, half, r, off }
+        let of = |a: usize, b: usize, rest: f64| {
+            let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest;
+            (libm::hypot(values[a][0], values[b][0]) + moved, moved)
+        };
+        let (d, v) = (of(1, 2, rest[1]), of(3, 4, rest[2]));
+        Self { values, rest, most: [d.0, v.0], moved: [d.1, v.1], half, r, off }
     }
 }
 
@@ -281,7 +304,7 @@ fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first:
     if found.is_empty() {
         return EMPTY;
     }
-    let [f1, f2, _] = force;
+    let [f1, f2, f3] = force;
     let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
     let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
     let length = libm::hypot(f1, f2);
@@ -295,14 +318,15 @@ fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first:
                 + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
         let of = |k: usize| {
             let v = |f: usize| s.values[f][k];
-            f2 * v(0) - a * v(1) + b * v(2)
+            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
         };
         let value = of(0) + first * r * r * 0.5 * (f2 + a);
         let by_r = of(1) + first * r * (f2 + a);
-        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b;
-        let rest = s.rest[0] * f2.abs() + s.rest[1] * length
-            + h_chi * 2.0 * length * s.moved
-            + h_chi * h_chi * 2.0 * length * s.most
+        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
+            - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
+        let rest = s.rest[0] * f2.abs() + s.rest[1] * length + s.rest[2] * f3.abs()
+            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
+            + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
             + joint1
             // The heading is free within its cell.
             + of(3).abs() * s.half[2];

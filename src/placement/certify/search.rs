@@ -1,74 +1,76 @@
 //! Best first over boxes of placements.
 
-use super::arm::Arm;
-use super::bound::{Bounded, Evaluated, Tube};
-use super::region::{Point, Region};
-use super::table::{Extent, Steps, Table};
+use super::bound::{Bounded, Evaluated};
+use super::prepare::{Unfit, certifiable, prepared};
+use super::reduced::Reduced;
+use super::region::Region;
+use super::tube::Tube;
 use crate::placement::problem::Problem;
 use rayon::prelude::*;
-use std::collections::BinaryHeap;
 use std::cmp::Ordering;
-use std::f64::consts::PI;
+use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-fn prepare(problem: &Problem, steps: (f64, usize), with_rate: bool) -> (Bounded, Region) {
-    let g = problem.robot.geometry().clone();
-    let side = g.base_from_root[(2, 2)];
-    let compliances = problem.robot.constant_compliances().unwrap();
-        let task = &problem.task;
-    let points: Vec<Point> = task
-        .points()
-        .iter()
-        .zip(task.wrenches())
-        .map(|(p, w)| {
-            // Seen along axis 1: for a hanging arm y and z change sign.
-            let (x, y) = (p.position.x, p.position.y * side);
-            let (fx, fy) = (p.feed.x, p.feed.y * side);
-            let length = libm::hypot(fx, fy);
-            let (fx, fy) = (fx / length, fy / length);
-            let f = [w.force.x, w.force.y * side, w.force.z * side];
-            Point {
-                distance: libm::hypot(x, y),
-                direction: libm::atan2(y, x),
-                height: p.position.z * side,
-                feed: libm::atan2(fy, fx),
-                force: [f[0] * fx + f[1] * fy, -f[0] * fy + f[1] * fx, f[2]],
-            }
-        })
-        .collect();
-    let [x, y, z] = problem.cell.position;
-    let (x0, y0) = (x.min - g.root_in_base.x, y.min - g.root_in_base.y);
-    let (x1, y1) = (x.max - g.root_in_base.x, y.max - g.root_in_base.y);
-    let gap = |a: f64, b: f64| if a > 0.0 { a } else if b < 0.0 { -b } else { 0.0 };
-    let near = libm::hypot(gap(x0, x1), gap(y0, y1));
-    let far = libm::hypot(x0.abs().max(x1.abs()), y0.abs().max(y1.abs()));
-    let (a, b) = ((z.min - g.root_in_base.z) * side, (z.max - g.root_in_base.z) * side);
-    let (low, high) = (a.min(b), a.max(b));
-    let whole = Region {
-        middle: [(near + far) / 2.0, (low + high) / 2.0, 0.0],
-        half: [(far - near) / 2.0, (high - low) / 2.0, PI],
-    };
-    let most = points.iter().map(|p| p.distance).fold(0.0, f64::max);
-    let (zl, zh) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.height), h.max(p.height)));
-    let extent = Extent { radius: ((near - most).max(0.05), far + most), height: (low + zl, high + zh) };
-    let arm = Arm::new(problem, &compliances, extent.radius.0);
-    let t = std::time::Instant::now();
-    let table = Table::new(extent, Steps { length: steps.0, headings: steps.1 }, 3);
-    println!("table {:?}", t.elapsed());
-    let rates = (0..points.len())
-        .map(|p| if !with_rate || p == 0 { f64::INFINITY } else { problem.beta_step_limit(p) })
-        .collect();
-    let bounded = Bounded {
-        arm,
-        table,
-        points,
-        segments: task.segments().to_vec(),
-        rates,
-        first: compliances[0],
-        extent,
-    };
-    (bounded, whole)
+/// How far the search has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// No placement has a mean score below. m
+    pub bound: f64,
+    /// Boxes still open.
+    pub open: usize,
+    /// Boxes bounded so far.
+    pub nodes: usize,
 }
+
+/// The caller's side of a certificate. Called from one thread.
+pub trait Watch {
+    /// Takes the state of the search; false to end it with what it has.
+    fn goes_on(&mut self, state: &State) -> bool;
+}
+
+/// A lower bound of what any placement of the cell is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// The mean score that was compared with. m
+    pub value: f64,
+    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding. m
+    pub bound: f64,
+    /// Whether the rate of beta was kept.
+    pub with_rate: bool,
+    /// Boxes bounded.
+    pub nodes: usize,
+    /// Why the search ended.
+    pub end: End,
+    /// Boxes that may hold placements with less than `value` less the gap asked for, each with its own bound. m
+    pub open: Vec<(Region, f64)>,
+}
+
+/// Why a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The gap asked for is reached.
+    Reached,
+    /// The caller ended it.
+    Stopped,
+    /// What is left open is smaller than the tables can tell apart.
+    Exhausted,
+}
+
+impl Bound {
+    /// How much better than the value a placement may be, relative to the value.
+    pub fn gap(&self) -> f64 {
+        1.0 - self.bound / self.value
+    }
+}
+
+/// Boxes taken at once; the result depends on it, so it is fixed.
+const BATCH: usize = 64;
+/// Half widths of the boxes that tables are first asked for in detail: radius and height (m), yaw (rad).
+const START: [f64; 3] = [0.009, 0.0125, 0.0157];
+/// Boxes whose half widths are this much smaller are not cut further.
+const SMALLEST: f64 = 1.0 / 256.0;
+/// What rounding may have taken from a bound, relative to it.
+const ROUNDING: f64 = 1e-9;
 
 struct Open {
     bound: f64,
@@ -76,108 +78,132 @@ struct Open {
     region: Region,
     tube: Arc<Tube>,
 }
+
 impl PartialEq for Open {
-    fn eq(&self, o: &Self) -> bool { self.cmp(o) == Ordering::Equal }
-}
-impl Eq for Open {}
-impl PartialOrd for Open {
-    fn partial_cmp(&self, o: &Self) -> Option<Ordering> { Some(self.cmp(o)) }
-}
-impl Ord for Open {
-    fn cmp(&self, o: &Self) -> Ordering {
-        o.bound.total_cmp(&self.bound).then(o.number.cmp(&self.number))
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
     }
 }
 
-fn run_search(bounded: &Bounded, start_with: Vec<(f64, Region)>, incumbent: f64, gap: f64, limit_s: f64) {
-    let n = bounded.points.len();
-    let ceiling = incumbent * n as f64 * (1.0 - gap);
-    let start = std::time::Instant::now();
+impl Eq for Open {}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Open {
+    /// The least bound first, of equal ones the older.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound).then(other.number.cmp(&self.number))
+    }
+}
+
+/// Bounds from below what placements of a problem are worth, until no placement can be better than `value` (mean score, m)
+/// by more than `gap` (relative).
+///
+/// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
+/// `with_rate` that of beta as well. The result does not depend on the number of threads.
+///
+/// # Errors
+/// Why the problem cannot be certified this way.
+pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+    certifiable(problem)?;
+    let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
+    let (bounded, whole) = prepared(problem, &compliances, with_rate);
+    let reduced = Reduced::new(&bounded);
+    let count = bounded.points.len() as f64;
+    let ceiling = value * count * (1.0 - gap) * (1.0 + ROUNDING);
     let mut heap = BinaryHeap::new();
+    let mut nodes = 0;
+    let tube = Arc::new(Tube::full(bounded.points.len(), bounded.table.headings(0)));
     let mut number = 0;
-    let full = Arc::new(Tube::full(n, bounded.table.headings(0)));
-    for (bound, region) in start_with { number += 1; heap.push(Open { bound, number, region, tube: Arc::clone(&full) }); }
-    let (mut nodes, mut states) = (0usize, 0usize);
-    let mut closed = f64::INFINITY;
-    let mut shown = 0.0;
-    while !heap.is_empty() {
-        let batch: Vec<Open> = (0..64).map_while(|_| heap.pop()).collect();
-        let lowest = batch[0].bound;
-        let t = start.elapsed().as_secs_f64();
-        if t > shown {
-            shown += 1.0;
-            println!("{t:.1}s nodes {nodes} states {states} open {} lowest {:.7} gap {:.3} % region {:?} half {:?} cells {} tube {}", heap.len(), lowest / n as f64 * 1e3,
-                (1.0 - lowest / n as f64 / incumbent) * 100.0, batch[0].region.middle, batch[0].region.half, batch[0].tube.level, batch[0].tube.len());
+    for (bound, region) in survivors(&bounded, &reduced, whole, ceiling, &mut nodes) {
+        number += 1;
+        heap.push(Open { bound, number, region, tube: Arc::clone(&tube) });
+    }
+    drop(reduced);
+    let mut stuck: Vec<Open> = Vec::new();
+    let mut end = End::Reached;
+    while let Some(first) = heap.peek() {
+        let lowest = stuck.iter().map(|o| o.bound).fold(first.bound, f64::min);
+        let state = State { bound: lowest / count, open: heap.len() + stuck.len(), nodes };
+        if !watch.goes_on(&state) {
+            end = End::Stopped;
+            break;
         }
-        if t > limit_s { break; }
-        let results: Vec<Vec<(Region, Evaluated)>> = batch
-            .par_iter()
-            .map(|open| {
-                let h = open.region.half;
-                let keys = [h[0] / 0.009, h[1] / 0.0125, h[2] / 0.0157];
-                let side = (0..3).max_by(|a, b| keys[*a].total_cmp(&keys[*b])).unwrap();
-                let tube = &open.tube;
-                open.region.split(side).into_iter().map(|half| {
-                    let mut tube = (**tube).clone();
-                    let level = bounded.level(&half).unwrap_or(0);
-                    while tube.level < level { tube = tube.halved(); }
-                    let e = bounded.below(&half, &tube, ceiling);
-                    (half, e)
-                }).collect()
-            })
-            .collect();
-        for (open, children) in batch.iter().zip(results) {
+        let batch: Vec<Open> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
+        let results: Vec<Option<Vec<(Region, Evaluated)>>> = batch.par_iter().map(|open| children(&bounded, open, ceiling)).collect();
+        for (open, children) in batch.into_iter().zip(results) {
+            let Some(children) = children else {
+                stuck.push(open);
+                continue;
+            };
             for (region, e) in children {
                 nodes += 1;
-                states += e.states;
                 let bound = e.sum.max(open.bound);
-                if bound >= ceiling {
-                    if bound < closed { closed = bound; }
-                    continue;
+                if bound < ceiling {
+                    number += 1;
+                    heap.push(Open { bound, number, region, tube: Arc::new(e.tube) });
                 }
-                number += 1;
-                heap.push(Open { bound, number, region, tube: Arc::new(e.tube) });
             }
         }
     }
-    let lowest = heap.peek().map_or(closed, |o: &Open| o.bound.min(closed));
-    println!("made {:?}", bounded.table.count());
-    println!("done {:.1}s nodes {nodes} states {states} open {} bound {:.7} gap {:.3} %", start.elapsed().as_secs_f64(), heap.len(), lowest / n as f64 * 1e3, (1.0 - lowest / n as f64 / incumbent) * 100.0);
+    if end == End::Reached && !stuck.is_empty() {
+        end = End::Exhausted;
+    }
+    let mut left = heap.into_sorted_vec();
+    left.reverse();
+    left.extend(stuck);
+    let lowest = left.iter().map(|o| o.bound).fold(ceiling, f64::min);
+    let open = left.iter().map(|o| (o.region, o.bound / count)).collect();
+    Ok(Bound { value, bound: lowest / count * (1.0 - ROUNDING), with_rate, nodes, end, open })
 }
 
-pub fn trial(problem: &Problem, step: f64, headings: usize, rate: bool, incumbent: f64, gap: f64, limit: f64) {
-    let (b, whole) = prepare(problem, (step, headings), rate);
-    let t = std::time::Instant::now();
-    let t = std::time::Instant::now();
-    let rows = (((b.extent.radius.1 - b.extent.radius.0) / step).ceil() as usize + 1, ((b.extent.height.1 - b.extent.height.0) / step).ceil() as usize + 1);
-    (0..rows.0 * rows.1).into_par_iter().for_each(|row| {
-        for k in 0..headings { for class in crate::robot::PostureClass::ALL { b.table.node(&b.arm, 0, [row / rows.1, row % rows.1], k, class); } }
-    });
-    println!("level 0 {:?} {:?}", t.elapsed(), b.table.count());
-    let reduced = super::reduced::Reduced::new(&b.arm, &b.table, &b.points, b.first, b.extent, Steps { length: step, headings });
-    println!("reduced {:?} made {:?}", t.elapsed(), b.table.count());
-    let n = b.points.len() as f64;
-    let ceiling = incumbent * n * (1.0 - gap);
-    let t = std::time::Instant::now();
+/// The boxes that the reduced tables leave open.
+fn survivors(bounded: &Bounded, reduced: &Reduced, whole: Region, ceiling: f64, nodes: &mut usize) -> Vec<(f64, Region)> {
     let mut open = vec![whole];
     let mut left = Vec::new();
-    let mut count = 0;
     while !open.is_empty() {
-        let bounds: Vec<Option<f64>> = open.par_iter().map(|r| reduced.below(&b.points, &b.segments, r)).collect();
-        count += open.len();
+        *nodes += open.len();
+        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| reduced.below(bounded, region)).collect();
         let mut next = Vec::new();
-        for (r, bound) in open.iter().zip(bounds) {
-            if bound.is_some_and(|v| v >= ceiling) { continue; }
-            let keys = [r.half[0] / 0.009, r.half[1] / 0.0125, r.half[2] / 0.0157];
-            let side = (0..3).max_by(|a, b| keys[*a].total_cmp(&keys[*b])).unwrap();
-            if keys[side] <= 1.0 { left.push((bound.unwrap_or(0.0), *r)); } else { next.extend(r.split(side)); }
+        for (region, bound) in open.iter().zip(bounds) {
+            if bound.is_some_and(|bound| bound >= ceiling) || !bounded.yaws.allow(region) {
+                continue;
+            }
+            match widest(region) {
+                (_, size) if size <= 1.0 => left.push((bound.unwrap_or(0.0).max(0.0), *region)),
+                (side, _) => next.extend(region.split(side)),
+            }
         }
-        println!("level {} -> {} left {}", open.len(), next.len(), left.len());
         open = next;
     }
-    let lowest = left.iter().map(|l| l.0).fold(f64::INFINITY, f64::min);
-    println!("reduced search {:?} boxes {count} left {} lowest {:.5}", t.elapsed(), left.len(), lowest / n * 1e3);
-    run_search(&b, left, incumbent, gap, limit);
+    left
 }
 
+/// The side to cut a box at, and its half width in terms of the start.
+fn widest(region: &Region) -> (usize, f64) {
+    let size = |k: usize| region.half[k] / START[k];
+    (1..3).fold((0, size(0)), |(side, most), k| if size(k) > most { (k, size(k)) } else { (side, most) })
+}
 
+/// The halves of a box with their bounds; `None` where it is not to be cut further.
+fn children(bounded: &Bounded, open: &Open, ceiling: f64) -> Option<Vec<(Region, Evaluated)>> {
+    let (side, size) = widest(&open.region);
+    if size <= SMALLEST {
+        return None;
+    }
+    let halves = open.region.split(side).into_iter().filter(|half| bounded.yaws.allow(half));
+    let bounds = halves.map(|half| {
+            let level = bounded.level(&half).unwrap_or(0);
+            let mut tube = (*open.tube).clone();
+            while tube.level < level {
+                tube = tube.halved();
+            }
+            let found = bounded.below(&half, &tube, ceiling);
+            (half, found)
+        });
+    Some(bounds.collect())
+}

@@ -5,7 +5,9 @@
 //! that none of its states is allowed, or gives an affine model of the compliances with what that leaves out.
 
 use super::arm::{Arm, Yield};
-use super::number::{Enclosure, Interval, PAIR};
+use super::enclosure::Enclosure;
+use super::interval::Interval;
+use super::number::PAIR;
 use crate::placement::kernel::lanes::{Lanes, WIDTH};
 use crate::robot::PostureClass;
 use std::f64::consts::{PI, TAU};
@@ -25,10 +27,10 @@ pub(super) enum Node {
 /// An affine model of the states around a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Known {
-    /// Value and gradient of m, d1 and d2 at the node.
-    pub values: [[f32; 4]; 3],
-    /// What these leave out: of m, and of the length of (d1, d2).
-    pub rest: [f32; 2],
+    /// Value and gradient of m, d1, d2 and the two vertical compliances at the node.
+    pub values: [[f32; 4]; FUNCTIONS],
+    /// What these leave out: of m, of the length of (d1, d2), and of that of the vertical ones.
+    pub rest: [f32; 3],
     /// Whether all the states are sure to be allowed.
     pub sure: bool,
 }
@@ -50,6 +52,9 @@ pub(super) struct Steps {
     /// Number of cells of heading, a power of two, 64 or more.
     pub headings: usize,
 }
+
+/// Functions modelled: see [`Known::values`].
+pub(super) const FUNCTIONS: usize = 5;
 
 /// Neighbouring headings made at once.
 const CHUNK: usize = 16;
@@ -81,6 +86,23 @@ impl Table {
         Self { levels, extent, steps }
     }
 
+    /// What a table takes before its first node is made. bytes
+    pub fn bytes(extent: Extent, steps: Steps, levels: usize) -> u64 {
+        let along = |(from, to): (f64, f64), length: f64| ((to - from) / length).ceil() + 1.0;
+        let one = |level: usize| {
+            let length = steps.length / (1u64 << level) as f64;
+            let chunks = ((steps.headings << level) / CHUNK * 4) as f64;
+            along(extent.radius, length) * along(extent.height, length) * chunks
+        };
+        ((0..levels).map(one).sum::<f64>() * size_of::<OnceLock<Box<[Node; CHUNK]>>>() as f64) as u64
+    }
+
+    /// Radii and heights, and steps.
+    pub fn grid(&self) -> (Extent, Steps) {
+        (self.extent, self.steps)
+    }
+
+    /// Number of levels.
     pub fn depth(&self) -> usize {
         self.levels.len()
     }
@@ -155,11 +177,6 @@ impl Table {
             Some(y) => std::array::from_fn(|k| judged(arm, &y, k, half)),
         }
     }
-
-    /// Number of chunks made, level by level.
-    pub fn count(&self) -> Vec<usize> {
-        self.levels.iter().map(|l| l.chunks.iter().filter(|b| b.get().is_some()).count()).collect()
-    }
 }
 
 /// The closed form over four regions (radius, height, heading).
@@ -193,21 +210,23 @@ fn judged(arm: &Arm, y: &Yield<Enclosure>, lane: usize, half: [f64; 3]) -> Node 
         Some(false) => holds(1 + 2 * joint) && holds(2 + 2 * joint),
     };
     let sure = y.conditioned.lane(lane) && [0, 5, 6, 7].into_iter().all(holds) && within(0) && within(1);
-    let functions = [&y.m, &y.d1, &y.d2];
+    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1]];
     let values = functions.map(|f| {
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     });
     let most = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut rest = [0.0; 2];
+    let mut rest = [0.0; 3];
     for (p, (i, j)) in PAIR.iter().enumerate() {
         let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
         rest[0] += most(0, p) * factor;
         rest[1] += libm::hypot(most(1, p), most(2, p)) * factor;
+        rest[2] += libm::hypot(most(3, p), most(4, p)) * factor;
     }
     // And what is lost by writing the values with fewer digits.
     let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-    let rest = [rest[0] + 1e-7 * size(0), rest[1] + 1e-7 * (size(1) + size(2))].map(|r| (r * (1.0 + 1e-6)) as f32);
+    let lost = [size(0), size(1) + size(2), size(3) + size(4)];
+    let rest = [0, 1, 2].map(|f| rest[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
     if rest.iter().all(|r| *r < 1e30) {
         Node::Known(Known { values: values.map(|v| v.map(|x| x as f32)), rest, sure })
     } else {
