@@ -3,7 +3,7 @@
 use super::reader::{Field, Table};
 use super::robot::robot_from;
 use super::sheet::sheet_from;
-use super::source::{Source, sha256};
+use super::source::{Source, input_file};
 use crate::identification::Problem;
 use crate::identification::law::Law;
 use crate::identification::spring::Geometry;
@@ -70,11 +70,10 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     let fit = fit.optional(|field| fit_from(&field.table()?))?.unwrap_or(PLAIN);
     let given = compensator.optional(|field| compensator_from(&field.table()?, &robot))?;
     let (varying, note) = varying_from(&robot, given, fit.is_distinct);
-    let input = |role, name: &str, bytes: &[u8]| InputFile { role, name: name.to_owned(), sha256: sha256(bytes) };
     let inputs = vec![
-        input("config", &file.file_name().unwrap_or_default().to_string_lossy(), source.bytes()),
-        input("robot", &robot_file.name, robot_source.bytes()),
-        input("sheet", &sheet_file.name, &sheet_file.bytes),
+        source.as_config(),
+        input_file("robot", &robot_file.name, robot_source.bytes()),
+        input_file("sheet", &sheet_file.name, &sheet_file.bytes),
     ];
     let problem = Problem {
         robot,
