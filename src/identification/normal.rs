@@ -182,14 +182,14 @@ impl Normal {
         let mut all: Vec<Unseen> = Vec::new();
         loop {
             let unseen = self.unseen(&free);
-            if unseen.is_empty() {
-                return (free, all);
-            }
+            let known = all.len();
             for unseen in unseen {
-                let Some(first) = unseen.parameters.first() else { continue };
-                if free.hold(*first) {
+                if unseen.parameters.first().is_some_and(|first| free.hold(*first)) {
                     all.push(unseen);
                 }
+            }
+            if all.len() == known {
+                return (free, all);
             }
         }
     }
