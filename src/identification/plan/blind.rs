@@ -16,6 +16,18 @@ pub struct Blind {
     pub reason: Reason,
 }
 
+impl Blind {
+    /// Whether both are of the same compliances, in any order.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let near = |(a, b): (Option<f64>, Option<f64>)| (a.unwrap_or_default() - b.unwrap_or_default()).abs() < NOTHING;
+        let has = |all: &[(usize, Option<f64>)], one: &(usize, Option<f64>)| {
+            all.iter().any(|entry| entry.0 == one.0 && near((entry.1, one.1)))
+        };
+        self.compliances.len() == other.compliances.len()
+            && self.compliances.iter().all(|entry| has(&other.compliances, entry))
+    }
+}
+
 /// Why a compliance is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
@@ -44,7 +56,7 @@ pub struct Hardly {
     pub lever: f64,
 }
 
-/// Lengths below this are rounding. m
+/// Lengths (m) and angles (rad) below this are rounding.
 const NOTHING: f64 = 1e-7;
 
 /// Names what is unseen by normal equations, with reasons from all the loads.

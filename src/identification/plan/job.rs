@@ -169,8 +169,7 @@ pub fn plan(request: &Request, progress: &(dyn Fn(usize, usize) -> bool + Sync))
     let (layout, normal) = normal_of(request, &sheet);
     let (alone, unseen_here) = seen(&layout, &normal);
     for spot in blind(request, &shots, &layout, &unseen_here) {
-        let is_known = blind_spots.iter().any(|known| known.compliances.first() == spot.compliances.first());
-        if !is_known {
+        if !blind_spots.iter().any(|known| known.is_same(&spot)) {
             blind_spots.push(spot);
         }
     }
