@@ -64,7 +64,7 @@ fn a_plan_is_better_than_random_sets_and_its_sheet_is_a_form() {
     assert!(error < number(&deflection["best_random_error_mm"]) && error < 0.01 * number(&deflection["rms_mm"]));
     assert_eq!(deflection["random_sets"], 1000);
     assert_eq!(document["compliances"].as_array().unwrap().len(), 10);
-    assert!(document["compliances"].as_array().unwrap().iter().all(|c| number(&c["std_percent"]) < 10.0));
+    assert!(document["compliances"].as_array().unwrap().iter().all(|c| c["std_percent"].as_f64() < Some(10.0)));
     assert_eq!(document["configurations"].as_array().unwrap().len(), 20);
     assert_eq!((&document["unseen"], &document["warnings"]), (&serde_json::json!([]), &serde_json::json!([])));
     assert_eq!(serde_json::from_str::<Value>(&bench.read("out/plan.json")).unwrap(), document);
@@ -159,11 +159,12 @@ fn from_a_plan_over_a_filled_sheet_to_a_robot_whose_deflections_are_known_as_wel
     assert_eq!((fitted.code, fitted.stderr.as_str()), (Some(0), ""));
     let found = fitted.json();
     let of = |document: &Value| -> Vec<(u64, f64)> {
-        let entry = |c: &Value| (c["joint"].as_u64().unwrap(), number(&c["std_urad_per_nm"]));
-        document["compliances"].as_array().unwrap().iter().map(entry).collect()
+        // At angles that the plan leaves out there is none.
+        let entry = |c: &Value| Some((c["joint"].as_u64().unwrap(), c["std_urad_per_nm"].as_f64()?));
+        document["compliances"].as_array().unwrap().iter().filter_map(entry).collect()
     };
     let (expected, reported) = (of(&document), of(&found));
-    assert_eq!(expected.len(), 10);
+    assert!(expected.len() >= 8 && expected.len() == reported.len());
     for ((joint, expected), (fitted, reported)) in expected.iter().zip(&reported) {
         assert_eq!(joint, fitted);
         assert!((reported / expected - 1.0).abs() < 0.03, "k_{joint}: {reported} where {expected} was expected");
@@ -269,7 +270,7 @@ fn bad_plans_are_refused_at_their_line() {
             &["plan.levels_deg: ", "not within the limits", "from 5.0000 to 140.0000"],
         ),
         ("levels_deg = [10.0, 40.0,", "levels_deg = [40.0, 40.0,", &["plan.levels_deg: ", "ascending"]),
-        ("100.0, 130.0]", "]", &["plan.levels_deg: ", "has 3 angles"]),
+        ("70.0, 100.0, 130.0]", "]", &["plan.levels_deg: ", "has 2 angles", "three or more"]),
         ("noise_mm = 0.03", "# ", &["noise_mm: is missing", "above 0"]),
         (
             "# limits_deg = [[-90.0,",
@@ -282,11 +283,6 @@ fn bad_plans_are_refused_at_their_line() {
     ] {
         let bench = bench();
         let line = bench.replace(CONFIG, from, to);
-        if from.starts_with("100.0") {
-            // Three levels are enough; two are not.
-            assert_eq!(plan(&bench, &[]).code, Some(0));
-            continue;
-        }
         let ended = plan(&bench, &["--json"]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{from}: {}", ended.stderr);
         assert!(ended.stderr.starts_with("error: ") && ended.stderr.contains("; allowed: "), "{}", ended.stderr);

@@ -1,8 +1,6 @@
 //! Identification files: the config of `stead identify fit` and `stead identify plan`, so that one file serves both.
 
 mod plan;
-#[cfg(test)]
-mod tests;
 
 pub use plan::{PlanRun, read_plan};
 

@@ -52,7 +52,7 @@ impl Criterion {
         });
         let free: Vec<usize> = (0..NUMBERS).filter(|k| free[*k]).collect();
         let mut criterion = Self { free, unit, factor: [[0.0; NUMBERS]; NUMBERS] };
-        // Q has the inverse unit of an information: packed twice as one, it is in the right unit.
+        // trace(Q M^-1) is trace(D Q D (D M D)^-1) with the units D: Q is packed as M is.
         let packed = criterion.packed(quality);
         let size = criterion.free.len();
         let eigen = SymmetricEigen::new(SMatrix::<f64, NUMBERS, NUMBERS>::from_fn(|i, j| packed[i][j]));
@@ -215,7 +215,7 @@ fn best_addition(
         let mut trial = *sum;
         add(&mut trial, part, 1.0);
         let worth = criterion.worth(&trial);
-        if worth < least * BETTER || (worth < f64::INFINITY && least == f64::INFINITY) {
+        if worth < least * BETTER {
             (best, least) = (Some((index, worth)), worth);
         }
     }

@@ -1,18 +1,19 @@
 //! The job as a whole.
 
-use super::super::law::LawError;
+use super::super::law::{Law, LawError};
+use super::super::model::{Layout, Parameter, Response};
 use super::super::setup::{SetupError, estimate};
 use super::super::sheet::Sheet;
 use super::super::synthetic::Shot;
-use super::basis::{Basis, Information};
+use super::basis::{Basis, Information, NUMBERS};
 use super::blind::{Blind, Hardly, blind, hardly};
-use super::candidates::{Refused, candidates, tests};
+use super::candidates::{Drawn, Refused, candidates, tests};
 use super::exchange::{Criterion, choose, random_set, worths};
 use super::expected::{ArmBar, Bar, bars, covariance, normal_of, seen, sheet_of, spring_bars};
 use super::order::{ordered, travel};
 use super::request::{Request, Test, Tests};
-use crate::robot::Pose;
-use nalgebra::Matrix3;
+use crate::robot::{Frames, Pose};
+use nalgebra::{Matrix3, Vector6};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -116,105 +117,150 @@ pub enum PlanError {
 /// # Errors
 /// [`PlanError`] when there is no plan.
 pub fn plan(request: &Request, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Plan, PlanError> {
-    let size = request.configurations;
     check_counts(request)?;
-    let drawn = candidates(request);
-    if drawn.shots.len() < size.max(2) {
-        let (found, draws, refused) = (drawn.shots.len(), drawn.draws, drawn.refused);
-        return Err(PlanError::TooFewCandidates { found, wanted: size, draws, refused });
-    }
-    let tests = match &request.tests {
-        Tests::Given(tests) => tests.clone(),
-        Tests::Drawn(count) => tests(request, *count),
-    };
-    if tests.is_empty() {
-        return Err(PlanError::NoTest);
-    }
-    let basis = Basis::new(&request.robot, request.varying);
-    let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.shots));
-    let (free, unseen) = normal.tellable();
-    let mut blind_spots = blind(request, &drawn.shots, &layout, &unseen);
-    let free = basis.free(&free);
-    if !free.contains(&true) {
-        return Err(PlanError::NothingSeen);
-    }
-    let informations: Vec<Information> = drawn.shots.par_iter().map(|shot| basis.information(request, shot)).collect();
-    let quality = basis.quality(request, &tests);
-    let criterion = Criterion::new(&quality, &free, &informations, size);
-
-    let random: Vec<Vec<usize>> = (0..request.random_sets)
-        .into_par_iter()
-        .map(|draw| random_set(request.seed, draw, size, informations.len()))
-        .collect();
-    let worth = worths(&criterion, &informations, &random);
-    let best = (0..random.len()).min_by(|a, b| worth[*a].total_cmp(&worth[*b]));
-    let others = (0..random.len()).filter(|set| Some(*set) != best).take(request.starts.saturating_sub(2));
-    let starts: Vec<Vec<usize>> = best.into_iter().chain(others).map(|set| random[set].clone()).collect();
+    let size = request.configurations;
+    let pool = Pool::new(request)?;
+    let random = RandomSets::new(&pool);
+    let starts = random.starts(request.starts.saturating_sub(1));
     let (done, of) = (AtomicUsize::new(0), starts.len() + 1);
     let watch = |more: usize| progress(done.fetch_add(more, Ordering::Relaxed) + more, of);
-    let chosen = choose(&criterion, &informations, size, &starts, &watch).ok_or(PlanError::Stopped)?;
-    if chosen.worth.is_infinite() {
-        return Err(PlanError::NothingTold(size));
-    }
+    let chosen = choose(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(PlanError::Stopped)?;
+    let planned = pool.covariance(&chosen.set).filter(|_| chosen.worth.is_finite());
+    let planned = planned.ok_or(PlanError::NothingTold(size))?;
 
-    let sum = |set: &Vec<usize>| set.iter().fold(Information::zeros(), |sum, index| sum + informations[*index]);
-    let told = |set: &Vec<usize>| covariance(&sum(set), &free);
-    let planned = told(&chosen.set).ok_or(PlanError::NothingTold(size))?;
-    let spreads: Vec<Information> = random.par_iter().filter_map(told).collect();
-    let best_random = best.and_then(|best| told(&random[best]));
-    let mut bars = bars(request, &basis, &free, &planned, &spreads, best_random.as_ref());
-
-    let shots = ordered(&chosen.set.iter().map(|index| drawn.shots[*index]).collect::<Vec<_>>());
+    let shots = ordered(&chosen.set.iter().map(|index| pool.drawn.shots[*index]).collect::<Vec<_>>());
     let sheet = sheet_of(request, &shots);
+    check_setup(request, &sheet)?;
     let (layout, normal) = normal_of(request, &sheet);
-    let (alone, unseen_here) = seen(&layout, &normal);
-    for spot in blind(request, &shots, &layout, &unseen_here) {
+    let (alone, unseen) = seen(&layout, &normal);
+    let mut blind_spots = pool.blind.clone();
+    for spot in blind(request, &shots, &layout, &unseen) {
         if !blind_spots.iter().any(|known| known.is_same(&spot)) {
             blind_spots.push(spot);
         }
     }
-    for bar in &mut bars {
-        let own = alone.iter().find(|(parameter, _)| {
-            let is_near = match (bar.angle, layout.angle(*parameter)) {
-                (Some(a), Some(b)) => (a - b).abs() <= request.angle_tolerance.max(1e-9),
-                (a, b) => a.is_none() == b.is_none(),
-            };
-            layout.joint(*parameter) == bar.joint && is_near
-        });
-        bar.deviation = own.map(|(_, deviation)| *deviation);
-    }
-    check_setup(request, &sheet)?;
-    let hardly = hardly(request, &shots, &bars);
-    let mut ascending = worth.clone();
-    ascending.sort_by(f64::total_cmp);
-    let root = |worth: Option<f64>| libm::sqrt(worth.unwrap_or(f64::INFINITY));
-    let scores = Scores {
-        planned: libm::sqrt(chosen.worth),
-        best_random: root(ascending.first().copied()),
-        median_random: root(ascending.get(ascending.len() / 2).copied()),
-        random_sets: worth.len(),
-        blind_sets: worth.iter().filter(|worth| worth.is_infinite()).count(),
-    };
+    let spreads: Vec<Information> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
+    let best_random = random.best.and_then(|best| pool.covariance(&random.sets[best]));
+    let mut bars = bars(request, &pool.basis, &pool.free, &planned, &spreads, best_random.as_ref());
+    bars.iter_mut().for_each(|bar| bar.deviation = own_deviation(request, bar, &layout, &alone));
     Ok(Plan {
         travel: travel(&shots),
+        hardly: hardly(request, &shots, &bars),
         shots,
         sheet,
         bars,
         spring: spring_bars(request, &planned),
-        scores,
-        deflection: deflection(request, &tests),
-        tests,
+        scores: random.scores(chosen.worth),
+        deflection: deflection(request, &pool.tests),
+        tests: pool.tests,
         blind: blind_spots,
-        hardly,
-        candidates: drawn.shots.len(),
-        draws: drawn.draws,
-        refused: drawn.refused,
+        candidates: pool.drawn.shots.len(),
+        draws: pool.drawn.draws,
+        refused: pool.drawn.refused,
     })
+}
+
+/// What there is to choose from, and by what.
+struct Pool<'a> {
+    request: &'a Request,
+    drawn: Drawn,
+    tests: Vec<Test>,
+    basis: Basis<'a>,
+    informations: Vec<Information>,
+    /// The numbers of the arm that the candidates tell all together.
+    free: [bool; NUMBERS],
+    /// What they do not.
+    blind: Vec<Blind>,
+    criterion: Criterion,
+}
+
+impl<'a> Pool<'a> {
+    fn new(request: &'a Request) -> Result<Self, PlanError> {
+        let size = request.configurations;
+        let drawn = candidates(request);
+        if drawn.shots.len() < size {
+            let (found, draws, refused) = (drawn.shots.len(), drawn.draws, drawn.refused);
+            return Err(PlanError::TooFewCandidates { found, wanted: size, draws, refused });
+        }
+        let tests = match &request.tests {
+            Tests::Given(tests) => tests.clone(),
+            Tests::Drawn(count) => tests(request, *count),
+        };
+        if tests.is_empty() {
+            return Err(PlanError::NoTest);
+        }
+        let basis = Basis::new(&request.robot, request.varying);
+        let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.shots));
+        let (seen, unseen) = normal.tellable();
+        let free = basis.free(&seen);
+        if !free.contains(&true) {
+            return Err(PlanError::NothingSeen);
+        }
+        let blind = blind(request, &drawn.shots, &layout, &unseen);
+        let informations: Vec<Information> =
+            drawn.shots.par_iter().map(|shot| basis.information(request, shot)).collect();
+        let criterion = Criterion::new(&basis.quality(request, &tests), &free, &informations, size);
+        Ok(Self { request, drawn, tests, basis, informations, free, blind, criterion })
+    }
+
+    /// Covariance of the numbers of the arm from a set; nothing where it does not tell them.
+    fn covariance(&self, set: &[usize]) -> Option<Information> {
+        let sum = set.iter().fold(Information::zeros(), |sum, index| sum + self.informations[*index]);
+        covariance(&sum, &self.free)
+    }
+}
+
+/// Random sets and what they are worth.
+struct RandomSets {
+    sets: Vec<Vec<usize>>,
+    worths: Vec<f64>,
+    best: Option<usize>,
+}
+
+impl RandomSets {
+    fn new(pool: &Pool<'_>) -> Self {
+        let (request, of) = (pool.request, pool.informations.len());
+        let draw = |draw| random_set(request.seed, draw, request.configurations, of);
+        let sets: Vec<Vec<usize>> = (0..request.random_sets).into_par_iter().map(draw).collect();
+        let worths = worths(&pool.criterion, &pool.informations, &sets);
+        let best = (0..sets.len()).min_by(|a, b| worths[*a].total_cmp(&worths[*b]));
+        Self { sets, worths, best }
+    }
+
+    /// The best of them, and others in their order.
+    fn starts(&self, count: usize) -> Vec<Vec<usize>> {
+        let others = (0..self.sets.len()).filter(|set| Some(*set) != self.best);
+        self.best.into_iter().chain(others).take(count).map(|set| self.sets[set].clone()).collect()
+    }
+
+    fn scores(&self, planned: f64) -> Scores {
+        let mut ascending = self.worths.clone();
+        ascending.sort_by(f64::total_cmp);
+        let root = |worth: Option<&f64>| libm::sqrt(*worth.unwrap_or(&f64::INFINITY));
+        Scores {
+            planned: libm::sqrt(planned),
+            best_random: root(ascending.first()),
+            median_random: root(ascending.get(ascending.len() / 2)),
+            random_sets: ascending.len(),
+            blind_sets: ascending.iter().filter(|worth| worth.is_infinite()).count(),
+        }
+    }
+}
+
+/// The standard deviation that a fit reports for a compliance on its own, where the set has its angle.
+fn own_deviation(request: &Request, bar: &Bar, layout: &Layout, alone: &[(Parameter, f64)]) -> Option<f64> {
+    let is_it = |parameter: Parameter| {
+        layout.joint(parameter) == bar.joint
+            && match (bar.angle, layout.angle(parameter)) {
+                (Some(a), Some(b)) => (a - b).abs() <= request.angle_tolerance.max(1e-9),
+                (a, b) => a.is_none() && b.is_none(),
+            }
+    };
+    alone.iter().find(|(parameter, _)| is_it(*parameter)).map(|(_, deviation)| *deviation)
 }
 
 /// Refuses what cannot be told by counting.
 fn check_counts(request: &Request) -> Result<(), PlanError> {
-    use super::super::law::Law;
     let (size, levels) = (request.configurations, request.levels.len());
     let equations = 3 * size * request.points.len();
     let unknowns = match request.varying {
@@ -243,13 +289,11 @@ fn check_setup(request: &Request, sheet: &Sheet) -> Result<(), PlanError> {
 
 /// Root of the mean square of the deflection in the tests.
 fn deflection(request: &Request, tests: &[Test]) -> f64 {
-    use super::super::model::Response;
-    use crate::robot::Frames;
     let square = |test: &Test| {
         let frames = Frames::new(&request.robot, &test.theta);
         let tip = frames.base_from_flange.point(&request.tip);
         let response = Response::new(&frames, &tip, &tip, &test.force, &test.moment);
-        (response.linear * nalgebra::Vector6::from(request.robot.compliances_at(&test.theta))).norm_squared()
+        (response.linear * Vector6::from(request.robot.compliances_at(&test.theta))).norm_squared()
     };
     libm::sqrt(tests.iter().map(square).sum::<f64>() / tests.len().max(1) as f64)
 }

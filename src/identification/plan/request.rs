@@ -43,7 +43,7 @@ pub struct Request {
     pub candidates: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Starts of the exchange.
+    /// Starts of the exchange: a greedy one, the best random set, and others of those.
     pub starts: usize,
     /// Random sets to compare with.
     pub random_sets: usize,

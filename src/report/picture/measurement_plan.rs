@@ -77,8 +77,8 @@ fn draw_bars(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
         for (k, percent) in percents(bar).into_iter().enumerate() {
             let (left, Some(percent)) = (from + width * k as i32, percent) else { continue };
             canvas.fill((left + 1, panel.y.pixel(percent)), (left + width - 1, panel.y.start), COLOURS[k])?;
-            let lettering = Lettering::new((f64::from(width) / 2.6).min(10.5)).centred().coloured(INK);
-            canvas.text(&figures(percent), (left + width / 2, panel.y.pixel(percent) - 8), lettering)?;
+            let lettering = Lettering::new((f64::from(width) / 2.6).min(10.0)).centred().coloured(INK);
+            canvas.text(&two_figures(percent), (left + width / 2, panel.y.pixel(percent) - 8), lettering)?;
         }
         let angle = bar.angle.map_or_else(String::new, |angle| format!(" at {}°", fixed(angle.to_degrees(), 0)));
         let name = format!("k{}{angle}", bar.joint + 1);
@@ -86,6 +86,11 @@ fn draw_bars(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
         canvas.text(&name, ((from + to) / 2, panel.y.start + 15), Lettering::new(size).centred())?;
     }
     panel.draw_frame(canvas)
+}
+
+/// A percentage with two figures.
+fn two_figures(percent: f64) -> String {
+    fixed(percent, if percent < 0.995 { 2 } else { usize::from(percent < 9.95) })
 }
 
 /// The places of an arm from its base to the load point, and the force, in one view.
@@ -103,7 +108,8 @@ fn posed(request: &Request, plan: &Plan, from_above: bool) -> Vec<Posed> {
             if from_above { Vector2::new(v.x, v.y) } else { Vector2::new(v.x * cosine + v.y * sine, v.z) }
         };
         let [_, second, third, wrist, ..] = frames.origins;
-        let places = [Vector3::zeros(), second, third, wrist, frames.base_from_flange.translation, load];
+        let shoulder = Vector3::new(0.0, 0.0, second.z);
+        let places = [Vector3::zeros(), shoulder, second, third, wrist, frames.base_from_flange.translation, load];
         Posed { arm: places.iter().map(seen).collect(), force: seen(force) / request.load }
     };
     plan.shots.iter().map(pose).collect()

@@ -57,11 +57,23 @@ pub fn warnings(run: &PlanRun, plan: &Plan) -> Vec<String> {
             fixed(hardly.lever * 1e3, 1)
         ));
     }
-    for bar in plan.bars.iter().filter(|bar| bar.deviation.is_none()) {
-        let name = compliance_name(bar.joint, bar.angle);
-        warnings.push(format!("{name} is not read on its own: no configuration of the plan is at this angle"));
-    }
     warnings
+}
+
+/// Where the plan has no configuration, though it may, in a sentence.
+fn left_out(plan: &Plan) -> Option<String> {
+    let unused: Vec<String> = plan
+        .bars
+        .iter()
+        .filter(|bar| bar.deviation.is_none())
+        .map(|bar| compliance_name(bar.joint, bar.angle))
+        .collect();
+    (!unused.is_empty()).then(|| {
+        let names = unused.join(", ");
+        format!(
+            "the plan has no configuration for {names}: what the other angles tell about the joint is worth more here"
+        )
+    })
 }
 
 fn unseen(run: &PlanRun, blind: &Blind) -> String {

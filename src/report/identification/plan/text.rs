@@ -3,7 +3,7 @@
 use super::super::super::number::{figures, fixed};
 use super::super::super::text::aligned;
 use super::super::{URAD, key};
-use super::warnings;
+use super::{left_out, warnings};
 use crate::config::PlanRun;
 use crate::identification::plan::{Plan, Tests};
 
@@ -58,6 +58,9 @@ pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
         "the way through them, in turns of the joint that turns furthest: {} deg\n",
         fixed(plan.travel.to_degrees(), 0)
     );
+    if let Some(note) = left_out(plan) {
+        text += &format!("note: {note}\n");
+    }
     for warning in warnings(run, plan) {
         text += &format!("warning: {warning}\n");
     }
