@@ -289,7 +289,7 @@ fn bad_plans_are_refused_at_their_line() {
         ended.assert_says(parts);
         let is_located = ended.stderr.contains(&format!("toml:{line}: ")) || to.contains("151") || to.starts_with('#');
         assert!(is_located, "line {line} is not in {}", ended.stderr);
-        assert!(!bench.path("results").exists());
+        assert!(!bench.path("results/identify-plan-example").exists());
     }
 }
 
