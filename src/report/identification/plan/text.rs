@@ -26,8 +26,9 @@ pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
         text += &aligned(&spring_rows(plan), &[0]);
     }
     let scores = &plan.scores;
-    let millimetres =
-        |value: f64| if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "none".to_owned() };
+    let millimetres = |value: f64| {
+        if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "does not tell everything".to_owned() }
+    };
     let tests = match &request.tests {
         Tests::Given(tests) => format!("the {} tests", tests.len()),
         Tests::Drawn(_) => {
@@ -43,7 +44,10 @@ pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
         millimetres(scores.median_random)
     );
     if scores.blind_sets > 0 {
-        text += &format!("; {} of them do not tell everything", scores.blind_sets);
+        text += &format!("; sets that do not tell everything: {}", scores.blind_sets);
+    }
+    if !plan.blind.is_empty() {
+        text += "\nall errors are without that of the compliances that are not seen (see below)";
     }
     let refused = &plan.refused;
     text += &format!(
