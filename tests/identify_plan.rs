@@ -253,7 +253,11 @@ fn bad_plans_are_refused_at_their_line() {
         ),
         ("load_n = 2700.0", "load_n = 0.0", &["plan.load_n: ", "found 0.0", "above 0"]),
         ("load_n = 2700.0", "load_m = 1.0", &["plan.load_m: ", "nearest known one: load_n"]),
-        ("load_directions = \"any\"", "load_directions = \"up\"", &["plan.load_directions: ", "'up'", "\"vertical\""]),
+        (
+            "load_directions = \"any\"",
+            "load_directions = \"up\"",
+            &["plan.load_directions: ", "found \"up\"", "or \"vertical\""],
+        ),
         (
             "load_directions = \"any\"",
             "load_directions = [[0, 0, 0]]",
