@@ -3,7 +3,7 @@
 use super::cutting::cutting_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
-use super::source::{Source, sha256};
+use super::source::{Source, input_file};
 use super::tables::{
     cell_from, check_confidence, constraints_from, criterion_from, redundancy_from, reference_from, search_from,
     spindle_from, transfer_from,
@@ -77,13 +77,9 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let mut notes: Vec<String> =
         [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
     let inputs = vec![
-        InputFile {
-            role: "config",
-            name: file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            sha256: sha256(source.bytes()),
-        },
-        InputFile { role: "robot", name: robot_file.name, sha256: sha256(robot_source.bytes()) },
-        InputFile { role: "task", name: task_file.name.clone(), sha256: sha256(&task_file.bytes) },
+        source.as_config(),
+        input_file("robot", robot_file.name, robot_source.bytes()),
+        input_file("task", &task_file.name, &task_file.bytes),
     ];
     let task = task_from(imported, &task_file, &task, &cutting)?;
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
@@ -228,7 +224,7 @@ mod tests {
             ("task", "../tasks/five-segments.csv", "tasks/five-segments.csv"),
         ];
         for (input, (role, name, file)) in run.inputs.iter().zip(expected) {
-            let digest = sha256(&std::fs::read(root().join(file)).unwrap());
+            let digest = crate::config::source::sha256(&std::fs::read(root().join(file)).unwrap());
             assert_eq!((input.role, input.name.as_str(), &input.sha256), (role, name, &digest));
         }
         assert_eq!(run.inputs.len(), 3);

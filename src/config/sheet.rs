@@ -152,6 +152,14 @@ fn configuration(row: &Row<'_>, columns: &Columns, robot: &Robot) -> Result<Conf
 }
 
 fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize) -> Result<Reading, InputError> {
+    if let Some(column) = columns.unloaded.into_iter().chain(columns.loaded).find(|column| row.text(*column).is_empty())
+    {
+        return Err(row.fail(
+            column,
+            "no reading is filled in here",
+            "a finite decimal number, the coordinate read in mm",
+        ));
+    }
     let (unloaded, loaded) = (vector(row, columns.unloaded)? / 1e3, vector(row, columns.loaded)? / 1e3);
     if unloaded == loaded {
         let problem = "the loaded place is the unloaded one, coordinate by coordinate";

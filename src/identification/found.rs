@@ -83,11 +83,7 @@ impl Found<'_> {
             };
             interval(parameter, self.layout.angle(parameter), value, libm::sqrt(square * variance), width)
         };
-        let is_free = |parameter: &Parameter| match parameter {
-            Parameter::Joint(joint) => self.free.joints[*joint],
-            Parameter::Group(group) => self.free.groups[*group],
-        };
-        self.layout.parameters().into_iter().filter(is_free).map(estimate).collect()
+        self.layout.parameters().into_iter().filter(|parameter| self.free.contains(*parameter)).map(estimate).collect()
     }
 
     fn arm(&self, arm: &ArmFit, variance: f64, width: f64) -> Result<Vec<Estimate<ArmParameter>>, IdentifyError> {

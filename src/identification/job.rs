@@ -177,32 +177,17 @@ fn free_parameters(
 ) -> Result<(Free, Vec<Parameter>), IdentifyError> {
     let sheet = &problem.sheet;
     let normal = Normal::new(sheet, layout, equations, &vec![1.0; equations.len()]);
-    let mut free = normal.all_free();
+    let (free, unseen) = normal.tellable();
     let rows = sheet.readings.len() * sheet.rows_per_reading();
-    let mut dropped = Vec::new();
-    loop {
-        let unseen = normal.unseen(&free);
-        if unseen.is_empty() {
-            break;
-        }
-        if !problem.reduce {
-            let unknowns = layout.parameters().len();
-            return Err(if rows < unknowns {
-                IdentifyError::TooFew { equations: rows, unknowns }
-            } else {
-                IdentifyError::Unseen { unseen, layout: layout.clone() }
-            });
-        }
-        for parameter in unseen.iter().filter_map(|unseen| unseen.parameters.first()) {
-            match parameter {
-                Parameter::Joint(joint) => free.joints[*joint] = false,
-                Parameter::Group(group) => free.groups[*group] = false,
-            }
-            if !dropped.contains(parameter) {
-                dropped.push(*parameter);
-            }
-        }
+    if !unseen.is_empty() && !problem.reduce {
+        let unknowns = layout.parameters().len();
+        return Err(if rows < unknowns {
+            IdentifyError::TooFew { equations: rows, unknowns }
+        } else {
+            IdentifyError::Unseen { unseen, layout: layout.clone() }
+        });
     }
+    let dropped: Vec<Parameter> = unseen.iter().filter_map(|unseen| unseen.parameters.first().copied()).collect();
     let unknowns = layout.parameters().len() - dropped.len();
     if rows < unknowns || unknowns == 0 {
         return Err(IdentifyError::TooFew { equations: rows, unknowns });

@@ -5,6 +5,7 @@
 
 use super::number::Unit;
 use super::{Context, words};
+use crate::input::InputFile;
 use crate::placement::outcome::{Case, Outcome, PlanPoint, Refinement, Transfer};
 use crate::placement::problem::{Interval, Placement, Problem};
 use crate::placement::settings::PostureSearch;
@@ -36,7 +37,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
     document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
     document.insert("robot".to_owned(), json!(problem.robot.name()));
     document.insert("seed".to_owned(), json!(context.search.seed));
-    document.insert("inputs".to_owned(), inputs(context));
+    document.insert("inputs".to_owned(), inputs(&context.inputs));
     document.insert("search".to_owned(), search(context));
     document.insert("transfer".to_owned(), transfer_settings(context));
     document.insert("cell".to_owned(), cell(problem));
@@ -145,10 +146,9 @@ fn refinement(refinement: &Refinement) -> Value {
     })
 }
 
-fn inputs(context: &Context) -> Value {
-    let entry =
-        |input: &crate::input::InputFile| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 });
-    context.inputs.iter().map(entry).collect()
+/// The files that a result depends on, as every JSON document states them.
+pub fn inputs(files: &[InputFile]) -> Value {
+    files.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 })).collect()
 }
 
 fn search(context: &Context) -> Value {

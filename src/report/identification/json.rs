@@ -1,5 +1,6 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
+use super::super::json::inputs;
 use super::super::number::Unit;
 use super::{URAD, key, rounded};
 use crate::config::IdentifyRun;
@@ -16,11 +17,6 @@ const DIGITS: usize = 12;
 /// The document: compliances as seen, compensator, arm with covariance, residuals, outliers, prediction error.
 pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
     let sheet = &run.problem.sheet;
-    let inputs: Vec<Value> = run
-        .inputs
-        .iter()
-        .map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 }))
-        .collect();
     let worst = found
         .prediction
         .worst
@@ -30,7 +26,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "robot": found.robot.name(),
-        "inputs": inputs,
+        "inputs": inputs(&run.inputs),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
         "compliances": found.seen.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),

@@ -1,4 +1,6 @@
-//! `stead identify`: joint compliances from measurements.
+//! `stead identify`: which measurements to take, and joint compliances from them.
+
+mod plan;
 
 use super::arguments::{IdentifyCommand, IdentifyFitOptions};
 use super::{Failure, out_folder, print, say};
@@ -11,10 +13,12 @@ use crate::identification::{IdentifyError, identify};
 use crate::input::InputError;
 use crate::report::identification::{identify_json, identify_text, write_identified};
 use crate::report::json;
+use crate::report::words::compliance_name;
 
 pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
     match command {
         IdentifyCommand::Fit(options) => fit(options),
+        IdentifyCommand::Plan(options) => plan::run(options),
     }
 }
 
@@ -83,13 +87,7 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
 
 /// Every parameter or combination that is not seen, by name.
 fn unseen_words(unseen: &[Unseen], layout: &Layout) -> String {
-    let name = |parameter: &Parameter| {
-        let joint = layout.joint(*parameter) + 1;
-        match layout.angle(*parameter) {
-            Some(angle) => format!("k_{joint} at {:.2} deg", angle.to_degrees()),
-            None => format!("k_{joint}"),
-        }
-    };
+    let name = |parameter: &Parameter| compliance_name(layout.joint(*parameter), layout.angle(*parameter));
     let words = |unseen: &Unseen| {
         let names: Vec<String> = unseen.parameters.iter().map(name).collect();
         match &names[..] {
