@@ -121,6 +121,10 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let equations = |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise);
     let mut observations = equations(&setup);
     let (free, dropped) = free_parameters(problem, &layout, &observations)?;
+    if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
+        // Seen at no angle: then there is no law to be found either, and the joint keeps the one it has.
+        return identify(&Problem { varying: None, ..problem.clone() });
+    }
     let judge = |observations: &[Observation]| {
         let task = Task { sheet, layout: &layout, observations, free: &free, held, least_scale };
         task.judge().ok_or_else(|| IdentifyError::Unseen { unseen: vec![], layout: layout.clone() })
