@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 mod refusals;
+mod setups;
 mod validation;
 
 const COMPENSATOR: Compensator =
