@@ -2,7 +2,7 @@
 
 use super::reader::{Field, Table};
 use super::robot::robot_from;
-use super::sheet::sheet_from;
+use super::sheet::{repeated, sheet_from};
 use super::source::{Source, sha256};
 use crate::identification::Problem;
 use crate::identification::law::Law;
@@ -70,6 +70,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     let fit = fit.optional(|field| fit_from(&field.table()?))?.unwrap_or(PLAIN);
     let given = compensator.optional(|field| compensator_from(&field.table()?, &robot))?;
     let (varying, note) = varying_from(&robot, given, fit.is_distinct);
+    let notes = note.into_iter().chain(repeated(&readings)).collect();
     let input = |role, name: &str, bytes: &[u8]| InputFile { role, name: name.to_owned(), sha256: sha256(bytes) };
     let inputs = vec![
         input("config", &file.file_name().unwrap_or_default().to_string_lossy(), source.bytes()),
@@ -88,7 +89,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         reduce: fit.reduce,
     };
     let robot_text = String::from_utf8_lossy(robot_source.bytes()).into_owned();
-    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes: note.into_iter().collect() })
+    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
 
 /// The table `[fit]`.
