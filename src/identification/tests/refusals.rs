@@ -77,6 +77,10 @@ fn of_two_joints_that_look_alike_one_is_held_and_the_compensator_is_found_all_th
     for estimate in &found.arm {
         assert!((estimate.value / arm_truth(estimate.parameter) - 1.0).abs() < 1e-9, "{estimate:?}");
     }
+    for estimate in &found.seen {
+        let truth = truth(estimate.parameter, estimate.angle);
+        assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
+    }
 }
 
 #[test]

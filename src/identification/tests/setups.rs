@@ -58,7 +58,7 @@ fn deviations_of_reference_points_are_those_of_many_sheets() {
     let mut shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
     for (index, (theta, ..)) in shots.iter_mut().enumerate() {
         theta[3] = 0.01 * (index % 3) as f64;
-        theta[4] = 1.0 - theta[1] - theta[2] + 0.02 * (index % 4) as f64;
+        theta[4] = 0.02 * (index % 4) as f64 - theta[1] - theta[2];
     }
     let cell = cell(3);
     let flanges: Vec<_> = shots.iter().map(|shot| arm().forward(&shot.0)).collect();
