@@ -89,7 +89,7 @@ fn a_reading_that_is_left_out_is_judged_by_how_well_the_others_predict_it() {
     let own = observations[4].design.fixed_rows::<3>(0) * 1e-6;
     let residual = observations[4].deflection.fixed_rows::<3>(0) - own * &estimate;
     let predicted = nalgebra::Matrix3::identity() + own * &covariance * own.transpose();
-    let square = (residual.transpose() * predicted.try_inverse().unwrap() * &residual)[(0, 0)];
+    let square = (residual.transpose() * predicted.try_inverse().unwrap() * residual)[(0, 0)];
     let expected = libm::sqrt(square / 3.0 / variance);
     assert!((judged.studentised[4] / expected - 1.0).abs() < 1e-6, "{} {expected}", judged.studentised[4]);
     assert!((judged.variance / variance - 1.0).abs() < 1e-6);
