@@ -58,6 +58,14 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
             .in_field("unloaded_x_mm")
             .allowed("places in millimetres, and joint angles in degrees as the robot counts them")
             .into(),
+        IdentifyError::Setup(SetupError::Misfit { line, .. }) => bad(error.to_string())
+            .at_line(line)
+            .in_field("unloaded_x_mm")
+            .allowed(
+                "places in millimetres in a right-handed frame that stands still, and joint angles in degrees as the robot \
+                 file counts them, each with its own reading",
+            )
+            .into(),
         IdentifyError::Setup(_) => bad(error.to_string())
             .at_line(first)
             .in_field("unloaded_x_mm")
@@ -70,9 +78,21 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
         IdentifyError::NoiseUnknown { .. } => {
             bad(error.to_string()).at_line(first).allowed("more readings, or noise_mm in the config").into()
         }
-        IdentifyError::Unseen { unseen, layout } => bad(unseen_words(&unseen, &layout))
+        IdentifyError::Unseen { unseen, layout, outliers } if !outliers.is_empty() => {
+            let lines: Vec<String> = outliers.iter().map(usize::to_string).collect();
+            bad(format!("without the outliers of lines {}, {}", lines.join(", "), unseen_words(&unseen, &layout)))
+                .at_line(outliers[0])
+                .allowed("readings that agree with each other, and more of them for every compliance")
+                .into()
+        }
+        IdentifyError::Unseen { unseen, layout, .. } => bad(unseen_words(&unseen, &layout))
             .at_line(first)
             .allowed("loads that turn every joint, each in its own way; or fit.reduce = true to keep what is not seen")
+            .into(),
+        IdentifyError::Negative { .. } => bad(error.to_string())
+            .at_line(first)
+            .in_field("force_x_n")
+            .allowed("the wrench that acts on the robot, in its base frame, and the place under it as loaded_*_mm")
             .into(),
         IdentifyError::Law(LawError::TooFewAngles { joint, .. } | LawError::Unseen { joint }) => bad(error.to_string())
             .at_line(first)

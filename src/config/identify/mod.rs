@@ -6,7 +6,7 @@ pub use plan::{PlanRun, read_plan};
 
 use super::reader::{Field, Table};
 use super::robot::robot_from;
-use super::sheet::sheet_from;
+use super::sheet::{repeated, sheet_from};
 use super::source::{Document, Source, input_file};
 use crate::identification::Problem;
 use crate::identification::law::Law;
@@ -59,6 +59,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
             }
         }
     }
+    let notes = note.into_iter().chain(repeated(&readings)).collect();
     let inputs = vec![source.as_config(), robot_input, input_file("sheet", &sheet_file.name, &sheet_file.bytes)];
     let problem = Problem {
         robot,
@@ -71,7 +72,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         start,
         reduce: fit.reduce,
     };
-    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes: note.into_iter().collect() })
+    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
 
 /// What the file says to both commands, and the fields that one of them alone reads.

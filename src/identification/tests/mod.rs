@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 mod refusals;
+mod setups;
 mod validation;
 
 const COMPENSATOR: Compensator =
@@ -168,6 +169,11 @@ fn reported_deviations_and_intervals_are_those_of_many_sheets() {
     let false_alarms = found.iter().filter(|found| found.outliers().count() > 0).count();
     // One sheet in a hundred, by the rule; five standard deviations of that count are 19.
     assert!((1..35).contains(&false_alarms), "{false_alarms} of {REPETITIONS} sheets have outliers");
+    // The law is the true one, so that its probability is any number from 0 to 1.
+    let probabilities = found.iter().map(|found| found.law_probability.unwrap());
+    let mean = probabilities.clone().sum::<f64>() / REPETITIONS as f64;
+    let low = probabilities.filter(|probability| *probability < 0.05).count();
+    assert!((mean - 0.5).abs() < 0.03 && (40..=110).contains(&low), "{mean} {low}");
     let noise = found.iter().map(|found| found.noise).sum::<f64>() / REPETITIONS as f64;
     assert!((noise / NOISE - 1.0).abs() < 0.01, "{noise}");
 }

@@ -37,7 +37,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
             map.extend(numbers(estimate, factor, ["value", "std", "low", "high"]));
             Value::Object(map)
         }).collect::<Vec<_>>(),
-        "held": found.held.iter().map(|parameter| joint_of(found, *parameter) + 1).collect::<Vec<_>>(),
+        "held": held(found),
         "noise_mm": millimetres(found.noise),
         "noise_estimated": found.is_noise_estimated,
         "noise_ratio": rounded(libm::sqrt(found.variance_ratio), 6),
@@ -65,6 +65,15 @@ fn joint_of(found: &Identified, parameter: Parameter) -> usize {
         Parameter::Joint(joint) => joint,
         Parameter::Group(_) => found.varying.unwrap_or_default(),
     }
+}
+
+/// The joints that keep the compliance of the robot file: not those of which one angle alone is not seen.
+fn held(found: &Identified) -> Vec<usize> {
+    let joint = |parameter: &Parameter| match parameter {
+        Parameter::Joint(joint) => Some(joint + 1),
+        Parameter::Group(_) => None,
+    };
+    found.held.iter().filter_map(joint).collect()
 }
 
 fn numbers<P>(estimate: &Estimate<P>, factor: f64, names: [&str; 4]) -> [(String, Value); 4] {
@@ -127,10 +136,14 @@ fn setup(run: &IdentifyRun, found: &Identified) -> Value {
     let base = &found.setup.tracker_from_base;
     let rotation: Vec<Value> =
         base.rotation.row_iter().map(|row| row.iter().map(|v| rounded(*v, DIGITS)).collect()).collect();
-    let points = run.problem.sheet.points.iter().zip(&found.setup.points);
+    let points = run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations);
+    let (line, distance) = found.setup_fit.worst;
     json!({
         "tracker_from_base": { "xyz_mm": triple(&base.translation), "rotation": rotation },
-        "points": points.map(|(name, place)| json!({ "point": name, "flange_mm": triple(place) })).collect::<Vec<_>>(),
+        "points": points
+            .map(|((name, place), std)| json!({ "point": name, "flange_mm": triple(place), "std_mm": millimetres(*std) }))
+            .collect::<Vec<_>>(),
         "residual_rms_mm": millimetres(found.setup.residual_rms),
+        "worst": { "line": line, "mm": millimetres(distance) },
     })
 }
