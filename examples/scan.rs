@@ -10,6 +10,7 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead::config::read_run;
+use stead::placement::appraiser::Appraiser;
 use stead::placement::genetic::{Individual, distinct, rank};
 use stead::placement::outcome::Goal;
 use stead::placement::problem::Interval;
@@ -57,7 +58,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sorted: Vec<Individual> = scanned.iter().filter(|i| i.worth.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(goal, a.worth, b.worth));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&planner, &basin.pose, goal, None));
+        let refined =
+            basins.par_iter().filter_map(|basin| refine(&Appraiser::new(&planner, None), &basin.pose, goal, None));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
         reports.sort_by(|a, b| match goal {
             Goal::Best => a.end_mean.total_cmp(&b.end_mean),

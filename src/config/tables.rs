@@ -2,8 +2,9 @@
 
 use super::reader::{Field, Table};
 use crate::input::{InputError, Reference};
-use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Redundancy};
-use crate::placement::settings::{PostureSearch, SearchSettings, TransferSettings};
+use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Problem, Redundancy};
+use crate::placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
+use crate::placement::table::Table as StateTable;
 use crate::robot::{Robot, Spindle, angles::yaw_from_q4};
 
 pub(super) fn spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
@@ -80,8 +81,8 @@ pub(super) fn redundancy_from(table: &Table<'_>) -> Result<Redundancy, InputErro
 }
 
 pub(super) fn search_from(table: &Table<'_>) -> Result<SearchSettings, InputError> {
-    let [seed, population, generations, postures, basins] =
-        table.fields(["seed", "population", "generations", "postures", "basins"])?;
+    let [seed, population, generations, postures, basins, tables] =
+        table.fields(["seed", "population", "generations", "postures", "basins", TABLES])?;
     let default = SearchSettings::default();
     let words = [("exact", PostureSearch::Exact), ("genetic", PostureSearch::Genetic)];
     let count = |field: &Field<'_>, least, most, default| {
@@ -93,7 +94,26 @@ pub(super) fn search_from(table: &Table<'_>) -> Result<SearchSettings, InputErro
         generations: count(&generations, 0, 100_000, default.generations)?,
         postures: postures.optional(|field| field.one_of(&words))?.unwrap_or(default.postures),
         basins: count(&basins, 1, 64, default.basins)?,
+        tables: tables
+            .optional(|field| {
+                field.one_of(&[("auto", Tables::Auto), ("always", Tables::Always), ("never", Tables::Never)])
+            })?
+            .unwrap_or(default.tables),
     })
+}
+
+/// The field of a run file's `[search]` that asks for a table.
+const TABLES: &str = "tables";
+
+/// Refuses to promise a table where the problem does not allow one.
+pub(super) fn check_tables(table: &Table<'_>, search: &SearchSettings, problem: &Problem) -> Result<(), InputError> {
+    if search.tables == Tables::Always
+        && let Err(unsuited) = StateTable::shape_for(problem)
+    {
+        let reason = format!("asks for a table, but there can be none: {unsuited}");
+        return Err(table.field(TABLES).error(reason, "\"auto\" or \"never\""));
+    }
+    Ok(())
 }
 
 pub(super) fn transfer_from(table: &Table<'_>) -> Result<TransferSettings, InputError> {

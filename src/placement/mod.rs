@@ -12,6 +12,7 @@
 //! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
+pub mod appraiser;
 pub mod control;
 pub mod criterion;
 pub mod feasibility;
@@ -23,6 +24,7 @@ pub mod problem;
 pub mod redundancy;
 pub mod refine;
 pub mod settings;
+pub mod table;
 pub mod transfer;
 
 #[cfg(test)]
