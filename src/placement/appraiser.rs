@@ -3,12 +3,11 @@
 //! Whatever goes on from the search is looked at by the planner in any case.
 
 use super::control::Control;
-use super::genetic::{Individual, distinct, rank};
+use super::genetic::{Individual, rank};
 use super::outcome::{Generation, Goal};
-use super::problem::Cell;
 use super::redundancy::{self, Extremum, Planner, Worth};
 use super::table::{self, Lane, Table};
-use crate::robot::Posture;
+use crate::robot::{Posture, angles::wrap};
 use rayon::prelude::*;
 
 /// A planner, and the table before it.
@@ -26,6 +25,34 @@ pub struct Workspace {
     table: Option<table::Workspace>,
 }
 
+/// What the table promises of a placement is believed if the planner finds it within this share.
+const BELIEVED: f64 = 1e-3;
+/// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an upright
+/// tool.
+const SAME: [f64; 3] = [0.005, 0.005, 0.02];
+
+/// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
+fn apart<'s>(
+    table: &Table<'_>,
+    sorted: Vec<(&'s Individual, Individual)>,
+    most: usize,
+) -> Vec<(&'s Individual, Individual)> {
+    let mut kept: Vec<([f64; 3], (&Individual, Individual))> = Vec::new();
+    for (start, end) in sorted {
+        let place = table.reduced(&end.pose);
+        let is_same = |(known, other): &([f64; 3], (&Individual, Individual))| {
+            other.1.scheme == end.scheme
+                && (known[0] - place[0]).abs() < SAME[0]
+                && (known[1] - place[1]).abs() < SAME[1]
+                && wrap(known[2] - place[2]).abs() < SAME[2]
+        };
+        if kept.len() < most && !kept.iter().any(is_same) {
+            kept.push((place, (start, end)));
+        }
+    }
+    kept.into_iter().map(|(_, pair)| pair).collect()
+}
+
 /// Candidates of a search that are polished on the table and planned for every basin asked for.
 const CANDIDATES: usize = 3;
 
@@ -33,6 +60,12 @@ impl<'a> Appraiser<'a> {
     /// Looks through the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a Table<'a>>) -> Self {
         Self { planner, table, lane: Lane::of(planner) }
+    }
+
+    /// The same, looking through the table on a grid of beta that many times finer than the planner's.
+    pub fn looking_closer(mut self, parts: usize) -> Self {
+        self.lane = Lane::new(self.planner.problem(), self.planner.grid().beta_count * parts);
+        self
     }
 
     /// The planner.
@@ -69,11 +102,10 @@ impl<'a> Appraiser<'a> {
     }
 
     /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner; and how many placements were
-    /// looked at for that. With a table, more of them are polished first, and whichever of start and end the planner finds
-    /// better goes on.
+    /// looked at for that. With a table, more of them are polished first, those that end at the same place are taken once, and
+    /// where the planner does not find what the table promised, the start may go on instead.
     pub fn settle(
         &self,
-        cell: &Cell,
         sorted: Vec<Individual>,
         goal: Goal,
         most: usize,
@@ -86,35 +118,62 @@ impl<'a> Appraiser<'a> {
         };
         let polished: Vec<(Individual, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
             .par_iter()
+            .map_init(|| self.workspace(), |workspace, start| self.polish(table, start, goal, control, workspace))
+            .collect();
+        let mut looks: usize = polished.iter().map(|(_, looks)| looks).sum();
+        let mut ends: Vec<(&Individual, Individual)> =
+            sorted.iter().zip(polished).map(|(start, (end, _))| (start, end)).collect();
+        ends.sort_by(|a, b| rank(goal, a.1.worth, b.1.worth));
+        let ends = apart(table, ends, most);
+        let planned: Vec<(Individual, usize)> = ends
+            .par_iter()
             .map_init(
                 || self.workspace(),
-                |workspace, individual| {
-                    let scheme = individual.scheme.as_deref();
-                    let start = self.planned_worth(&individual.pose, scheme, workspace);
-                    let mut best = Individual { worth: start, ..individual.clone() };
-                    let mut looks = 1;
-                    if !control.should_stop()
-                        && let Some(space) = &mut workspace.table
-                    {
-                        let (pose, _, tried) = table.polish(&individual.pose, goal, scheme, &self.lane, space);
-                        let worth = self.planned_worth(&pose, scheme, workspace);
-                        looks += tried + 1;
-                        if rank(goal, worth, start).is_lt() {
-                            best = Individual { pose, worth, ..best };
-                        }
+                |workspace, (start, end)| {
+                    let mut plan = |from: &Individual| Individual {
+                        worth: self.planned_worth(&from.pose, from.scheme.as_deref(), workspace),
+                        ..from.clone()
+                    };
+                    let planned = plan(end);
+                    let is_as_promised = match (planned.worth.mean(), end.worth.mean()) {
+                        (Some(found), Some(promised)) => (found - promised).abs() < BELIEVED * promised,
+                        _ => false,
+                    };
+                    if is_as_promised {
+                        return (planned, 1);
                     }
-                    (best, looks)
+                    let start = plan(start);
+                    (if rank(goal, start.worth, planned.worth).is_lt() { start } else { planned }, 2)
                 },
             )
             .collect();
-        let looks = polished.iter().map(|(_, looks)| looks).sum();
-        let mut settled: Vec<Individual> = polished.into_iter().map(|(individual, _)| individual).collect();
+        looks += planned.iter().map(|(_, looks)| looks).sum::<usize>();
+        let mut settled: Vec<Individual> = planned.into_iter().map(|(individual, _)| individual).collect();
         settled.sort_by(|a, b| rank(goal, a.worth, b.worth));
         // What the planner refuses goes on only where there is nothing else.
         if let Some(first) = settled.iter().position(|i| i.worth.mean().is_none()) {
             settled.truncate(first.max(1));
         }
-        (distinct(cell, &settled, most), looks)
+        (settled, looks)
+    }
+
+    /// A candidate polished on the table, and the number of placements looked at.
+    fn polish(
+        &self,
+        table: &Table<'_>,
+        start: &Individual,
+        goal: Goal,
+        control: &dyn Control,
+        workspace: &mut Workspace,
+    ) -> (Individual, usize) {
+        match &mut workspace.table {
+            Some(space) if !control.should_stop() => {
+                let scheme = start.scheme.as_deref();
+                let (pose, worth, looks) = table.polish(&start.pose, goal, scheme, &self.lane, space);
+                (Individual { pose, worth, ..start.clone() }, looks)
+            }
+            _ => (start.clone(), 0),
+        }
     }
 
     /// States what the planner says of the best of every generation in place of what the table said of it.

@@ -122,7 +122,7 @@ pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, 
         archive.push(population.swap_remove(0));
     }
     appraiser.check(&mut history, &best, goal);
-    let (basins, looks) = appraiser.settle(cell, archive, goal, settings.basins, control);
+    let (basins, looks) = appraiser.settle(archive, goal, settings.basins, control);
     evaluations += looks;
     Found { basins, history, evaluations, interrupted }
 }

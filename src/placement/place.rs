@@ -90,7 +90,7 @@ pub fn place(
         }
     }
     let planner = Planner::finer(problem);
-    let (solutions, refinements) = finish(&Appraiser::new(&planner, table.as_ref()), &found, control)
+    let (solutions, refinements) = finish(&Appraiser::new(&planner, table.as_ref()).looking_closer(2), &found, control)
         .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
     control.report(Progress::Finishing);
     let [best, worst] = &solutions;
@@ -171,7 +171,7 @@ const TIE: f64 = 1e-5;
 
 /// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
 /// polished on a table: refinement gains less from there.
-const HOPELESS: f64 = 0.05;
+const HOPELESS: f64 = 0.03;
 
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
 /// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.

@@ -147,10 +147,6 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-/// Neighbours that a table finds worse by more than this share are not planned: far more than the table errs by from one
-/// neighbour to the next.
-const SCREEN: f64 = 5e-4;
-
 /// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
 fn poll(
     appraiser: &Appraiser<'_>,
@@ -176,9 +172,10 @@ fn poll(
                 let mut pose = centre.pose;
                 pose[k] += side * distance * linearise::UNITS[k];
                 let pose = inside(problem, pose);
-                // A neighbour that the cell does not allow, or that the table sees to be no better.
-                let is_screened = |(here, there): (f64, f64)| (there - here) * sign > SCREEN * here;
-                if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_screened) {
+                // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
+                // next, sees to be no better.
+                let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
+                if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_no_better) {
                     continue;
                 }
                 let Some(near) = planned(planner, &pose, scheme, tube, workspace) else { continue };

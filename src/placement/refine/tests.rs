@@ -62,7 +62,7 @@ fn margins_may_be_driven_to_their_kink() {
     let (solution, report) = refine(&Appraiser::new(&planner, None), &published_optimum(), Goal::Best, None).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
-    let locals = linearise::linearise(&problem, &solution).unwrap();
+    let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
     let margins = || locals.iter().map(|local| local.state.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
     for local in locals.iter().filter(|local| !local.changes.is_empty()) {
@@ -153,7 +153,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
         let planner = Planner::finer(&problem);
         let tube = fine::Tube::full(planner.grid());
         let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
-        let locals = linearise::linearise(&problem, &here).unwrap();
+        let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
                 for k in 0..linearise::LOCAL {

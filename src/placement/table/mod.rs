@@ -28,10 +28,11 @@ pub use shape::{Axis, Shape};
 pub use worth::Workspace;
 
 use super::problem::Problem;
-use super::redundancy::{Extremum, Planner};
+use super::redundancy::Planner;
 use crate::robot::{Compliance, turns::Range};
 use look::Station;
 use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::TAU;
 
 /// Why a problem cannot be searched through a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -109,13 +110,23 @@ pub struct Lane {
 impl Lane {
     /// The grid and the steps of a planner.
     pub fn of(planner: &Planner<'_>) -> Self {
-        let points = planner.problem().task.points().len();
-        Self {
-            count: planner.grid().beta_count,
-            reaches: (0..points).map(|point| planner.step(point, Extremum::Smallest).reach).collect(),
+        Self::new(planner.problem(), planner.grid().beta_count)
+    }
+
+    /// A grid of `count` values over a full turn, with the steps that the rate of beta allows on it.
+    pub fn new(problem: &Problem, count: usize) -> Self {
+        let step = TAU / count as f64;
+        let mut reaches = vec![0; problem.task.points().len()];
+        for point in problem.task.segments().iter().flat_map(|span| span.clone().skip(1)) {
+            let steps = problem.beta_step_limit(point) / step + STEP_ROUNDING;
+            reaches[point] = if steps >= (count / 2) as f64 { count / 2 } else { steps as usize };
         }
+        Self { count, reaches }
     }
 }
+
+/// Steps of beta are compared with their limit up to this share of the grid's step: rounding.
+const STEP_ROUNDING: f64 = 1e-9;
 
 impl<'a> Table<'a> {
     /// Whether a problem can be searched through a table, and through one of what shape.

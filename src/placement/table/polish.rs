@@ -61,10 +61,17 @@ impl Table<'_> {
         (best, worth, looks)
     }
 
+    /// What an upright tool's problem knows of a pose: radius and height of the workpiece origin (m), and the yaw against its
+    /// azimuth (rad).
+    pub fn reduced(&self, pose: &[f64; 4]) -> [f64; 3] {
+        let root = self.problem.robot.geometry().root_in_base;
+        let (x, y) = (pose[0] - root.x, pose[1] - root.y);
+        [libm::hypot(x, y), pose[2], pose[3] - libm::atan2(y, x)]
+    }
+
     /// A pose moved along one direction, inside the cell.
     fn moved(&self, pose: &[f64; 4], direction: usize, step: f64) -> [f64; 4] {
         let root = self.problem.robot.geometry().root_in_base;
-        let azimuth = |x: f64, y: f64| libm::atan2(y - root.y, x - root.x);
         let [mut x, mut y, mut z, mut yaw] = *pose;
         match direction {
             0 => {
@@ -79,6 +86,7 @@ impl Table<'_> {
         let cell = &self.problem.cell;
         let inside = cell.clamp(&Placement { x, y, z, yaw });
         // The yaw follows the azimuth.
+        let azimuth = |x: f64, y: f64| libm::atan2(y - root.y, x - root.x);
         let turned = azimuth(inside.x, inside.y) - azimuth(pose[0], pose[1]);
         let inside = cell.clamp(&Placement { yaw: inside.yaw + turned, ..inside });
         [inside.x, inside.y, inside.z, inside.yaw]

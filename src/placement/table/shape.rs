@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
 /// Step of radius and height. m
-const STEP: f64 = 0.04;
+const STEP: f64 = 0.07;
 /// Headings over a full turn, at least.
 const HEADINGS: usize = 120;
 

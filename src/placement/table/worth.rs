@@ -2,19 +2,22 @@
 //!
 //! The rules are those of [`crate::placement::redundancy::band`], but for the steps and turns of the joints.
 
-use super::look::Rows;
+use super::look::{Rows, Site};
 use super::{Lane, Table};
 use crate::placement::redundancy::Worth;
 use crate::robot::Posture;
+use std::ops::Range as Span;
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]
 pub struct Workspace {
     pub(super) rows: Rows,
     scores: Vec<f32>,
-    /// Smallest sums of scores so far, for each class, over beta.
-    costs: [Vec<f32>; 4],
+    /// Smallest sums of scores so far, over beta.
+    costs: Vec<f32>,
     windows: [Vec<f32>; 2],
+    /// For each segment the class that won last.
+    favourites: Vec<usize>,
 }
 
 impl Table<'_> {
@@ -24,8 +27,9 @@ impl Table<'_> {
         Workspace {
             rows: Rows::new(self, lane),
             scores: row(),
-            costs: std::array::from_fn(|_| row()),
+            costs: row(),
             windows: std::array::from_fn(|_| vec![0.0; 2 * lane.count]),
+            favourites: vec![0; self.problem.task.segments().len()],
         }
     }
 
@@ -35,44 +39,31 @@ impl Table<'_> {
         let site = self.site(pose);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
-        let Workspace { rows, scores, costs, windows } = workspace;
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index].class().index());
-            let mut live = [0, 1, 2, 3].map(|class| only.is_none_or(|asked| asked == class));
-            let asked = live;
-            for point in span.clone() {
-                let Some(spot) = self.spot(&site, point) else {
-                    points += 1;
-                    live = [false; 4];
-                    continue;
-                };
-                let mut allowed = false;
-                for class in 0..4 {
-                    if !live[class] {
-                        continue;
-                    }
-                    let any = self.look(&spot, class, lane, rows, scores);
-                    allowed |= any;
-                    live[class] = any
-                        && if point == span.start {
-                            costs[class].copy_from_slice(scores);
-                            true
-                        } else {
-                            advance(&mut costs[class], scores, lane.reaches[point], windows)
-                        };
+            let asked = |class: usize| only.is_none_or(|asked| asked == class);
+            let mut best = f64::INFINITY;
+            // The class that won last time goes first: the others can then mostly be given up on the way.
+            let first = workspace.favourites[index];
+            for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
+                if let Some(cost) = self.through(&site, span.clone(), class, lane, best, workspace) {
+                    best = cost;
+                    workspace.favourites[index] = class;
                 }
-                // Classes that got lost on the way count as allowed where they are.
-                let rest = (0..4).filter(|class| asked[*class] && !live[*class]);
-                allowed = allowed || rest.into_iter().any(|class| self.look(&spot, class, lane, rows, scores));
-                points += usize::from(!allowed);
             }
-            let ends = (0..4).filter(|class| live[*class]).flat_map(|class| costs[class].iter());
-            let best = ends.copied().fold(f32::INFINITY, f32::min);
             if best.is_finite() {
-                sum += f64::from(best);
-            } else {
-                segments += 1;
+                sum += best;
+                continue;
             }
+            let Workspace { rows, scores, .. } = workspace;
+            let is_blocked = |point: &usize| {
+                let spot = self.spot(&site, *point);
+                let mut classes = (0..4).filter(|class| asked(*class));
+                spot.is_none_or(|spot| !classes.any(|class| self.look(&spot, class, lane, rows, scores)))
+            };
+            let blocked = span.clone().filter(is_blocked).count();
+            points += blocked;
+            segments += usize::from(blocked == 0);
         }
         if points > 0 {
             Worth::Infeasible { points, segments: 0 }
@@ -82,10 +73,45 @@ impl Table<'_> {
             Worth::Feasible(sum / self.stations.len() as f64)
         }
     }
+
+    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`. m
+    fn through(
+        &self,
+        site: &Site,
+        span: Span<usize>,
+        class: usize,
+        lane: &Lane,
+        bound: f64,
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
+        let Workspace { rows, scores, costs, windows, .. } = workspace;
+        // Costs are relative to this, so that long sums keep their digits.
+        let mut base = 0.0;
+        for (place, point) in span.enumerate() {
+            if !self.look(&self.spot(site, point)?, class, lane, rows, scores) {
+                return None;
+            }
+            if place == 0 {
+                costs.copy_from_slice(scores);
+            } else if !advance(costs, scores, lane.reaches[point], (bound - base) as f32, windows) {
+                return None;
+            }
+            if place % RENEWAL == RENEWAL - 1 {
+                let least = costs.iter().copied().fold(f32::INFINITY, f32::min);
+                costs.iter_mut().for_each(|cost| *cost -= least);
+                base += f64::from(least);
+            }
+        }
+        let cost = base + f64::from(costs.iter().copied().fold(f32::INFINITY, f32::min));
+        (cost < bound).then_some(cost)
+    }
 }
 
-/// Adds to each score the smallest cost within `reach`, cyclically: the new costs. False when none is finite.
-fn advance(costs: &mut [f32], scores: &[f32], reach: usize, windows: &mut [Vec<f32>; 2]) -> bool {
+/// After so many points costs are made relative to the smallest.
+const RENEWAL: usize = 64;
+
+/// Adds to each score the smallest cost within `reach`, cyclically: the new costs. False when none is below `bound`.
+fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
     let count = costs.len();
     let least = |a: f32, b: f32| if b < a { b } else { a };
     let mut any = false;
@@ -93,7 +119,7 @@ fn advance(costs: &mut [f32], scores: &[f32], reach: usize, windows: &mut [Vec<f
         let best = costs.iter().copied().fold(f32::INFINITY, f32::min);
         for (cost, score) in costs.iter_mut().zip(scores) {
             *cost = best + score;
-            any |= *cost < f32::INFINITY;
+            any |= *cost < bound;
         }
         return any;
     }
@@ -117,7 +143,7 @@ fn advance(costs: &mut [f32], scores: &[f32], reach: usize, windows: &mut [Vec<f
     let (a, b) = (&now[..count], &now[band - width..band - width + count]);
     for ((cost, score), (a, b)) in costs.iter_mut().zip(scores).zip(a.iter().zip(b)) {
         *cost = least(*a, *b) + score;
-        any |= *cost < f32::INFINITY;
+        any |= *cost < bound;
     }
     any
 }
