@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn optional_tables_override_the_defaults() {
         let more = "[criterion]\nforce_uncertainty = 0.1\n[search]\nseed = 9223372036854775807\npopulation = 40\n\
-                    postures = 'genetic'\n[transfer]\njerk_time_s = 0.2\n";
+                    postures = 'genetic'\ntables = 'never'\n[transfer]\njerk_time_s = 0.2\n";
         let text = format!("{RUN}{more}").replace("z_mm = [-500, -500]", "z_mm = [-500, -500]\nq4 = [0.5, 0.5]");
         let run = read(&text.replace("length_mm = 682", "length_mm = 682\nmax_deflection_mm = 1.5")).unwrap();
         assert_eq!(run.problem.criterion.force_uncertainty, 0.1);
@@ -149,8 +149,13 @@ mod tests {
         assert!((run.problem.cell.yaw.min - PI / 3.0).abs() < 1e-15 && run.problem.cell.yaw.width() == 0.0);
         assert_eq!(run.problem.redundancy.beta_count, 50);
         let default = SearchSettings::default();
-        let expected =
-            SearchSettings { seed: i64::MAX as u64, population: 40, postures: PostureSearch::Genetic, ..default };
+        let expected = SearchSettings {
+            tables: Tables::Never,
+            seed: i64::MAX as u64,
+            population: 40,
+            postures: PostureSearch::Genetic,
+            ..default
+        };
         assert_eq!(run.search, expected);
         assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, ..TransferSettings::default() });
         assert!(run.reference.is_none() && run.notes.is_empty());
@@ -188,6 +193,7 @@ mod tests {
             ("[cell]", "[search]\npopulation = 3\n[cell]", [":7: search.population: ", "found 3", "from 4 to 100000"]),
             ("[cell]", "[search]\nbasins = 65\n[cell]", [":7: search.basins: ", "found 65", "from 1 to 64"]),
             ("[cell]", "[search]\npostures = 'all'\n[cell]", [":7: search.postures: ", "found 'all'", "\"genetic\""]),
+            ("[cell]", "[search]\ntables = 'some'\n[cell]", [":7: search.tables: ", "found 'some'", "\"always\""]),
             ("[cell]", "[transfer]\njerk_time_s = 0\n[cell]", [":7: transfer.jerk_time_s: ", "found 0", "above 0"]),
             (
                 "[cell]",
@@ -199,5 +205,23 @@ mod tests {
         }
         let cell = &RUN[RUN.find("[cell]").unwrap()..RUN.find("[constraints]").unwrap()];
         assert_refused(cell, "", &["run.toml:1: cell: ", "is missing", "a table [cell]"]);
+    }
+
+    #[test]
+    fn a_table_that_cannot_be_is_refused_where_it_is_asked_for() {
+        let folder = super::super::testing::folder();
+        let tilted = super::super::testing::TASK.replace(",0,0,1,10,20,0\n1,10", ",0,0.6,0.8,10,20,0\n1,10");
+        std::fs::write(folder.path().join("task.csv"), tilted).unwrap();
+        let file = folder.path().join("run.toml");
+        let read = |word: &str| {
+            std::fs::write(&file, format!("{RUN}[search]\ntables = '{word}'\n")).unwrap();
+            super::super::run::read_run(&file)
+        };
+        assert!(read("auto").is_ok() && read("never").is_ok());
+        let message = read("always").unwrap_err().to_string();
+        for part in ["run.toml:18: search.tables: ", "not upright", "point 0", "found 'always'", "; allowed: \"auto\""]
+        {
+            assert!(message.contains(part), "{part} in {message}");
+        }
     }
 }

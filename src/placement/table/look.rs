@@ -130,7 +130,7 @@ impl Table<'_> {
     }
 
     /// The scores (m; infinite where not allowed) of a spot in one posture class over a grid of beta. False when none is
-    /// allowed.
+    /// allowed for certain; true says nothing.
     pub(super) fn look(&self, spot: &Spot, class: usize, lane: &Lane, rows: &mut Rows, scores: &mut [f32]) -> bool {
         if !self.blend(spot, class, rows) {
             return false;
@@ -142,17 +142,16 @@ impl Table<'_> {
                 self.along_beta(spot, lane, &rows.rows[k], &mut rows.unrolled, &mut rows.looked[k]);
             }
         }
-        let [part, room, radial, tangential, vertical, sine, cosine] = &rows.looked;
-        let mut any = false;
-        for (score, (part, room)) in scores.iter_mut().zip(part.iter().zip(room)) {
-            let is_allowed = *room >= 0.0;
-            *score = if is_allowed { part.abs() } else { f32::INFINITY };
-            any |= is_allowed;
+        let count = scores.len();
+        let [part, room, radial, tangential, vertical, sine, cosine] = rows.looked.each_ref().map(|row| &row[..count]);
+        for k in 0..count {
+            scores[k] = if room[k] >= 0.0 { part[k].abs() } else { f32::INFINITY };
         }
         if robust {
-            for (k, score) in scores.iter_mut().enumerate() {
+            let uncertainty = spot.uncertainty as f32;
+            for k in 0..count {
                 let squares = radial[k] * radial[k] + tangential[k] * tangential[k] + vertical[k] * vertical[k];
-                *score += squares.sqrt() * spot.uncertainty as f32;
+                scores[k] += squares.sqrt() * uncertainty;
             }
         }
         if joint {
@@ -168,10 +167,7 @@ impl Table<'_> {
             let limit = limit as f32;
             scores.iter_mut().filter(|score| **score > limit).for_each(|score| *score = f32::INFINITY);
         }
-        if joint || self.problem.constraints.max_deflection.is_some() {
-            any = scores.iter().any(|score| score.is_finite());
-        }
-        any
+        true
     }
 
     /// The rows of a spot over the heading, from the rows of its four radii; false when all of them are dead.

@@ -134,7 +134,7 @@ impl<'a> Table<'a> {
     /// # Errors
     /// [`Unsuited`], with the reason.
     pub fn shape_for(problem: &Problem) -> Result<Shape, Unsuited> {
-        let sense = sense(problem)?;
+        sense(problem)?;
         let joints = problem.robot.joints();
         let is_law = |j: usize| !matches!(joints[j].compliance, Compliance::Constant(_));
         if let Some(joint) = [0, 3, 4, 5].into_iter().find(|j| is_law(*j)) {
@@ -148,7 +148,7 @@ impl<'a> Table<'a> {
         }
         let is_flat = problem.criterion.force_uncertainty == 0.0
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
-        let shape = Shape::new(problem, sense, !is_flat, !Range::of(&joints[0]).has_turns());
+        let shape = Shape::new(problem, !is_flat, !Range::of(&joints[0]).has_turns());
         let bytes = shape.bytes();
         if bytes > MOST_BYTES { Err(Unsuited::TooLarge { bytes, most: MOST_BYTES }) } else { Ok(shape) }
     }

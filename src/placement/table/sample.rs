@@ -21,6 +21,8 @@ pub(super) mod field {
     pub const VERTICAL: usize = 4;
 }
 
+/// The smallest bound on 1/kappa that room is measured in units of.
+const LEAST_SLOPE: f64 = 0.05;
 /// More room than this is not told apart.
 const MOST_ROOM: f64 = 0.5;
 
@@ -101,7 +103,9 @@ fn state(
         tz += k * v.y * v.z;
     }
     let condition = inverse_condition(&frames, &tip, problem.constraints.characteristic_length);
-    let conditioned = condition - problem.constraints.min_inverse_condition;
+    // In squares, which run straight through the limit of the reach, where 1/kappa comes to nothing like a root.
+    let least = problem.constraints.min_inverse_condition;
+    let conditioned = (condition * condition - least * least) / (2.0 * least.max(LEAST_SLOPE));
     values[field::MEAN] = 0.5 * (rr + tt);
     values[field::DIFFERENCE] = 0.5 * (rr - tt);
     values[field::MIXED] = rt;
@@ -134,24 +138,30 @@ fn joint_room(robot: &Robot, theta: &[f64; 6]) -> f64 {
 }
 
 /// Gives states out of reach what the nearest radius within reach has, so that the interpolation beside them stays smooth, and
-/// less room the farther out they are.
+/// the room that goes on from there as it went, below zero.
 fn fill(shape: &Shape, slice: &mut [f32]) {
     let (radii, block, headings) = (shape.radius.count, shape.block(), shape.headings);
     let place =
         |radius: usize, class: usize, k: usize, heading: usize| (radius * 4 + class) * block + k * headings + heading;
     for class in 0..4 {
         for heading in 0..headings {
-            let reached: Vec<bool> =
-                (0..radii).map(|radius| !slice[place(radius, class, field::ROOM, heading)].is_nan()).collect();
+            let room = |radius: usize| place(radius, class, field::ROOM, heading);
+            let reached: Vec<bool> = (0..radii).map(|radius| !slice[room(radius)].is_nan()).collect();
             for radius in (0..radii).filter(|radius| !reached[*radius]) {
                 let by = slice[place(radius, class, field::MEAN, heading)];
-                let near = (0..radii).filter(|other| reached[*other]).min_by_key(|other| other.abs_diff(radius));
-                for k in 0..shape.fields() {
-                    let value = near.map_or(0.0, |near| slice[place(near, class, k, heading)]);
-                    slice[place(radius, class, k, heading)] = value;
+                let Some(near) = (0..radii).filter(|k| reached[*k]).min_by_key(|k| k.abs_diff(radius)) else {
+                    (0..shape.fields()).for_each(|k| slice[place(radius, class, k, heading)] = 0.0);
+                    slice[room(radius)] = -1.0;
+                    continue;
+                };
+                for k in (0..shape.fields()).filter(|k| *k != field::ROOM) {
+                    slice[place(radius, class, k, heading)] = slice[place(near, class, k, heading)];
                 }
-                let room = &mut slice[place(radius, class, field::ROOM, heading)];
-                *room = room.min(0.0) - 0.1 - by;
+                let further = if near < radius { near.checked_sub(1) } else { Some(near + 1) };
+                let further = further.filter(|k| *k < radii && reached[*k]).unwrap_or(near);
+                let slope = (slice[room(near)] - slice[room(further)]).min(0.0);
+                let gone_on = slice[room(near)] + slope * near.abs_diff(radius) as f32;
+                slice[room(radius)] = gone_on.min(-by);
             }
         }
     }

@@ -6,8 +6,10 @@ use std::f64::consts::TAU;
 
 /// Step of radius and height. m
 const STEP: f64 = 0.07;
-/// Headings over a full turn, at least.
+/// Headings over a full turn, about.
 const HEADINGS: usize = 120;
+/// ... at least and at the most, where a number of the grid of beta can be had.
+const FEWEST_AND_MOST: (usize, usize) = (90, 180);
 
 /// Evenly spaced values. m
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +46,7 @@ pub(super) fn cubic(t: f64) -> [f32; 4] {
 impl Axis {
     /// An axis on which every value between two has two nodes on either side.
     fn around(min: f64, max: f64, step: f64) -> Self {
-        Self { first: min - step, step, count: ((max - min) / step).ceil() as usize + 4 }
+        Self { first: min - step, step, count: (((max - min) / step).ceil() as usize).saturating_add(4) }
     }
 
     /// The node of that number.
@@ -64,10 +66,20 @@ impl Axis {
     }
 }
 
+/// Headings that go well with a grid of beta: as many as it has, or a multiple, or a part of them, so that places between
+/// headings repeat along the grid.
+fn headings(beta_count: usize) -> usize {
+    let (fewest, most) = FEWEST_AND_MOST;
+    if beta_count <= most {
+        beta_count * fewest.div_ceil(beta_count)
+    } else {
+        (fewest..=most).rev().find(|count| beta_count % count == 0).unwrap_or(HEADINGS)
+    }
+}
+
 impl Shape {
-    pub(super) fn new(problem: &Problem, upside: f64, has_vertical: bool, has_first_joint: bool) -> Self {
+    pub(super) fn new(problem: &Problem, has_vertical: bool, has_first_joint: bool) -> Self {
         let g = problem.robot.geometry();
-        let _ = upside;
         let [x, y, z] = problem.cell.position;
         let nearest =
             Vector2::new(x.clamp(g.root_in_base.x) - g.root_in_base.x, y.clamp(g.root_in_base.y) - g.root_in_base.y);
@@ -84,13 +96,15 @@ impl Shape {
         let most = (g.reach() + lever).max(STEP);
         let min = (nearest.norm() - reach).clamp(0.0, most);
         let max = (farthest + reach).clamp(min, most);
-        let up = g.base_from_root.m33;
+        let up = g.base_from_root.m33.signum();
         let heights = [z.min + low, z.max + high].map(|height| up * (height - g.root_in_base.z));
-        let beta_count = problem.redundancy.beta_count;
+        let (below, above) = (g.shoulder_height - most, g.shoulder_height + most);
+        let bottom = heights[0].min(heights[1]).clamp(below, above);
+        let top = heights[0].max(heights[1]).clamp(below, above);
         Self {
             radius: Axis::around(min, max, STEP),
-            height: Axis::around(heights[0].min(heights[1]), heights[0].max(heights[1]), STEP),
-            headings: beta_count * HEADINGS.div_ceil(beta_count),
+            height: Axis::around(bottom, top, STEP),
+            headings: headings(problem.redundancy.beta_count),
             has_vertical,
             has_first_joint,
         }
@@ -113,7 +127,7 @@ impl Shape {
 
     /// States sampled.
     pub fn states(&self) -> u64 {
-        self.radius.count as u64 * self.height.count as u64 * self.headings as u64 * 4
+        (self.radius.count as u64).saturating_mul(self.height.count as u64).saturating_mul(self.headings as u64 * 4)
     }
 
     /// What it takes in memory. Bytes
@@ -124,5 +138,28 @@ impl Shape {
     /// Step of the heading. rad
     pub fn heading_step(&self) -> f64 {
         TAU / self.headings as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_go_with_the_grid_of_beta() {
+        assert_eq!([120, 90, 60, 40, 24, 1].map(headings), [120, 90, 120, 120, 96, 90]);
+        assert_eq!([360, 720, 1440, 1009].map(headings), [180, 180, 180, 120]);
+    }
+
+    #[test]
+    fn a_cubic_is_interpolated_exactly_anywhere_on_an_axis() {
+        let f = |x: f64| 1.0 + x * (0.3 + x * (-0.7 + 0.2 * x));
+        let axis = Axis::around(-0.4, 1.3, 0.17);
+        for value in [-0.4, -0.39, 0.0, 0.731, 1.29, 1.3] {
+            let (first, weights) = axis.stencil(value).unwrap();
+            let sum: f64 = (0..4).map(|k| f64::from(weights[k]) * f(axis.node(first + k))).sum();
+            assert!((sum - f(value)).abs() < 1e-6, "{value} {sum}");
+        }
+        assert!(axis.stencil(-0.41).is_none() && axis.stencil(f64::NAN).is_none() && axis.stencil(1.6).is_none());
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The rules are those of [`crate::placement::redundancy::band`], but for the steps and turns of the joints.
 
-use super::look::{Rows, Site};
+use super::look::{Rows, Site, Spot};
 use super::{Lane, Table};
 use crate::placement::redundancy::Worth;
 use crate::robot::Posture;
@@ -59,7 +59,10 @@ impl Table<'_> {
             let is_blocked = |point: &usize| {
                 let spot = self.spot(&site, *point);
                 let mut classes = (0..4).filter(|class| asked(*class));
-                spot.is_none_or(|spot| !classes.any(|class| self.look(&spot, class, lane, rows, scores)))
+                let mut is_allowed = |spot: &Spot, class: usize| {
+                    self.look(spot, class, lane, rows, scores) && scores.iter().any(|score| score.is_finite())
+                };
+                spot.is_none_or(|spot| !classes.any(|class| is_allowed(&spot, class)))
             };
             let blocked = span.clone().filter(is_blocked).count();
             points += blocked;
@@ -93,6 +96,9 @@ impl Table<'_> {
             }
             if place == 0 {
                 costs.copy_from_slice(scores);
+                if !costs.iter().any(|cost| cost.is_finite()) {
+                    return None;
+                }
             } else if !advance(costs, scores, lane.reaches[point], (bound - base) as f32, windows) {
                 return None;
             }
@@ -146,4 +152,30 @@ fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows:
         any |= *cost < bound;
     }
     any
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn advance_agrees_with_plain_loops(
+            pairs in prop::collection::vec((0.0..1.0_f32, 0.0..1.0_f32, 0..10_u8), 3..60), reach in 0..40_usize, bound in 0.5..3.0_f32
+        ) {
+            let count = pairs.len();
+            let reach = reach.min(count / 2);
+            let before: Vec<f32> = pairs.iter().map(|p| if p.2 < 3 { f32::INFINITY } else { p.0 }).collect();
+            let scores: Vec<f32> = pairs.iter().map(|p| if p.2 > 7 { f32::INFINITY } else { p.1 }).collect();
+            let mut costs = before.clone();
+            let mut windows = [vec![0.0; 2 * count], vec![0.0; 2 * count]];
+            let any = advance(&mut costs, &scores, reach, bound, &mut windows);
+            for k in 0..count {
+                let near = (0..=2 * reach).map(|shift| before[(k + count + shift - reach) % count]);
+                prop_assert_eq!(costs[k], near.fold(f32::INFINITY, f32::min) + scores[k]);
+            }
+            prop_assert_eq!(any, costs.iter().any(|cost| *cost < bound));
+        }
+    }
 }
