@@ -183,7 +183,7 @@ fn worth_agrees_with_the_planner() {
         let table = Table::new(&problem).unwrap();
         let lane = Lane::of(&planner);
         let (mut space, mut looking) = (planner.workspace(), table.workspace(&lane));
-        let (mut close, mut feasible, mut disputed) = (0, 0, 0);
+        let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
         for (k, pose) in drawn_poses(&problem, 40).iter().enumerate() {
             let planned = planner.worth(pose, Extremum::Smallest, None, &mut space);
             let looked = table.worth(pose, &lane, None, &mut looking);
@@ -193,9 +193,11 @@ fn worth_agrees_with_the_planner() {
                 disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
                 continue;
             };
+            // What the table leaves out, turns and steps of the joints, can only make it find less.
             let error = (looked / planned - 1.0).abs();
             assert!(error < 0.02, "{k}: {planned} {looked}");
             close += usize::from(error < 1e-4);
+            above += usize::from(looked > planned * (1.0 + 1e-4));
             feasible += 1;
             if error < 1e-4
                 && let Ok(plans) = planner.plan(pose, Extremum::Smallest, None, &mut space)
@@ -208,7 +210,8 @@ fn worth_agrees_with_the_planner() {
                 assert!(rank(Goal::Best, other, Worth::Feasible(held * (1.0 - 1e-6))).is_gt());
             }
         }
-        assert!(feasible > 12 && close * 10 > feasible * 8 && disputed < 4, "{close} of {feasible}, {disputed}");
+        assert!(feasible > 12 && close * 10 >= feasible * 6 && above < 2, "{close}, {above} of {feasible}");
+        assert!(disputed < 4, "{disputed}");
     }
 }
 
