@@ -73,7 +73,7 @@ fn headings(beta_count: usize) -> usize {
     if beta_count <= most {
         beta_count * fewest.div_ceil(beta_count)
     } else {
-        (fewest..=most).rev().find(|count| beta_count % count == 0).unwrap_or(HEADINGS)
+        (fewest..=most).rev().find(|count| beta_count.is_multiple_of(*count)).unwrap_or(HEADINGS)
     }
 }
 

@@ -78,10 +78,10 @@ fn compared(table: &Table<'_>, count: usize, draws: u64) -> Accuracy {
         let all = explain(problem, &pose, point, grid.beta(k));
         for class in PostureClass::ALL {
             let mut scores = vec![f32::INFINITY; count];
-            if let Some(spot) = table.spot(&table.site(&pose), point) {
-                if !table.look(&spot, class.index(), &lane, &mut workspace.rows, &mut scores) {
-                    scores.fill(f32::INFINITY);
-                }
+            if let Some(spot) = table.spot(&table.site(&pose), point)
+                && !table.look(&spot, class.index(), &lane, &mut workspace.rows, &mut scores)
+            {
+                scores.fill(f32::INFINITY);
             }
             let postures = class.postures().map(|posture| &all[usize::from(posture.number()) - 1]);
             let ordinary = postures.into_iter().find(|e| e.is_allowed()).and_then(|e| e.state.as_ref());
