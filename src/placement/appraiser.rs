@@ -25,8 +25,22 @@ pub struct Workspace {
     table: Option<table::Workspace>,
 }
 
+/// What goes on from a search.
+#[derive(Debug)]
+pub struct Settled {
+    /// The candidates, best first by the planner.
+    pub basins: Vec<Individual>,
+    /// Placements looked at to find them.
+    pub looks: usize,
+    /// Whether the table misled the search, so that it is better repeated without.
+    pub misled: bool,
+}
+
 /// What the table promises of a placement is believed if the planner finds it within this share.
 const BELIEVED: f64 = 1e-3;
+/// Where the best the planner finds is farther than this share from the best that the table promised, or where there is none,
+/// the table misled the search: it leaves out the steps and turns of the joints.
+const MISLED: f64 = 0.02;
 /// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an upright
 /// tool.
 const SAME: [f64; 3] = [0.005, 0.005, 0.02];
@@ -101,20 +115,13 @@ impl<'a> Appraiser<'a> {
         self.planner.worth(pose, Extremum::Smallest, scheme, space)
     }
 
-    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner; and how many placements were
-    /// looked at for that. With a table, more of them are polished first, those that end at the same place are taken once, and
+    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are polished first, those that end at the same place are taken once, and
     /// where the planner does not find what the table promised, the start may go on instead.
-    pub fn settle(
-        &self,
-        sorted: Vec<Individual>,
-        goal: Goal,
-        most: usize,
-        control: &dyn Control,
-    ) -> (Vec<Individual>, usize) {
+    pub fn settle(&self, sorted: Vec<Individual>, goal: Goal, most: usize, control: &dyn Control) -> Settled {
         let Some(table) = self.table else {
-            let mut sorted = sorted;
-            sorted.truncate(most);
-            return (sorted, 0);
+            let mut basins = sorted;
+            basins.truncate(most);
+            return Settled { basins, looks: 0, misled: false };
         };
         let polished: Vec<(Individual, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
             .par_iter()
@@ -125,6 +132,7 @@ impl<'a> Appraiser<'a> {
             sorted.iter().zip(polished).map(|(start, (end, _))| (start, end)).collect();
         ends.sort_by(|a, b| rank(goal, a.1.worth, b.1.worth));
         let ends = apart(table, ends, most);
+        let promised = ends.first().and_then(|(_, end)| end.worth.mean());
         let planned: Vec<(Individual, usize)> = ends
             .par_iter()
             .map_init(
@@ -154,7 +162,12 @@ impl<'a> Appraiser<'a> {
         if let Some(first) = settled.iter().position(|i| i.worth.mean().is_none()) {
             settled.truncate(first.max(1));
         }
-        (settled, looks)
+        let found = settled.first().and_then(|individual| individual.worth.mean());
+        let misled = match (promised, found) {
+            (Some(promised), Some(found)) => (found - promised).abs() > MISLED * promised,
+            _ => true,
+        };
+        Settled { basins: settled, looks, misled }
     }
 
     /// A candidate polished on the table, and the number of placements looked at.

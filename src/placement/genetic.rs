@@ -6,7 +6,7 @@
 //! many points and segments fail.
 //!
 //! Candidates are looked at through a table where the task allows one ([`super::table`]), and then the basins that go on, and
-//! the best of every generation, are looked at by the planner: only averages over a population are the table's.
+//! the best of every generation, are looked at by the planner: only averages are the table's.
 //!
 //! Random numbers are counter-based: every individual of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
@@ -44,6 +44,8 @@ pub struct Found {
     pub history: Vec<Generation>,
     /// Placements evaluated.
     pub evaluations: usize,
+    /// Whether a table misled it: what the table promised, the planner does not find.
+    pub misled: bool,
     /// Whether the caller stopped it.
     pub interrupted: bool,
 }
@@ -104,7 +106,6 @@ pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, 
             evaluate(appraiser, &mut population, elite);
             evaluations += settings.population - elite;
         }
-        // A stable sort: equals stay in the order of their index.
         population.sort_by(|a, b| rank(goal, a.worth, b.worth));
         archive.extend(population.iter().filter(|i| i.worth.mean().is_some()).cloned());
         archive.sort_by(|a, b| rank(goal, a.worth, b.worth));
@@ -118,13 +119,11 @@ pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, 
             break;
         }
     }
-    if archive.is_empty() {
-        archive.push(population.swap_remove(0));
-    }
+    archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
     appraiser.check(&mut history, &best, goal);
-    let (basins, looks) = appraiser.settle(archive, goal, settings.basins, control);
-    evaluations += looks;
-    Found { basins, history, evaluations, interrupted }
+    let settled = appraiser.settle(archive, goal, settings.basins, control);
+    evaluations += settled.looks;
+    Found { basins: settled.basins, history, evaluations, misled: settled.misled, interrupted }
 }
 
 /// The random numbers of one individual: seed and place decide, nothing else.

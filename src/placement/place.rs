@@ -10,7 +10,7 @@ use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
 use super::refine::{Solution, planned, refine};
 use super::settings::{SearchSettings, Tables, TransferSettings};
-use super::table::Table;
+use super::table::{Table, Unsuited};
 use super::transfer::cycle;
 use crate::robot::{Posture, angles::wrap};
 use rayon::prelude::*;
@@ -72,13 +72,22 @@ pub fn place(
         Tables::Auto | Tables::Always => Some(Table::new(problem)),
         Tables::Never => None,
     };
-    let tabled = table.as_ref().map(|table| match table {
+    let mut tabled = table.as_ref().map(|table| match table {
         Ok(table) => Ok(Tabled { shape: *table.shape(), accuracy: table.accuracy() }),
         Err(unsuited) => Err(unsuited.clone()),
     });
-    let table = table.and_then(Result::ok);
-    let appraiser = Appraiser::new(&planner, table.as_ref());
-    let mut found = [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control));
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&Table<'_>>| {
+        let appraiser = Appraiser::new(&planner, table);
+        [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.misled && !f.interrupted) && !control.should_stop() {
+        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
     // A search that met nothing feasible goes on from what the other met.
     match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.worth.mean().is_some())) {
         [true, true] => {}
@@ -108,7 +117,6 @@ pub fn place(
             cycle: cycle(problem, transfer, &plans),
         }
     };
-    let evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     Ok(Outcome {
         cases: [
             case(1, best, Extremum::Smallest),

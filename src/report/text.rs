@@ -5,6 +5,7 @@ use super::{Context, words};
 use crate::input::Reference;
 use crate::placement::outcome::{Outcome, ratio};
 use crate::placement::problem::Problem;
+use crate::placement::table::Unsuited;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
@@ -33,6 +34,9 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
                 &mut text,
                 &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
             );
+        }
+        Some(Err(unsuited @ Unsuited::Misleading)) => {
+            line(&mut text, &format!("searched again without a table: {unsuited}"));
         }
         Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
         None => {}

@@ -63,6 +63,28 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
 }
 
 #[test]
+fn a_search_notices_that_its_table_misleads() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    let sound = Table::new(&problem).unwrap();
+    // A table that knows nothing of a third of the force.
+    let weaker = problem.task.wrenches().iter().map(|w| crate::task::Wrench { force: w.force / 1.5, ..*w });
+    let weaker = crate::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
+    let weaker = Problem { task: weaker, ..problem.clone() };
+    let wrong = Table::new(&weaker).unwrap();
+    let planner = Planner::new(&problem);
+    let misled = |table: Option<&Table<'_>>| {
+        let found = genetic::search(&Appraiser::new(&planner, table), &small(), Goal::Best, &Unwatched);
+        assert_eq!(found.basins[0].worth.mean(), {
+            let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());
+            planner.worth(pose, Extremum::Smallest, scheme, &mut planner.workspace()).mean()
+        });
+        found.misled
+    };
+    assert_eq!([misled(None), misled(Some(&sound)), misled(Some(&wrong))], [false, false, true]);
+}
+
+#[test]
 fn stopping_early_still_returns_a_result() {
     struct Stop;
     impl Control for Stop {

@@ -63,6 +63,9 @@ pub enum Unsuited {
     /// Scores count how well the compliances are known.
     #[error("scores count the uncertainty of the compliances")]
     Uncertain,
+    /// The planner does not find what the table promises: found out only after a search through it.
+    #[error("what it promised was not to be had within the steps and turns of the joints")]
+    Misleading,
     /// The cell is so large that the table does not fit in memory.
     #[error(
         "a table for this cell would take {:.1} GB, and at most {:.1} GB are allowed", *bytes as f64 / 1e9, *most as f64 / 1e9
