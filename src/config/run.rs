@@ -5,8 +5,8 @@ use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
 use super::source::{Source, input_file};
 use super::tables::{
-    cell_from, check_confidence, constraints_from, criterion_from, redundancy_from, reference_from, search_from,
-    spindle_from, transfer_from,
+    cell_from, check_confidence, check_tables, constraints_from, criterion_from, redundancy_from, reference_from,
+    search_from, spindle_from, transfer_from,
 };
 use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
@@ -62,7 +62,8 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let scoring = criterion.optional(Field::table)?;
     let criterion = scoring.as_ref().map(criterion_from).transpose()?.unwrap_or_default();
     let redundancy = redundancy_from(&redundancy.table()?)?;
-    let search = search.optional(|field| search_from(&field.table()?))?.unwrap_or_default();
+    let searching = search.optional(Field::table)?;
+    let search = searching.as_ref().map(search_from).transpose()?.unwrap_or_default();
     let transfer = transfer.optional(|field| transfer_from(&field.table()?))?.unwrap_or_default();
     let reference = reference.optional(|field| reference_from(&field.table()?))?;
 
@@ -83,6 +84,9 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     ];
     let task = task_from(imported, &task_file, &task, &cutting)?;
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    if let Some(table) = &searching {
+        check_tables(table, &search, &problem)?;
+    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     Ok(Run { problem, search, transfer, inputs, reference, notes })
