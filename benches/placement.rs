@@ -43,14 +43,13 @@ fn poses() -> Vec<[f64; 4]> {
 fn kernel(bencher: Bencher) {
     let problem = problem();
     let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
-    let mut scratch = kernel.scratch();
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
     let poses = poses();
     bencher.counter(ItemsCount::new(poses.len() * points * problem.redundancy.beta_count)).bench_local(|| {
         for pose in &poses {
             for point in 0..points {
-                kernel.evaluate(point, black_box(pose), &mut scratch, &mut states);
+                kernel.evaluate(point, black_box(pose), &mut states);
             }
         }
     });
@@ -61,7 +60,6 @@ fn planner(bencher: Bencher) {
     let problem = problem();
     let planner = Planner::new(&problem);
     let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
-    let mut scratch = kernel.scratch();
     let count = problem.redundancy.beta_count;
     let pose = [0.0, -1.64, -0.214, 1.378];
     let segments: Vec<Vec<(usize, States)>> = problem
@@ -71,7 +69,7 @@ fn planner(bencher: Bencher) {
         .map(|span| {
             let evaluated = span.clone().map(|point| {
                 let mut states = States::new(count, planner.pad());
-                kernel.evaluate(point, &pose, &mut scratch, &mut states);
+                kernel.evaluate(point, &pose, &mut states);
                 PostureClass::ALL.into_iter().for_each(|class| states.wrap_around(class));
                 (point, states)
             });

@@ -90,7 +90,7 @@ fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture,
     let Some(kernel) = planner.kernels.iter().find(|kernel| kernel.flips().contains(posture)) else {
         return Vec::new();
     };
-    kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
+    kernel.evaluate(point, pose, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
     for beta in 0..planner.grid.beta_count {

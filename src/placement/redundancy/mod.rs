@@ -16,9 +16,11 @@ pub mod band;
 mod exact;
 pub mod fine;
 mod segment;
+mod sweep;
 mod turns;
 
-use super::kernel::{Flips, Kernel, Scratch, States};
+use super::kernel::lanes::Instructions;
+use super::kernel::{Flips, Kernel, States};
 use super::problem::{Problem, Redundancy};
 use crate::robot::{Posture, turns::Range};
 use std::ops::Range as Span;
@@ -99,16 +101,17 @@ pub struct Planner<'a> {
     kernels: Vec<Kernel<'a>>,
     reaches: Vec<usize>,
     steps: Vec<[f64; 6]>,
-    modulo: [bool; 6],
+    /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
+    ranges: [Option<Range>; 6],
+    instructions: Instructions,
 }
 
 /// Space of one thread to plan in.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    scratch: Scratch,
     before: States,
     now: States,
-    came_from: Vec<i16>,
+    record: sweep::Record,
 }
 
 /// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
@@ -147,8 +150,9 @@ impl<'a> Planner<'a> {
             reaches: (0..count).map(|p| if is_start(&p) { 0 } else { reach(p) }).collect(),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
-            // difference modulo a turn means anything; theta_5 only changes its sign.
-            modulo: std::array::from_fn(|j| j == 3 || j == 5 || (j != 4 && ranges[j].has_turns())),
+            // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
+            ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
+            instructions: Instructions::best(),
         }
     }
 
@@ -173,10 +177,9 @@ impl<'a> Planner<'a> {
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
-            scratch: self.kernels[0].scratch(),
             before: States::new(count, pad),
             now: States::new(count, pad),
-            came_from: vec![0; longest * 4 * count],
+            record: sweep::Record::new(longest, count),
         }
     }
 

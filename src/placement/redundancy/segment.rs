@@ -1,6 +1,7 @@
 //! The plans of one segment: which postures it can be driven in, and at what cost.
 
-use super::{Extremum, Planner, Workspace, band, exact, turns};
+use super::sweep::{Pass, Sweep};
+use super::{Extremum, Planner, Workspace, exact, turns};
 use crate::robot::{Posture, PostureClass};
 use std::ops::Range as Span;
 
@@ -28,13 +29,14 @@ impl Planner<'_> {
     ) -> Found {
         let mut found = Found { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
         for kernel in self.kernels.iter().filter(|kernel| only.is_none_or(|posture| kernel.flips().contains(posture))) {
-            let sweep = self.sweep(kernel, span.clone(), pose, extremum, only, workspace, margin.is_none());
-            found.blocked.retain(|point| sweep.blocked.contains(point));
+            let pass = Pass { kernel, span: &span, pose, extremum };
+            let sweep = self.sweep(pass, only, workspace, margin.is_none());
+            found.blocked.retain(|point| sweep.blocked.binary_search(point).is_ok());
             if let Some(margin) = margin {
                 found.farthest = found.farthest.max(sweep.farthest(&span));
                 let postures =
                     |posture: &Posture| kernel.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
-                self.choose(span.clone(), pose, extremum, postures, &sweep, workspace, margin, &mut found.choices);
+                self.choose(pass, postures, &sweep, workspace, margin, &mut found.choices);
             }
         }
         found
@@ -49,18 +51,16 @@ impl Planner<'_> {
 
     /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside its
     /// limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
-    #[expect(clippy::too_many_arguments, reason = "one step of the caller above, with all it has")]
     fn choose(
         &self,
-        span: Span<usize>,
-        pose: &[f64; 4],
-        extremum: Extremum,
+        pass: Pass<'_>,
         is_asked: impl Fn(&Posture) -> bool,
-        outcome: &band::Sweep,
+        outcome: &Sweep,
         workspace: &mut Workspace,
         margin: f64,
         found: &mut Vec<turns::Choice>,
     ) {
+        let Pass { span, pose, extremum, .. } = pass;
         // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
@@ -74,11 +74,11 @@ impl Planner<'_> {
                 break;
             }
             let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
-            let betas = self.trace(&span, class, outcome, workspace);
+            let betas = self.trace(pass, class, outcome, workspace);
             let path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
             found.extend(
-                turns::unwind(self.problem, &span, pose, &path, &postures, cost * sign, &self.steps)
-                    .or_else(|| exact::plan(self, &span, pose, extremum, &postures, workspace)),
+                turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps)
+                    .or_else(|| exact::plan(self, span, pose, extremum, &postures, workspace)),
             );
             found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
         }

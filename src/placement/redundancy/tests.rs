@@ -1,5 +1,6 @@
 //! The planner against check values, and against plain dynamic programming over every real configuration.
 
+use super::sweep::Pass;
 use super::*;
 use crate::placement::criterion::state;
 use crate::placement::testing::{compensated, five_segments, with_laws};
@@ -148,15 +149,9 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let f = f64::from(k);
             let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
             for span in problem.task.segments() {
-                let sweep = planner.sweep(
-                    &planner.kernels[0],
-                    span.clone(),
-                    &pose,
-                    Extremum::Smallest,
-                    None,
-                    &mut workspace,
-                    false,
-                );
+                let kernel = &planner.kernels[0];
+                let pass = Pass { kernel, span, pose: &pose, extremum: Extremum::Smallest };
+                let sweep = planner.sweep(pass, None, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
                     let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);
