@@ -132,6 +132,17 @@ impl<S: Simd> Lanes<S> {
         array
     }
 
+    /// Small whole numbers, and zeros after the last lane.
+    #[inline(always)]
+    pub fn to_whole(self) -> [i16; MOST_LANES] {
+        let shifted = (self + SHIFT).to_array();
+        let mut whole = [0; MOST_LANES];
+        for (whole, shifted) in whole.iter_mut().zip(shifted) {
+            *whole = shifted.to_bits() as i16;
+        }
+        whole
+    }
+
     /// A function of `f64` in every lane.
     #[inline(always)]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
@@ -157,7 +168,6 @@ impl<S: Simd> Lanes<S> {
     /// The nearest whole number, for magnitudes below 2^51.
     #[inline(always)]
     pub fn round(self) -> Self {
-        const SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
         (self + SHIFT) - SHIFT
     }
 
@@ -233,6 +243,9 @@ impl<S: Simd> Lanes<S> {
         angle.with_sign_of(self)
     }
 }
+
+/// Added to a number of magnitude below 2^51 this leaves a whole number in the last bits: 1.5 * 2^52.
+const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of [`Lanes::atan2`].
 const ATAN: [f64; 12] = [

@@ -68,6 +68,17 @@ pub(super) fn turned<S: Simd>(v: [Lanes<S>; 3], sin1: Lanes<S>, cos1: Lanes<S>) 
     Vector { x: v[0] * cos1 + v[1] * sin1, y: v[1] * cos1 - v[0] * sin1, z: v[2] }
 }
 
+/// Sine and cosine of the six joint angles.
+pub(super) type Directions<S> = [[Lanes<S>; 2]; 6];
+
+/// What acts on the tool, and the direction in which its deflection counts.
+#[derive(Clone, Copy)]
+pub(super) struct Load<S: Simd> {
+    pub normal: Vector<S>,
+    pub force: Vector<S>,
+    pub moment: Vector<S>,
+}
+
 /// The arm's configuration, several at a time: what conditioning and score are made of.
 pub(super) struct Pose<S: Simd> {
     /// Wrist centre from the shoulder. m
@@ -156,14 +167,13 @@ impl<S: Simd> Pose<S> {
         simd: S,
         lateral: f64,
         compliances: &[Lanes<S>; 6],
-        normal: Vector<S>,
-        force: Vector<S>,
-        moment: Vector<S>,
+        load: &Load<S>,
         uncertainty: f64,
     ) -> (Lanes<S>, [Lanes<S>; 6]) {
         let t = self.lever;
         let (px, py) = (self.forward + t.x, t.y + lateral);
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
+        let Load { normal, force, moment } = *load;
         let turn_n = t.cross(normal);
         let turn_f = t.cross(force).plus(moment);
         // Torque of a unit normal force, and of the wrench, on each joint.

@@ -73,6 +73,20 @@ impl States {
         &mut self.data[start..start + self.stride]
     }
 
+    /// The score row, to be overwritten, beside the rows of [`States::directions`] of all joints.
+    #[inline(always)]
+    pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], [[&[f64]; 2]; 6]) {
+        let stride = self.stride;
+        let (scores, rest) = self.data[class.index() * ROWS * stride..][..ROWS * stride].split_at_mut(stride);
+        (scores, rows(rest, stride))
+    }
+
+    /// The rows of [`States::directions`] of all joints.
+    #[inline(always)]
+    pub fn all_directions(&self, class: PostureClass) -> [[&[f64]; 2]; 6] {
+        rows(&self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride], self.stride)
+    }
+
     /// Writes one state: beta number `beta`, its score (m) and joint angles (rad).
     pub fn set(&mut self, class: PostureClass, beta: usize, score: f64, joints: [f64; 6]) {
         let place = class.index() * ROWS * self.stride + self.pad + beta;
@@ -118,4 +132,16 @@ impl States {
     fn row(&self, class: PostureClass, row: usize) -> &[f64] {
         &self.data[(class.index() * ROWS + row) * self.stride..][..self.stride]
     }
+}
+
+/// Sine and cosine rows of six joints.
+#[inline(always)]
+fn rows(data: &[f64], stride: usize) -> [[&[f64]; 2]; 6] {
+    let mut rows: [[&[f64]; 2]; 6] = [[&[]; 2]; 6];
+    for (j, pair) in rows.iter_mut().enumerate() {
+        for (k, row) in pair.iter_mut().enumerate() {
+            *row = &data[(2 * j + k) * stride..][..stride];
+        }
+    }
+    rows
 }

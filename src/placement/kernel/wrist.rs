@@ -2,7 +2,7 @@
 
 use super::arm::{Arm, Elbow};
 use super::lanes::Lanes;
-use super::pose::{Pose, Vector, turned};
+use super::pose::{Directions, Load, Pose, Vector, turned};
 use super::{Flips, Kernel, PointGeometry, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
@@ -13,9 +13,7 @@ pub(super) struct Demand<S: Simd> {
     y6: Vector<S>,
     z6: Vector<S>,
     lever: Vector<S>,
-    normal: Vector<S>,
-    force: Vector<S>,
-    moment: Vector<S>,
+    load: Load<S>,
 }
 
 impl<S: Simd> Demand<S> {
@@ -26,9 +24,11 @@ impl<S: Simd> Demand<S> {
             y6: Self::turning(&geometry.y6, arm, cosine, sine),
             z6: Self::turning(&geometry.z6, arm, cosine, sine),
             lever: Self::turning(&geometry.lever, arm, cosine, sine),
-            normal: Self::constant(simd, &geometry.normal, arm),
-            force: Self::constant(simd, &geometry.force, arm),
-            moment: Self::constant(simd, &geometry.moment, arm),
+            load: Load {
+                normal: Self::constant(simd, &geometry.normal, arm),
+                force: Self::constant(simd, &geometry.force, arm),
+                moment: Self::constant(simd, &geometry.moment, arm),
+            },
         }
     }
 
@@ -55,7 +55,7 @@ impl Kernel<'_> {
         demand: &Demand<S>,
         arm: &Arm<S>,
         elbow: &Elbow<S>,
-    ) -> Option<(Lanes<S>, [[Lanes<S>; 2]; 6])> {
+    ) -> Option<(Lanes<S>, Directions<S>)> {
         let g = self.problem.robot.geometry();
         let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
         let Demand { x6, y6, z6, lever, .. } = *demand;
@@ -116,9 +116,7 @@ impl Kernel<'_> {
             turned[5] = [-sixth[0], -sixth[1]];
         }
         let compliances = self.laws.at(simd, &self.limits, &turned);
-        let Demand { normal, force, moment, .. } = *demand;
-        let (mut score, parts) =
-            pose.score::<ROBUST>(simd, g.lateral, &compliances, normal, force, moment, uncertainty);
+        let (mut score, parts) = pose.score::<ROBUST>(simd, g.lateral, &compliances, &demand.load, uncertainty);
         if ROBUST && let Some(spread) = &self.spread {
             score = score + spread.margin(simd, &self.limits, &parts, &turned, &compliances);
         }

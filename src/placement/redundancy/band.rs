@@ -119,7 +119,7 @@ trait Rules {
     /// Shifts beyond the reach that are looked at.
     const WIDER: usize = 0;
     /// How far the predecessor told is beside the one taken.
-    const BESIDE: isize = 0;
+    const BESIDE: i16 = 0;
     /// How far the limit of a joint's step belongs to a joint further on.
     const OTHER_JOINT: usize = 0;
     /// Whether a cheapest predecessor too far away for a joint is replaced by the cheapest that is not.
@@ -156,22 +156,24 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let numbers = Lanes::load(simd, &NUMBERS, 0);
         let sign = if R::SIGNED { step.sign } else { 1.0 };
         let band = Band::<R> { costs: before.scores(class), reach: step.reach + R::WIDER, rules: PhantomData };
+        let joints = Joints::<R>::new(before.all_directions(class), &step.joints);
+        let (scores, directions) = now.scores_and_directions(class);
         let mut reached = false;
-        for start in (0..count).step_by(lanes) {
+        for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
             let here = pad + start;
-            let score = Lanes::load(simd, now.scores(class), here);
+            let score = Lanes::load(simd, scores, here);
             let allowed = score.less(infinity) & numbers.less(Lanes::splat(simd, (count - start) as f64));
             if !allowed.any() {
                 continue;
             }
             let (mut best, mut from) = band.cheapest(simd, here);
             let mut known = allowed & best.less(infinity);
-            if R::STEPS_COUNT {
-                let joints = Joints::<R> { before, now, class, limits: &step.joints, rules: PhantomData };
-                let far = joints.too_far(simd, here, known, from);
+            if R::STEPS_COUNT && known.any() {
+                let new = New::load(simd, &directions, here);
+                let far = joints.too_far(simd, &new, known, from);
                 if far.any() {
                     if R::LOOKS_AGAIN {
-                        (best, from) = band.cheapest_within(simd, here, &joints);
+                        (best, from) = band.cheapest_within(simd, &new, &joints);
                         known = allowed & best.less(infinity);
                     } else {
                         known = known.and_not(far);
@@ -179,13 +181,30 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
                 }
             }
             reached |= known.any();
-            known.select(best + score * sign, infinity).store(now.scores_mut(class), here);
-            let from = from.to_array();
-            for (way, from) in way[start..].iter_mut().zip(&from[..lanes]) {
-                *way = (*from as isize + R::BESIDE) as i16;
+            known.select(best + score * sign, infinity).store(scores, here);
+            for (way, from) in way.iter_mut().zip(from.to_whole()) {
+                *way = from + R::BESIDE;
             }
         }
         reached
+    }
+}
+
+/// Sines and cosines of six joints at neighbouring states from `place`.
+struct New<'s, S: Simd> {
+    directions: [[Lanes<S>; 2]; 6],
+    rows: &'s [[&'s [f64]; 2]; 6],
+    place: usize,
+}
+
+impl<'s, S: Simd> New<'s, S> {
+    #[inline(always)]
+    fn load(simd: S, rows: &'s [[&'s [f64]; 2]; 6], place: usize) -> Self {
+        let mut directions = [[Lanes::splat(simd, 0.0); 2]; 6];
+        for j in 0..6 {
+            directions[j] = [Lanes::load(simd, rows[j][0], place), Lanes::load(simd, rows[j][1], place)];
+        }
+        Self { directions, rows, place }
     }
 }
 
@@ -205,29 +224,32 @@ impl<R: Rules> Band<'_, R> {
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::load(simd, self.costs, here);
         let mut from = Lanes::splat(simd, 0.0);
+        let mut shift = from;
         for far in 1..=self.reach {
-            for shift in [-(far as isize), far as isize] {
-                let cost = Lanes::load(simd, self.costs, here.wrapping_add_signed(shift));
-                let better = cost.less(best);
-                best = better.select(cost, best);
-                from = better.select(Lanes::splat(simd, shift as f64), from);
-            }
+            shift = shift + 1.0;
+            let (left, right) = (Lanes::load(simd, self.costs, here - far), Lanes::load(simd, self.costs, here + far));
+            let better = left.less(best);
+            best = better.select(left, best);
+            from = better.select(-shift, from);
+            let better = right.less(best);
+            best = better.select(right, best);
+            from = better.select(shift, from);
         }
         (best, from)
     }
 
     /// The same among predecessors that are within every joint's step.
     #[inline(always)]
-    fn cheapest_within<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
+    fn cheapest_within<S: Simd>(&self, simd: S, new: &New<'_, S>, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
         for k in 0..=2 * self.reach as isize {
             let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
-            let there = here.wrapping_add_signed(shift);
+            let there = new.place.wrapping_add_signed(shift);
             let cost = Lanes::load(simd, self.costs, there);
             let mut better = cost.less(best);
             if better.any() {
-                better = better & joints.within(simd, here, there);
+                better = better & joints.within(simd, new, there);
                 best = better.select(cost, best);
                 from = better.select(Lanes::splat(simd, shift as f64), from);
             }
@@ -236,21 +258,35 @@ impl<R: Rules> Band<'_, R> {
     }
 }
 
-/// Joint angles before and now, and how far each joint may step.
+/// Joint angles at the point before, and how far each joint may step from them.
 struct Joints<'s, R> {
-    before: &'s States,
-    now: &'s States,
-    class: PostureClass,
-    limits: &'s [JointStep; 6],
+    old: [[&'s [f64]; 2]; 6],
+    limits: [JointStep; 6],
+    /// Largest chords, squared, where they say all.
+    chords: Option<[f64; 6]>,
     rules: PhantomData<R>,
 }
 
-impl<R: Rules> Joints<'_, R> {
+impl<'s, R: Rules> Joints<'s, R> {
+    #[inline(always)]
+    fn new(old: [[&'s [f64]; 2]; 6], joints: &[JointStep; 6]) -> Self {
+        let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
+        for j in 0..6 {
+            limits[j] = joints[(j + R::OTHER_JOINT) % 6];
+            match limits[j] {
+                JointStep::Any => chords[j] = f64::INFINITY,
+                JointStep::Chord(most) => chords[j] = most,
+                JointStep::Around { .. } => are_all = false,
+            }
+        }
+        Self { old, limits, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
+    }
+
     /// Which of the `asked` states from `here` are too far for some joint from the predecessors `from` beside them.
     #[inline(always)]
-    fn too_far<S: Simd>(&self, simd: S, here: usize, asked: Mask<S>, from: Lanes<S>) -> Mask<S> {
+    fn too_far<S: Simd>(&self, simd: S, new: &New<'_, S>, asked: Mask<S>, from: Lanes<S>) -> Mask<S> {
         // Neighbours mostly come by the same shift: all that do are looked at at once.
-        let shifts = from.to_array();
+        let shifts = from.to_whole();
         let (mut open, mut far) = (asked, Mask::splat(simd, false));
         loop {
             let lane = open.first();
@@ -258,23 +294,29 @@ impl<R: Rules> Joints<'_, R> {
                 return far;
             }
             let shift = shifts[lane % MOST_LANES];
-            let same = open & from.equal(Lanes::splat(simd, shift));
-            let there = here.wrapping_add_signed(shift as isize);
-            far = far | same.and_not(self.within(simd, here, there));
+            let same = open & from.equal(Lanes::splat(simd, f64::from(shift)));
+            far = far | same.and_not(self.within(simd, new, new.place.wrapping_add_signed(isize::from(shift))));
             open = open.and_not(same);
         }
     }
 
-    /// Which of the states from `here` are within every joint's step of those from `there`.
+    /// Which states are within every joint's step of those from `there`.
     #[inline(always)]
-    fn within<S: Simd>(&self, simd: S, here: usize, there: usize) -> Mask<S> {
+    fn within<S: Simd>(&self, simd: S, new: &New<'_, S>, there: usize) -> Mask<S> {
         let mut within = Mask::splat(simd, true);
-        for j in 0..6 {
-            let limit = &self.limits[(j + R::OTHER_JOINT) % 6];
-            let (old, new) = (self.before.directions(self.class, j), self.now.directions(self.class, j));
-            let old = [Lanes::load(simd, old[0], there), Lanes::load(simd, old[1], there)];
-            let new = [Lanes::load(simd, new[0], here), Lanes::load(simd, new[1], here)];
-            within = within & limit.allows(simd, old, new);
+        if let Some(chords) = &self.chords {
+            for j in 0..6 {
+                let s = new.directions[j][0] - Lanes::load(simd, self.old[j][0], there);
+                let c = new.directions[j][1] - Lanes::load(simd, self.old[j][1], there);
+                within = within & (s * s + c * c).at_most(Lanes::splat(simd, chords[j]));
+            }
+        } else {
+            // From memory, so that the fast way keeps its numbers in registers.
+            for (limit, (old, new_rows)) in self.limits.iter().zip(self.old.iter().zip(new.rows)) {
+                let old = [Lanes::load(simd, old[0], there), Lanes::load(simd, old[1], there)];
+                let rows = [Lanes::load(simd, new_rows[0], new.place), Lanes::load(simd, new_rows[1], new.place)];
+                within = within & limit.allows(simd, old, rows);
+            }
         }
         within
     }

@@ -1,5 +1,6 @@
 //! The plans of one segment: which postures it can be driven in, and at what cost.
 
+use super::super::criterion;
 use super::sweep::{Pass, Sweep};
 use super::{Extremum, Planner, Workspace, exact, turns};
 use crate::robot::{Posture, PostureClass};
@@ -75,16 +76,33 @@ impl Planner<'_> {
             }
             let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
             let betas = self.trace(pass, class, outcome, workspace);
-            let path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-            found.extend(
-                turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps)
-                    .or_else(|| exact::plan(self, span, pose, extremum, &postures, workspace)),
-            );
+            let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
+            let is_spread = self.pace.is_spread(span);
+            if is_spread {
+                self.pace.smooth(self.problem, span, &mut path);
+            }
+            let unwound = turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps);
+            let allowed = if is_spread { unwound.and_then(|choice| self.repriced(pose, choice)) } else { unwound };
+            found.extend(allowed.or_else(|| exact::plan(self, span, pose, extremum, &postures, workspace)));
             found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
         }
         if let Some(limit) = limit(found) {
             let best = found[0].cost;
             found.retain(|choice| choice.cost == best || choice.cost * sign <= limit);
         }
+    }
+
+    /// A plan with its own cost, where all its states are allowed.
+    fn repriced(&self, pose: &[f64; 4], mut choice: turns::Choice) -> Option<turns::Choice> {
+        let posture = choice.ways.first()?.posture;
+        choice.cost = 0.0;
+        for (point, beta) in choice.points.clone().zip(&choice.betas) {
+            let state = criterion::state(self.problem, point, pose, *beta, posture).ok()?;
+            if !turns::is_allowed(self.problem, &state) {
+                return None;
+            }
+            choice.cost += state.score();
+        }
+        Some(choice)
     }
 }

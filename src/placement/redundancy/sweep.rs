@@ -8,6 +8,7 @@
 use super::super::kernel::{Kernel, States};
 use super::band::{JointStep, Step, advance, begin};
 use super::{Extremum, Planner, Workspace};
+use crate::placement::problem::MOST_STEP;
 use crate::robot::{Posture, PostureClass};
 use std::ops::Range as Span;
 
@@ -56,7 +57,8 @@ impl Record {
         Self::with_most(longest, count, MOST_WAYS)
     }
 
-    fn with_most(longest: usize, count: usize, most: usize) -> Self {
+    /// The same with at most so many numbers kept, if a block may be that short.
+    pub fn with_most(longest: usize, count: usize, most: usize) -> Self {
         let block = (most / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
         Self { count, block, ways: vec![0; block * 4 * count], costs: Vec::new() }
     }
@@ -101,9 +103,13 @@ pub(super) struct Pass<'p> {
 impl Planner<'_> {
     /// What bounds the step to path point `point` from the one before.
     pub fn step(&self, point: usize, extremum: Extremum) -> Step {
-        let limits = &self.steps[point];
+        let (reach, stride) = self.pace.step(point);
+        let mut limits = self.steps[point];
+        for other in point + 1 - stride..point {
+            limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MOST_STEP.min(*sum + limit));
+        }
         Step {
-            reach: self.reaches[point],
+            reach,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
             sign: extremum.sign(),
             instructions: self.instructions,

@@ -7,6 +7,9 @@ use rand_chacha::ChaCha8Rng;
 
 const CLASS: PostureClass = PostureClass::ALL[1];
 
+/// A score and real joint angles.
+type State = (f64, [f64; 6]);
+
 /// Random scores and real joint angles of two points, random limits.
 struct Case {
     count: usize,
@@ -16,7 +19,7 @@ struct Case {
     ranges: [Option<Range>; 6],
     limits: [f64; 6],
     /// Before and now, over beta: what is not there is not allowed.
-    points: [Vec<Option<(f64, [f64; 6])>>; 2],
+    points: [Vec<Option<State>>; 2],
 }
 
 impl Case {
@@ -25,7 +28,7 @@ impl Case {
         let count = random.random_range(9..70_usize);
         // Some joints hardly move, some go all the way from limit to limit.
         let ranges: [Range; 6] = std::array::from_fn(|_| {
-            let (min, width) = (random.random_range(-6.0..3.0_f64), random.random_range(0.2..6.28_f64));
+            let (min, width) = (random.random_range(-6.0..3.0_f64), random.random_range(0.2..TAU - 3e-3));
             Range { min, max: min + width }
         });
         let shares: [f64; 6] =
@@ -38,7 +41,7 @@ impl Case {
                     let width = ranges[j].max - ranges[j].min;
                     // Both ends of the range: a narrow joint may have its gap between them.
                     let share = random.random::<f64>() * shares[j];
-                    let share = if j % 2 == 0 && random.random::<bool>() { 1.0 - share } else { share };
+                    let share = if j.is_multiple_of(2) && random.random::<bool>() { 1.0 - share } else { share };
                     ranges[j].min + width * share
                 };
                 (random.random_range(0.1..1.0), std::array::from_fn(|j| angle(j, random)))
@@ -161,7 +164,7 @@ macro_rules! breach {
 }
 
 breach!(BandOneTooWide: WIDER, usize, 1);
-breach!(PredecessorBeside: BESIDE, isize, 1);
+breach!(PredecessorBeside: BESIDE, i16, 1);
 breach!(LimitOfTheNextJoint: OTHER_JOINT, usize, 1);
 breach!(NeverLooksAgain: LOOKS_AGAIN, bool, false);
 breach!(NoJointSteps: STEPS_COUNT, bool, false);
