@@ -98,12 +98,18 @@ pub(super) struct Pass<'p> {
     pub span: &'p Span<usize>,
     pub pose: &'p [f64; 4],
     pub extremum: Extremum,
+    /// Whether steps of beta are saved up between points too close for one.
+    pub is_paced: bool,
 }
 
 impl Planner<'_> {
     /// What bounds the step to path point `point` from the one before.
     pub fn step(&self, point: usize, extremum: Extremum) -> Step {
-        let (reach, stride) = self.pace.step(point);
+        self.paced_step(point, extremum, false)
+    }
+
+    fn paced_step(&self, point: usize, extremum: Extremum, is_paced: bool) -> Step {
+        let (reach, stride) = if is_paced { self.pace.step(point) } else { (self.pace.reach(point), 1) };
         let mut limits = self.steps[point];
         for other in point + 1 - stride..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MOST_STEP.min(*sum + limit));
@@ -137,7 +143,7 @@ impl Planner<'_> {
             if count_only {
                 continue;
             }
-            let step = self.step(point, pass.extremum);
+            let step = self.paced_step(point, pass.extremum, pass.is_paced);
             for class in PostureClass::ALL {
                 if now.is_alive(class) {
                     if place == 0 {
@@ -205,7 +211,13 @@ impl Planner<'_> {
                 let (pad, count) = (now.pad(), now.count());
                 now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));
             } else {
-                advance(before, now, class, &self.step(point, pass.extremum), record.way(place, class));
+                advance(
+                    before,
+                    now,
+                    class,
+                    &self.paced_step(point, pass.extremum, pass.is_paced),
+                    record.way(place, class),
+                );
             }
             now.wrap_around(class);
             std::mem::swap(before, now);
