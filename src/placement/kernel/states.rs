@@ -73,18 +73,18 @@ impl States {
         &mut self.data[start..start + self.stride]
     }
 
-    /// The score row, to be overwritten, beside the rows of [`States::directions`] of all joints.
+    /// The score row, to be overwritten, beside [`States::all_directions`].
     #[inline(always)]
-    pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], [[&[f64]; 2]; 6]) {
+    pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], &[f64]) {
         let stride = self.stride;
-        let (scores, rest) = self.data[class.index() * ROWS * stride..][..ROWS * stride].split_at_mut(stride);
-        (scores, rows(rest, stride))
+        let (scores, directions) = self.data[class.index() * ROWS * stride..][..ROWS * stride].split_at_mut(stride);
+        (scores, directions)
     }
 
-    /// The rows of [`States::directions`] of all joints.
+    /// The rows of [`States::directions`] of all joints, one behind the other, each as long as [`States::scores`].
     #[inline(always)]
-    pub fn all_directions(&self, class: PostureClass) -> [[&[f64]; 2]; 6] {
-        rows(&self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride], self.stride)
+    pub fn all_directions(&self, class: PostureClass) -> &[f64] {
+        &self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride]
     }
 
     /// Writes one state: beta number `beta`, its score (m) and joint angles (rad).
@@ -132,16 +132,4 @@ impl States {
     fn row(&self, class: PostureClass, row: usize) -> &[f64] {
         &self.data[(class.index() * ROWS + row) * self.stride..][..self.stride]
     }
-}
-
-/// Sine and cosine rows of six joints.
-#[inline(always)]
-fn rows(data: &[f64], stride: usize) -> [[&[f64]; 2]; 6] {
-    let mut rows: [[&[f64]; 2]; 6] = [[&[]; 2]; 6];
-    for (j, pair) in rows.iter_mut().enumerate() {
-        for (k, row) in pair.iter_mut().enumerate() {
-            *row = &data[(2 * j + k) * stride..][..stride];
-        }
-    }
-    rows
 }

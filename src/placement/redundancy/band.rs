@@ -156,8 +156,9 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let numbers = Lanes::load(simd, &NUMBERS, 0);
         let sign = if R::SIGNED { step.sign } else { 1.0 };
         let band = Band::<R> { costs: before.scores(class), reach: step.reach + R::WIDER, rules: PhantomData };
-        let joints = Joints::<R>::new(before.all_directions(class), &step.joints);
+        let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
+        let joints = Joints::<R>::new(before.all_directions(class), directions, stride, &step.joints);
         let mut reached = false;
         for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
             let here = pad + start;
@@ -169,11 +170,10 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             let (mut best, mut from) = band.cheapest(simd, here);
             let mut known = allowed & best.less(infinity);
             if R::STEPS_COUNT && known.any() {
-                let new = New::load(simd, &directions, here);
-                let far = joints.too_far(simd, &new, known, from);
+                let far = joints.too_far(simd, here, known, from);
                 if far.any() {
                     if R::LOOKS_AGAIN {
-                        (best, from) = band.cheapest_within(simd, &new, &joints);
+                        (best, from) = band.cheapest_within(simd, here, &joints);
                         known = allowed & best.less(infinity);
                     } else {
                         known = known.and_not(far);
@@ -187,24 +187,6 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             }
         }
         reached
-    }
-}
-
-/// Sines and cosines of six joints at neighbouring states from `place`.
-struct New<'s, S: Simd> {
-    directions: [[Lanes<S>; 2]; 6],
-    rows: &'s [[&'s [f64]; 2]; 6],
-    place: usize,
-}
-
-impl<'s, S: Simd> New<'s, S> {
-    #[inline(always)]
-    fn load(simd: S, rows: &'s [[&'s [f64]; 2]; 6], place: usize) -> Self {
-        let mut directions = [[Lanes::splat(simd, 0.0); 2]; 6];
-        for j in 0..6 {
-            directions[j] = [Lanes::load(simd, rows[j][0], place), Lanes::load(simd, rows[j][1], place)];
-        }
-        Self { directions, rows, place }
     }
 }
 
@@ -240,16 +222,16 @@ impl<R: Rules> Band<'_, R> {
 
     /// The same among predecessors that are within every joint's step.
     #[inline(always)]
-    fn cheapest_within<S: Simd>(&self, simd: S, new: &New<'_, S>, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
+    fn cheapest_within<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
         for k in 0..=2 * self.reach as isize {
             let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
-            let there = new.place.wrapping_add_signed(shift);
+            let there = here.wrapping_add_signed(shift);
             let cost = Lanes::load(simd, self.costs, there);
             let mut better = cost.less(best);
             if better.any() {
-                better = better & joints.within(simd, new, there);
+                better = better & joints.within(simd, here, there);
                 best = better.select(cost, best);
                 from = better.select(Lanes::splat(simd, shift as f64), from);
             }
@@ -258,9 +240,12 @@ impl<R: Rules> Band<'_, R> {
     }
 }
 
-/// Joint angles at the point before, and how far each joint may step from them.
+/// Joint angles at the point before and at this one, and how far each joint may step.
 struct Joints<'s, R> {
-    old: [[&'s [f64]; 2]; 6],
+    /// See [`States::all_directions`].
+    old: &'s [f64],
+    new: &'s [f64],
+    stride: usize,
     limits: [JointStep; 6],
     /// Largest chords, squared, where they say all.
     chords: Option<[f64; 6]>,
@@ -269,7 +254,7 @@ struct Joints<'s, R> {
 
 impl<'s, R: Rules> Joints<'s, R> {
     #[inline(always)]
-    fn new(old: [[&'s [f64]; 2]; 6], joints: &[JointStep; 6]) -> Self {
+    fn new(old: &'s [f64], new: &'s [f64], stride: usize, joints: &[JointStep; 6]) -> Self {
         let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
         for j in 0..6 {
             limits[j] = joints[(j + R::OTHER_JOINT) % 6];
@@ -279,12 +264,12 @@ impl<'s, R: Rules> Joints<'s, R> {
                 JointStep::Around { .. } => are_all = false,
             }
         }
-        Self { old, limits, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
+        Self { old, new, stride, limits, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
     }
 
     /// Which of the `asked` states from `here` are too far for some joint from the predecessors `from` beside them.
     #[inline(always)]
-    fn too_far<S: Simd>(&self, simd: S, new: &New<'_, S>, asked: Mask<S>, from: Lanes<S>) -> Mask<S> {
+    fn too_far<S: Simd>(&self, simd: S, here: usize, asked: Mask<S>, from: Lanes<S>) -> Mask<S> {
         // Neighbours mostly come by the same shift: all that do are looked at at once.
         let shifts = from.to_whole();
         let (mut open, mut far) = (asked, Mask::splat(simd, false));
@@ -295,28 +280,29 @@ impl<'s, R: Rules> Joints<'s, R> {
             }
             let shift = shifts[lane % MOST_LANES];
             let same = open & from.equal(Lanes::splat(simd, f64::from(shift)));
-            far = far | same.and_not(self.within(simd, new, new.place.wrapping_add_signed(isize::from(shift))));
+            far = far | same.and_not(self.within(simd, here, here.wrapping_add_signed(isize::from(shift))));
             open = open.and_not(same);
         }
     }
 
-    /// Which states are within every joint's step of those from `there`.
+    /// Which of the states from `here` are within every joint's step of those from `there`.
     #[inline(always)]
-    fn within<S: Simd>(&self, simd: S, new: &New<'_, S>, there: usize) -> Mask<S> {
+    fn within<S: Simd>(&self, simd: S, here: usize, there: usize) -> Mask<S> {
+        let stride = self.stride;
+        let rows = self.old.chunks_exact(2 * stride).zip(self.new.chunks_exact(2 * stride));
         let mut within = Mask::splat(simd, true);
-        if let Some(chords) = &self.chords {
-            for j in 0..6 {
-                let s = new.directions[j][0] - Lanes::load(simd, self.old[j][0], there);
-                let c = new.directions[j][1] - Lanes::load(simd, self.old[j][1], there);
-                within = within & (s * s + c * c).at_most(Lanes::splat(simd, chords[j]));
-            }
-        } else {
-            // From memory, so that the fast way keeps its numbers in registers.
-            for (limit, (old, new_rows)) in self.limits.iter().zip(self.old.iter().zip(new.rows)) {
-                let old = [Lanes::load(simd, old[0], there), Lanes::load(simd, old[1], there)];
-                let rows = [Lanes::load(simd, new_rows[0], new.place), Lanes::load(simd, new_rows[1], new.place)];
-                within = within & limit.allows(simd, old, rows);
-            }
+        for (j, (old, new)) in rows.enumerate().take(6) {
+            let ((old_sines, old_cosines), (sines, cosines)) = (old.split_at(stride), new.split_at(stride));
+            let old = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
+            let new = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];
+            within = within
+                & match &self.chords {
+                    Some(chords) => {
+                        let (s, c) = (new[0] - old[0], new[1] - old[1]);
+                        (s * s + c * c).at_most(Lanes::splat(simd, chords[j]))
+                    }
+                    None => self.limits[j].allows(simd, old, new),
+                };
         }
         within
     }
