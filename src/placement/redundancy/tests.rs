@@ -292,6 +292,6 @@ fn beta_keeps_its_pace_where_points_are_close() {
         super::tests::worth(&Problem { redundancy, ..dense.clone() }, &pose, extremum).mean().unwrap()
     };
     let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
-    assert!(found >= fine && found <= still, "{fine} {found} {still}");
-    assert!(found - fine < 0.2 * (still - fine), "{fine} {found} {still}");
+    // Spread steps leave the grid, so that they may come out a little below the finest.
+    assert!((found - fine).abs() < 0.05 * (still - fine), "{fine} {found} {still}");
 }
