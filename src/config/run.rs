@@ -132,8 +132,9 @@ fn density_note(problem: &Problem) -> Option<String> {
     let stuck = inner().filter(|point| problem.beta_step_limit(*point) < step * (1.0 - 1e-9)).count();
     (stuck > 0).then(|| {
         format!(
-            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: the search keeps \
-             beta there, and only the final plans use the rate; a finer grid or a thinner path lets the search use it too",
+            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: steps of the grid are \
+             spread over several points there, or beta is held where that breaks a limit; a finer grid or a thinner path is \
+             planned more exactly",
             inner().count()
         )
     })
