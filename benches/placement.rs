@@ -1,5 +1,7 @@
 //! Speed of the kernel and of the planner on the published case: `cargo bench`.
 //!
+//! The number after a name is the kind of instructions: 0 plain, then what else the processor has (AVX2, AVX-512).
+//!
 //! `kernel` counts poses: path point x beta, all posture classes, with joint angles, limits, 1/kappa and score. `planner`
 //! counts edges: for each allowed state every predecessor within the band of beta, with the joint steps checked. `worth` is
 //! both together, once per placement.
@@ -10,9 +12,11 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
 use stead::config::read_run;
+use stead::placement::kernel::lanes::Instructions;
 use stead::placement::kernel::{Flips, Kernel, States};
 use stead::placement::problem::Problem;
-use stead::placement::redundancy::{Extremum, Planner, band};
+use stead::placement::redundancy::band::{self, Step};
+use stead::placement::redundancy::{Extremum, Planner};
 use stead::robot::PostureClass;
 
 fn main() {
@@ -39,66 +43,77 @@ fn poses() -> Vec<[f64; 4]> {
         .collect()
 }
 
-#[divan::bench]
-fn kernel(bencher: Bencher) {
+#[divan::bench(args = instructions())]
+fn kernel(bencher: Bencher, instructions: usize) {
     let problem = problem();
-    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
-    let mut scratch = kernel.scratch();
+    let kernel =
+        Kernel::new(&problem, &problem.redundancy, Flips::Both).with_instructions(Instructions::all()[instructions]);
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
     let poses = poses();
     bencher.counter(ItemsCount::new(poses.len() * points * problem.redundancy.beta_count)).bench_local(|| {
         for pose in &poses {
             for point in 0..points {
-                kernel.evaluate(point, black_box(pose), &mut scratch, &mut states);
+                kernel.evaluate(point, black_box(pose), &mut states);
             }
         }
     });
 }
 
-#[divan::bench]
-fn planner(bencher: Bencher) {
+/// Every way of using the processor that it has, the plain one first.
+fn instructions() -> Vec<usize> {
+    (0..Instructions::all().len()).collect()
+}
+
+#[divan::bench(args = instructions())]
+fn planner(bencher: Bencher, instructions: usize) {
     let problem = problem();
     let planner = Planner::new(&problem);
     let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
-    let mut scratch = kernel.scratch();
     let count = problem.redundancy.beta_count;
     let pose = [0.0, -1.64, -0.214, 1.378];
-    let segments: Vec<Vec<(usize, States)>> = problem
-        .task
-        .segments()
-        .iter()
-        .map(|span| {
-            let evaluated = span.clone().map(|point| {
-                let mut states = States::new(count, planner.pad());
-                kernel.evaluate(point, &pose, &mut scratch, &mut states);
-                PostureClass::ALL.into_iter().for_each(|class| states.wrap_around(class));
-                (point, states)
-            });
-            evaluated.collect()
+    let step = |point: usize| Step {
+        instructions: Instructions::all()[instructions],
+        ..planner.step(point, Extremum::Smallest)
+    };
+    // One segment, so that its states stay as near to the processor as those of the planner, which keeps two points.
+    let span = problem.task.segments()[2].clone();
+    let mut segment: Vec<(Step, States)> = span
+        .map(|point| {
+            let mut states = States::new(count, planner.pad());
+            kernel.evaluate(point, &pose, &mut states);
+            PostureClass::ALL.into_iter().for_each(|class| states.wrap_around(class));
+            (step(point), states)
         })
         .collect();
-    let edges: usize = segments
+    let alive = |(_, states): &(Step, States)| PostureClass::ALL.map(|class| states.is_alive(class));
+    assert!(segment.iter().all(|item| alive(item) == alive(&segment[0])), "a class ends within the segment");
+    let classes: Vec<PostureClass> =
+        PostureClass::ALL.into_iter().filter(|class| segment[0].1.is_alive(*class)).collect();
+    let scores = |states: &States| classes.iter().flat_map(|class| states.scores(*class)).copied().collect::<Vec<_>>();
+    let kept: Vec<Vec<f64>> = segment.iter().map(|(_, states)| scores(states)).collect();
+    let edges: usize = segment[1..]
         .iter()
-        .flat_map(|segment| &segment[1..])
-        .map(|(point, states)| {
-            let allowed = PostureClass::ALL.into_iter().flat_map(|class| states.inner_scores(class));
-            allowed.filter(|score| score.is_finite()).count() * (2 * planner.step(*point, Extremum::Smallest).reach + 1)
+        .map(|(step, states)| {
+            let allowed = classes.iter().flat_map(|class| states.inner_scores(*class));
+            allowed.filter(|score| score.is_finite()).count() * (2 * step.reach + 1)
         })
         .sum();
     let mut way = vec![0; count];
-    bencher.counter(ItemsCount::new(edges)).with_inputs(|| segments.clone()).bench_local_refs(|segments| {
-        for segment in segments {
-            for class in PostureClass::ALL {
-                band::begin(&mut segment[0].1, class, 1.0);
-                for place in 1..segment.len() {
-                    let (before, now) = segment.split_at_mut(place);
-                    let (before, (point, now)) = (&before[place - 1].1, &mut now[0]);
-                    if before.is_alive(class) && now.is_alive(class) {
-                        band::advance(before, now, class, &planner.step(*point, Extremum::Smallest), &mut way);
-                        now.wrap_around(class);
-                    }
-                }
+    bencher.counter(ItemsCount::new(edges)).bench_local(|| {
+        // The scores as the kernel left them, in place of the costs of the last time.
+        for ((_, states), kept) in segment.iter_mut().zip(&kept) {
+            for (class, kept) in classes.iter().zip(kept.chunks(kept.len() / classes.len())) {
+                states.scores_mut(*class).copy_from_slice(kept);
+            }
+        }
+        for class in &classes {
+            band::begin(&mut segment[0].1, *class, 1.0);
+            for place in 1..segment.len() {
+                let (before, now) = segment.split_at_mut(place);
+                let (before, (step, now)) = (&before[place - 1].1, &mut now[0]);
+                band::advance(before, now, *class, step, &mut way);
+                now.wrap_around(*class);
             }
         }
     });

@@ -1,5 +1,5 @@
 //! Scans a cell exhaustively on a grid of placements and refines from the best and the worst of it: what the genetic search
-//! is measured against.
+//! is measured against. Where the task allows it, the scan looks through a table.
 //!
 //! `cargo run --release --example scan -- configs/caro-2013.toml [x y z yaw]` with the numbers of grid values (default 7 7 7 72).
 
@@ -10,11 +10,13 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead::config::read_run;
+use stead::placement::appraiser::Appraiser;
 use stead::placement::genetic::{Individual, distinct, rank};
 use stead::placement::outcome::Goal;
 use stead::placement::problem::Interval;
-use stead::placement::redundancy::{Extremum, Planner};
+use stead::placement::redundancy::Planner;
 use stead::placement::refine::refine;
+use stead::placement::table::Table;
 
 /// Basins of the grid that are refined, for each goal.
 const REFINED: usize = 16;
@@ -28,6 +30,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let run = read_run(Path::new(config))?;
     let planner = Planner::new(&run.problem);
+    let table = Table::new(&run.problem);
+    match &table {
+        Ok(table) => println!("through a table of {} states", table.shape().states()),
+        Err(unsuited) => println!("without a table: {unsuited}"),
+    }
+    let appraiser = Appraiser::new(&planner, table.as_ref().ok());
     let cell = &run.problem.cell;
     let [x, y, z] = cell.position;
     let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
@@ -43,12 +51,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scanned: Vec<Individual> = poses
         .par_iter()
         .map_init(
-            || planner.workspace(),
-            |workspace, pose| Individual {
-                pose: *pose,
-                scheme: None,
-                worth: planner.worth(pose, Extremum::Smallest, None, workspace),
-            },
+            || appraiser.workspace(),
+            |workspace, pose| Individual { pose: *pose, scheme: None, worth: appraiser.worth(pose, None, workspace) },
         )
         .collect();
     let feasible = scanned.iter().filter(|i| i.worth.mean().is_some()).count();
@@ -57,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sorted: Vec<Individual> = scanned.iter().filter(|i| i.worth.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(goal, a.worth, b.worth));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&planner, &basin.pose, goal, None));
+        let refined = basins.par_iter().filter_map(|basin| refine(&appraiser, &basin.pose, goal, None));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
         reports.sort_by(|a, b| match goal {
             Goal::Best => a.end_mean.total_cmp(&b.end_mean),

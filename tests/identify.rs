@@ -174,6 +174,90 @@ fn bad_sheets_are_refused_at_their_line_and_column() {
     }
 }
 
+/// Every line of the sheet but the header changed.
+fn change_all(bench: &Bench, edit: impl Fn(&mut Vec<f64>)) {
+    for line in 2..=61 {
+        change(bench, line, |fields| {
+            let mut read: Vec<f64> = fields[14..20].iter().map(|text| text.parse().unwrap()).collect();
+            edit(&mut read);
+            (0..6).for_each(|k| fields[14 + k] = format!("{:.4}", read[k]));
+        });
+    }
+}
+
+#[test]
+fn sheets_that_do_not_belong_to_the_arm_are_refused_with_what_to_look_at() {
+    let mirrored = bench();
+    change_all(&mirrored, |read| {
+        read.swap(0, 1);
+        read.swap(3, 4);
+    });
+    refused(
+        &mirrored,
+        &["unloaded_x_mm: the unloaded readings are ", "away from where the joint angles", "right-handed"],
+    );
+    let exchanged = bench();
+    change_all(&exchanged, |read| read.rotate_left(3));
+    refused(&exchanged, &["identify-example.csv:2: force_x_n: ", "comes out as -", "against its load"]);
+    let misplaced = bench();
+    change(&misplaced, 40, |fields| {
+        fields[14] = (fields[14].parse::<f64>().unwrap() + 1e3).to_string();
+        fields[17] = (fields[17].parse::<f64>().unwrap() + 1e3).to_string();
+    });
+    refused(&misplaced, &["identify-example.csv:40: unloaded_x_mm: "]);
+}
+
+#[test]
+fn what_error_bars_do_not_count_is_told() {
+    let bench = bench();
+    assert!(!fit(&bench, &[]).stdout.contains("note: "));
+    // Off by 5 mm, without and with the load.
+    change(&bench, 40, |fields| {
+        fields[14] = (fields[14].parse::<f64>().unwrap() + 5.0).to_string();
+        fields[17] = (fields[17].parse::<f64>().unwrap() + 5.0).to_string();
+    });
+    assert!(fit(&bench, &[]).stdout.contains("note: line 40: the unloaded reading is 4."));
+
+    let bench = self::bench();
+    // The first configuration again under another name, with other readings under the same load.
+    let mut text = bench.read(SHEET);
+    let again: String = text.lines().skip(1).take(3).map(|line| line.replacen("c1,", "again,", 1) + "\n").collect();
+    text += &again;
+    bench.write(SHEET, &text);
+    fit(&bench, &[])
+        .assert_says(&["note: lines 2, 62 (and 2 more such groups) have one unloaded reading", "1.22 times"]);
+
+    let bench = self::bench();
+    for line in 2..=61 {
+        change(&bench, line, |fields| {
+            (7..10).for_each(|k| fields[k] = (fields[k].parse::<f64>().unwrap() / 9.81).to_string());
+        });
+    }
+    assert!(fit(&bench, &[]).stdout.contains(" times those of the robot file (median): are forces in N"));
+}
+
+#[test]
+fn an_orientation_that_is_there_twice_is_noted() {
+    let bench = bench();
+    let text = bench.read(SHEET);
+    let names: Vec<String> = ["unloaded", "loaded"]
+        .iter()
+        .flat_map(|state| ["rx", "ry", "rz"].map(|axis| format!("{state}_{axis}_deg")))
+        .collect();
+    let wide: String = text
+        .lines()
+        .enumerate()
+        .map(
+            |(k, line)| {
+                if k == 0 { format!("{line},{}\n", names.join(",")) } else { format!("{line},0,0,0,0,0,0.01\n") }
+            },
+        )
+        .collect();
+    bench.write(SHEET, &wide);
+    bench.replace(CONFIG, "# noise_mm = 0.03 ", "noise_mm = 0.03\nnoise_deg = 1 # ");
+    fit(&bench, &[]).assert_says(&["note: 40 rows repeat the orientation of another point"]);
+}
+
 #[test]
 fn sheets_that_tell_too_little_are_refused() {
     let only = |keep: fn(usize) -> bool| {

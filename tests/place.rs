@@ -150,6 +150,33 @@ fn summary_says_what_it_comes_from_and_nothing_of_time() {
     }
     assert_eq!(summary["cases"], cases);
     assert_eq!(summary["evaluations"], ended.json()["evaluations"]);
+    let table = &summary["table"];
+    assert_eq!((&table["used"], &summary["search"]["tables"]), (&true.into(), &"auto".into()));
+    assert!(table["rms_error"].as_f64().unwrap() < 1e-3 && table["bytes"].as_u64().unwrap() > 100_000, "{table}");
+}
+
+#[test]
+fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
+    let bench = Bench::new();
+    let task = bench.read(TASK);
+    // A moment at one point.
+    let mut lines = task.lines().map(|line| format!("{line},0,0,0")).collect::<Vec<_>>();
+    lines[0] = format!("{},moment_x_nm,moment_y_nm,moment_z_nm", task.lines().next().unwrap());
+    lines[5] = format!("{},0,0,0.1", task.lines().nth(5).unwrap());
+    bench.write(TASK, &(lines.join("\n") + "\n"));
+    let ended = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(
+        ended.stdout.contains("none of them through a table: a moment acts on the tool at point 4"),
+        "{}",
+        ended.stdout
+    );
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(summary["table"]["used"], false);
+    let line = bench.replace(RUN, "seed = 1", "tables = \"always\"\nseed = 1");
+    let refused = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    refused.assert_says(&[&format!("run.toml:{line}: search.tables: "), "point 4", "allowed: \"auto\" or \"never\""]);
 }
 
 #[test]

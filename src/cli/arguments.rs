@@ -76,6 +76,26 @@ pub(super) struct AssessOptions {
 pub(super) enum IdentifyCommand {
     /// Fit compliances, compensator and their covariance to a filled measurement sheet, and write a robot file
     Fit(IdentifyFitOptions),
+    /// Choose the configurations and loads to measure, and write the sheet to be filled in
+    Plan(IdentifyPlanOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct IdentifyPlanOptions {
+    /// Identification file (TOML) with a table [plan]
+    pub config: PathBuf,
+    /// Folder for the results [default: results/<name of the identification file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of the random numbers, instead of the file's
+    #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
+    pub seed: Option<u64>,
+    /// Number of threads [default: as many as processors]; it does not change the result
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

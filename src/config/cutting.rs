@@ -4,6 +4,10 @@ use super::reader::{Field, Table};
 use crate::cutting::{CuttingModel, Milling, Rotation, Side};
 use crate::input::InputError;
 
+/// The words for the senses of rotation of a cutter.
+pub(super) const ROTATIONS: [(&str, Rotation); 2] =
+    [("clockwise", Rotation::Clockwise), ("counterclockwise", Rotation::Counterclockwise)];
+
 /// Reads the table: the cutter (`cutter_diameter_mm`, `teeth`, `rotation`), the cut (`milling`, `radial_depth_mm`,
 /// `axial_depth_mm`, `feed_per_tooth_mm`, `concave_corners`) and the coefficients (`kt_mpa`, `kr`, `kte_n_per_mm`,
 /// `kre_n_per_mm`) of [`CuttingModel`].
@@ -24,7 +28,6 @@ pub(super) fn cutting_from(table: &Table<'_>) -> Result<CuttingModel, InputError
             "concave_corners",
         ])?;
     let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |value| value >= 0.0);
-    let rotations = [("clockwise", Rotation::Clockwise), ("counterclockwise", Rotation::Counterclockwise)];
     let millings = [("conventional", Milling::Conventional), ("climb", Milling::Climb)];
     let sides = [("left", Some(Side::Left)), ("right", Some(Side::Right)), ("none", None)];
     let diameter_mm = diameter.positive()?;
@@ -32,7 +35,7 @@ pub(super) fn cutting_from(table: &Table<'_>) -> Result<CuttingModel, InputError
     Ok(CuttingModel {
         diameter: diameter_mm / 1e3,
         teeth: teeth.integer(1..=100)? as u32,
-        rotation: rotation.optional(|field| field.one_of(&rotations))?.unwrap_or(Rotation::Clockwise),
+        rotation: rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise),
         milling: milling.one_of(&millings)?,
         radial_depth: radial_depth.number_where(&slot, |depth| depth > 0.0 && depth <= diameter_mm)? / 1e3,
         axial_depth: axial_depth.positive()? / 1e3,

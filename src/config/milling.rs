@@ -1,5 +1,6 @@
 //! The `[milling]` table: a cutter with the geometry of its teeth, and its cut.
 
+use super::cutting::ROTATIONS;
 use super::reader::{Field, Table};
 use crate::cutting::{Engagement, MillingTool, Rotation};
 use crate::input::InputError;
@@ -52,7 +53,6 @@ pub(super) fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement
         "radial_depth_mm",
         "open_width_mm",
     ])?;
-    let rotations = [("clockwise", Rotation::Clockwise), ("counterclockwise", Rotation::Counterclockwise)];
     let entering = |field: &Field<'_>| field.number_where("a number above 0 and below 180", |v| v > 0.0 && v < 180.0);
     let inclined = |field: &Field<'_>| field.number_where("a number above -90 and below 90", |v| v.abs() < 90.0);
     let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |v| v >= 0.0);
@@ -60,7 +60,7 @@ pub(super) fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement
     let tool = MillingTool {
         radius: diameter_mm / 2e3,
         teeth: teeth.integer(1..=100)? as u32,
-        rotation: rotation.optional(|field| field.one_of(&rotations))?.unwrap_or(Rotation::Clockwise),
+        rotation: rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise),
         entering_angle: entering_angle.optional(entering)?.unwrap_or(90.0).to_radians(),
         helix: helix.optional(inclined)?.unwrap_or_default().to_radians(),
         rake: rake.optional(inclined)?.unwrap_or_default().to_radians(),

@@ -36,7 +36,7 @@ mod testing;
 
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
-pub use identify::{IdentifyRun, read_identification};
+pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run};

@@ -1,6 +1,6 @@
 //! Measured points from CSV, as coordinate measuring machines export them.
 
-use super::source::sha256;
+use super::source::input_file;
 use crate::assessment::roundness::Measured;
 use crate::input::table::Table;
 use crate::input::{InputError, InputFile};
@@ -55,7 +55,7 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
     }
     let measured = if z.is_some() { Measured::Spatial(spatial) } else { Measured::Planar(planar) };
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(PointFile { measured, lines, input: InputFile { role: "points", name, sha256: sha256(&bytes) } })
+    Ok(PointFile { measured, lines, input: input_file("points", name, &bytes) })
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use super::cutting::cutting_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
-use super::source::{Source, sha256};
+use super::source::{Source, input_file};
 use super::tables::{
-    cell_from, check_confidence, constraints_from, criterion_from, redundancy_from, reference_from, search_from,
-    spindle_from, transfer_from,
+    cell_from, check_confidence, check_tables, constraints_from, criterion_from, redundancy_from, reference_from,
+    search_from, spindle_from, transfer_from,
 };
 use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
@@ -62,7 +62,8 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let scoring = criterion.optional(Field::table)?;
     let criterion = scoring.as_ref().map(criterion_from).transpose()?.unwrap_or_default();
     let redundancy = redundancy_from(&redundancy.table()?)?;
-    let search = search.optional(|field| search_from(&field.table()?))?.unwrap_or_default();
+    let searching = search.optional(Field::table)?;
+    let search = searching.as_ref().map(search_from).transpose()?.unwrap_or_default();
     let transfer = transfer.optional(|field| transfer_from(&field.table()?))?.unwrap_or_default();
     let reference = reference.optional(|field| reference_from(&field.table()?))?;
 
@@ -77,16 +78,15 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let mut notes: Vec<String> =
         [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
     let inputs = vec![
-        InputFile {
-            role: "config",
-            name: file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            sha256: sha256(source.bytes()),
-        },
-        InputFile { role: "robot", name: robot_file.name, sha256: sha256(robot_source.bytes()) },
-        InputFile { role: "task", name: task_file.name.clone(), sha256: sha256(&task_file.bytes) },
+        source.as_config(),
+        input_file("robot", robot_file.name, robot_source.bytes()),
+        input_file("task", &task_file.name, &task_file.bytes),
     ];
     let task = task_from(imported, &task_file, &task, &cutting)?;
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    if let Some(table) = &searching {
+        check_tables(table, &search, &problem)?;
+    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     Ok(Run { problem, search, transfer, inputs, reference, notes })
@@ -132,8 +132,9 @@ fn density_note(problem: &Problem) -> Option<String> {
     let stuck = inner().filter(|point| problem.beta_step_limit(*point) < step * (1.0 - 1e-9)).count();
     (stuck > 0).then(|| {
         format!(
-            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: the search keeps \
-             beta there, and only the final plans use the rate; a finer grid or a thinner path lets the search use it too",
+            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: steps of the grid are \
+             spread over several points there, or beta is held where that breaks a limit; a finer grid or a thinner path is \
+             planned more exactly",
             inner().count()
         )
     })
@@ -228,7 +229,7 @@ mod tests {
             ("task", "../tasks/five-segments.csv", "tasks/five-segments.csv"),
         ];
         for (input, (role, name, file)) in run.inputs.iter().zip(expected) {
-            let digest = sha256(&std::fs::read(root().join(file)).unwrap());
+            let digest = crate::config::source::sha256(&std::fs::read(root().join(file)).unwrap());
             assert_eq!((input.role, input.name.as_str(), &input.sha256), (role, name, &digest));
         }
         assert_eq!(run.inputs.len(), 3);

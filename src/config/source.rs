@@ -1,6 +1,6 @@
 //! The text of one TOML file: where its lines are, how it parses, what its bytes hash to.
 
-use crate::input::InputError;
+use crate::input::{InputError, InputFile};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::ops::Range;
@@ -64,6 +64,11 @@ impl Source {
         self.text.as_bytes()
     }
 
+    /// The entry of a config among the files that a result came from: its name alone, wherever it lies.
+    pub fn as_config(&self) -> InputFile {
+        input_file("config", self.file.file_name().unwrap_or_default().to_string_lossy(), self.bytes())
+    }
+
     /// Parses the text.
     ///
     /// # Errors
@@ -102,6 +107,11 @@ fn shorten(text: &str) -> String {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
     }
+}
+
+/// A file that was read, by what it is for, its name and its bytes, to say what a result came from.
+pub fn input_file(role: &'static str, name: impl Into<String>, bytes: &[u8]) -> InputFile {
+    InputFile { role, name: name.into(), sha256: sha256(bytes) }
 }
 
 /// The SHA-256 digest of some bytes, in lower-case hexadecimal.

@@ -2,8 +2,9 @@
 
 use super::reader::{Field, Table};
 use crate::input::{InputError, Reference};
-use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Redundancy};
-use crate::placement::settings::{PostureSearch, SearchSettings, TransferSettings};
+use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Problem, Redundancy};
+use crate::placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
+use crate::placement::table::Table as StateTable;
 use crate::robot::{Robot, Spindle, angles::yaw_from_q4};
 
 pub(super) fn spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
@@ -80,8 +81,8 @@ pub(super) fn redundancy_from(table: &Table<'_>) -> Result<Redundancy, InputErro
 }
 
 pub(super) fn search_from(table: &Table<'_>) -> Result<SearchSettings, InputError> {
-    let [seed, population, generations, postures, basins] =
-        table.fields(["seed", "population", "generations", "postures", "basins"])?;
+    let [seed, population, generations, postures, basins, tables] =
+        table.fields(["seed", "population", "generations", "postures", "basins", TABLES])?;
     let default = SearchSettings::default();
     let words = [("exact", PostureSearch::Exact), ("genetic", PostureSearch::Genetic)];
     let count = |field: &Field<'_>, least, most, default| {
@@ -93,7 +94,26 @@ pub(super) fn search_from(table: &Table<'_>) -> Result<SearchSettings, InputErro
         generations: count(&generations, 0, 100_000, default.generations)?,
         postures: postures.optional(|field| field.one_of(&words))?.unwrap_or(default.postures),
         basins: count(&basins, 1, 64, default.basins)?,
+        tables: tables
+            .optional(|field| {
+                field.one_of(&[("auto", Tables::Auto), ("always", Tables::Always), ("never", Tables::Never)])
+            })?
+            .unwrap_or(default.tables),
     })
+}
+
+/// The field of a run file's `[search]` that asks for a table.
+const TABLES: &str = "tables";
+
+/// Refuses to promise a table where the problem does not allow one.
+pub(super) fn check_tables(table: &Table<'_>, search: &SearchSettings, problem: &Problem) -> Result<(), InputError> {
+    if search.tables == Tables::Always
+        && let Err(unsuited) = StateTable::shape_for(problem)
+    {
+        let reason = format!("asks for a table, but there can be none: {unsuited}");
+        return Err(table.field(TABLES).error(reason, "\"auto\" or \"never\""));
+    }
+    Ok(())
 }
 
 pub(super) fn transfer_from(table: &Table<'_>) -> Result<TransferSettings, InputError> {
@@ -120,7 +140,7 @@ mod tests {
     #[test]
     fn optional_tables_override_the_defaults() {
         let more = "[criterion]\nforce_uncertainty = 0.1\n[search]\nseed = 9223372036854775807\npopulation = 40\n\
-                    postures = 'genetic'\n[transfer]\njerk_time_s = 0.2\n";
+                    postures = 'genetic'\ntables = 'never'\n[transfer]\njerk_time_s = 0.2\n";
         let text = format!("{RUN}{more}").replace("z_mm = [-500, -500]", "z_mm = [-500, -500]\nq4 = [0.5, 0.5]");
         let run = read(&text.replace("length_mm = 682", "length_mm = 682\nmax_deflection_mm = 1.5")).unwrap();
         assert_eq!(run.problem.criterion.force_uncertainty, 0.1);
@@ -129,8 +149,13 @@ mod tests {
         assert!((run.problem.cell.yaw.min - PI / 3.0).abs() < 1e-15 && run.problem.cell.yaw.width() == 0.0);
         assert_eq!(run.problem.redundancy.beta_count, 50);
         let default = SearchSettings::default();
-        let expected =
-            SearchSettings { seed: i64::MAX as u64, population: 40, postures: PostureSearch::Genetic, ..default };
+        let expected = SearchSettings {
+            tables: Tables::Never,
+            seed: i64::MAX as u64,
+            population: 40,
+            postures: PostureSearch::Genetic,
+            ..default
+        };
         assert_eq!(run.search, expected);
         assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, ..TransferSettings::default() });
         assert!(run.reference.is_none() && run.notes.is_empty());
@@ -168,6 +193,7 @@ mod tests {
             ("[cell]", "[search]\npopulation = 3\n[cell]", [":7: search.population: ", "found 3", "from 4 to 100000"]),
             ("[cell]", "[search]\nbasins = 65\n[cell]", [":7: search.basins: ", "found 65", "from 1 to 64"]),
             ("[cell]", "[search]\npostures = 'all'\n[cell]", [":7: search.postures: ", "found 'all'", "\"genetic\""]),
+            ("[cell]", "[search]\ntables = 'some'\n[cell]", [":7: search.tables: ", "found 'some'", "\"always\""]),
             ("[cell]", "[transfer]\njerk_time_s = 0\n[cell]", [":7: transfer.jerk_time_s: ", "found 0", "above 0"]),
             (
                 "[cell]",
@@ -179,5 +205,23 @@ mod tests {
         }
         let cell = &RUN[RUN.find("[cell]").unwrap()..RUN.find("[constraints]").unwrap()];
         assert_refused(cell, "", &["run.toml:1: cell: ", "is missing", "a table [cell]"]);
+    }
+
+    #[test]
+    fn a_table_that_cannot_be_is_refused_where_it_is_asked_for() {
+        let folder = super::super::testing::folder();
+        let tilted = super::super::testing::TASK.replace(",0,0,1,10,20,0\n1,10", ",0,0.6,0.8,10,20,0\n1,10");
+        std::fs::write(folder.path().join("task.csv"), tilted).unwrap();
+        let file = folder.path().join("run.toml");
+        let read = |word: &str| {
+            std::fs::write(&file, format!("{RUN}[search]\ntables = '{word}'\n")).unwrap();
+            super::super::run::read_run(&file)
+        };
+        assert!(read("auto").is_ok() && read("never").is_ok());
+        let message = read("always").unwrap_err().to_string();
+        for part in ["run.toml:18: search.tables: ", "not upright", "point 0", "found 'always'", "; allowed: \"auto\""]
+        {
+            assert!(message.contains(part), "{part} in {message}");
+        }
     }
 }

@@ -7,11 +7,14 @@ use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal::Free;
 use super::outcome::{Estimate, Identified, RowResult};
 use super::outliers::Judgement;
-use super::setup::Setup;
+use super::setup::{Setup, SetupFit};
 use super::sheet::Reading;
 use super::validate::{compliances, leave_one_out};
 use crate::robot::{Compensator, Compliance, Robot, RobotError};
 use nalgebra::Vector6;
+
+/// A compliance so many standard deviations below zero is not below it by chance.
+const NEGATIVE: f64 = 6.0;
 
 /// Everything that has been estimated, to be put together.
 pub(super) struct Found<'a> {
@@ -21,6 +24,8 @@ pub(super) struct Found<'a> {
     pub layout: &'a Layout,
     /// Base transform and reference points.
     pub setup: Setup,
+    /// How well those fit the unloaded readings.
+    pub fit: SetupFit,
     /// The equations of all readings.
     pub equations: &'a [Observation],
     /// Which compliances are free.
@@ -36,12 +41,13 @@ impl Found<'_> {
     pub fn outcome(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
         let (sheet, layout, judgement) = (&self.problem.sheet, self.layout, &self.judgement);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
-        let arm = fit(&judgement.normal, self.free.joints, &judgement.solution, &layout.angles, law)?;
         let is_noise_estimated = self.problem.noise.is_none();
         // Equations have unit variance where the noise is known; else the residuals tell their variance.
         let variance = if is_noise_estimated { judgement.variance } else { 1.0 };
         let width = half_width(is_noise_estimated.then_some(judgement.degrees));
         let seen = self.seen(variance, width);
+        self.refuse_negative(&seen)?;
+        let arm = fit(&judgement.normal, self.free.joints, &judgement.solution, &layout.angles, law)?;
         let estimates = self.arm(&arm, variance, width)?;
         let robot = self.robot(&arm)?;
         let rows = self.rows(&arm);
@@ -67,6 +73,7 @@ impl Found<'_> {
             law_probability: self.law_probability(&arm),
             prediction,
             setup: self.setup.clone(),
+            setup_fit: self.fit.clone(),
             rows,
         })
     }
@@ -83,11 +90,22 @@ impl Found<'_> {
             };
             interval(parameter, self.layout.angle(parameter), value, libm::sqrt(square * variance), width)
         };
-        let is_free = |parameter: &Parameter| match parameter {
-            Parameter::Joint(joint) => self.free.joints[*joint],
-            Parameter::Group(group) => self.free.groups[*group],
-        };
-        self.layout.parameters().into_iter().filter(is_free).map(estimate).collect()
+        self.layout.parameters().into_iter().filter(|parameter| self.free.contains(*parameter)).map(estimate).collect()
+    }
+
+    /// Refuses what no noise explains: a joint that turns against its load.
+    fn refuse_negative(&self, seen: &[Estimate<Parameter>]) -> Result<(), IdentifyError> {
+        let worst = seen.iter().filter(|e| e.value < -NEGATIVE * e.deviation).min_by(|a, b| {
+            let [a, b] = [a, b].map(|e| e.value / e.deviation.max(f64::MIN_POSITIVE));
+            a.total_cmp(&b)
+        });
+        worst.map_or(Ok(()), |estimate| {
+            Err(IdentifyError::Negative {
+                joint: self.layout.joint(estimate.parameter) + 1,
+                value_urad: estimate.value * 1e6,
+                deviation_urad: estimate.deviation * 1e6,
+            })
+        })
     }
 
     fn arm(&self, arm: &ArmFit, variance: f64, width: f64) -> Result<Vec<Estimate<ArmParameter>>, IdentifyError> {

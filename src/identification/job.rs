@@ -6,7 +6,7 @@ use super::model::{Layout, Noise, Observation, Parameter, Response, observations
 use super::normal::{Free, Normal, Unseen};
 use super::outcome::Identified;
 use super::outliers::Task;
-use super::setup::{Setup, SetupError, estimate};
+use super::setup::{Setup, SetupError, check, estimate};
 use super::sheet::Sheet;
 use crate::robot::{Pose, Robot, RobotError};
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -71,6 +71,21 @@ pub enum IdentifyError {
         unseen: Vec<Unseen>,
         /// The parameters, to name them by.
         layout: Layout,
+        /// Lines of the outliers without which it is so, from 1; none where all readings together do not see them.
+        outliers: Vec<usize>,
+    },
+    /// A compliance comes out far below zero: the arm goes against the load.
+    #[error(
+        "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
+         urad/(N m): the joint turns against its load"
+    )]
+    Negative {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// The estimate. urad/(N m)
+        value_urad: f64,
+        /// Its standard deviation. urad/(N m)
+        deviation_urad: f64,
     },
     /// The compensator cannot be told.
     #[error("{0}")]
@@ -112,6 +127,7 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| problem.robot.forward(&c.theta)).collect();
     let mut kept = vec![true; sheet.readings.len()];
+    let mut used = kept.clone();
     let mut setup = estimate(sheet, &flanges, &kept, problem.start.as_ref())?;
     check_lengths(problem, &setup)?;
     let (start_joints, start_groups) = starting_values(problem, &layout);
@@ -121,9 +137,13 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let equations = |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise);
     let mut observations = equations(&setup);
     let (free, dropped) = free_parameters(problem, &layout, &observations)?;
+    if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
+        // Seen at no angle: then there is no law to be found either, and the joint keeps the one it has.
+        return identify(&Problem { varying: None, ..problem.clone() });
+    }
     let judge = |observations: &[Observation]| {
         let task = Task { sheet, layout: &layout, observations, free: &free, held, least_scale };
-        task.judge().ok_or_else(|| IdentifyError::Unseen { unseen: vec![], layout: layout.clone() })
+        task.judge().map_err(|kept| unseen_without_outliers(sheet, &layout, observations, &free, &kept))
     };
     let mut judgement = judge(&observations)?;
     for _ in 0..ROUNDS {
@@ -131,12 +151,31 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
             break;
         }
         kept.clone_from(&judgement.kept);
-        setup = estimate(sheet, &flanges, &kept, Some(&setup.tracker_from_base.rotation))?;
+        // A point whose deflections are all outliers has a place all the same.
+        let is_lost = |point: usize| !sheet.readings.iter().zip(&kept).any(|(r, kept)| *kept && r.point == point);
+        let lost: Vec<bool> = (0..sheet.points.len()).map(is_lost).collect();
+        used = sheet.readings.iter().zip(&kept).map(|(reading, kept)| *kept || lost[reading.point]).collect();
+        setup = estimate(sheet, &flanges, &used, Some(&setup.tracker_from_base.rotation))?;
         observations = equations(&setup);
         judgement = judge(&observations)?;
     }
-    let found = Found { problem, layout: &layout, setup, equations: &observations, free: &free, judgement, noise };
+    let fit = check(sheet, &flanges, &used, &setup)?;
+    let found = Found { problem, layout: &layout, setup, fit, equations: &observations, free: &free, judgement, noise };
     found.outcome(dropped)
+}
+
+/// What the readings that are kept do not see, and which outliers would be needed for it.
+fn unseen_without_outliers(
+    sheet: &Sheet,
+    layout: &Layout,
+    observations: &[Observation],
+    free: &Free,
+    kept: &[bool],
+) -> IdentifyError {
+    let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
+    let unseen = Normal::new(sheet, layout, observations, &weights).unseen(free);
+    let outliers = sheet.readings.iter().zip(kept).filter(|(_, kept)| !**kept).map(|(reading, _)| reading.line);
+    IdentifyError::Unseen { unseen, layout: layout.clone(), outliers: outliers.collect() }
 }
 
 /// Refuses a deflection that is far larger than the starting arm lets expect.
@@ -177,32 +216,17 @@ fn free_parameters(
 ) -> Result<(Free, Vec<Parameter>), IdentifyError> {
     let sheet = &problem.sheet;
     let normal = Normal::new(sheet, layout, equations, &vec![1.0; equations.len()]);
-    let mut free = normal.all_free();
+    let (free, unseen) = normal.tellable();
     let rows = sheet.readings.len() * sheet.rows_per_reading();
-    let mut dropped = Vec::new();
-    loop {
-        let unseen = normal.unseen(&free);
-        if unseen.is_empty() {
-            break;
-        }
-        if !problem.reduce {
-            let unknowns = layout.parameters().len();
-            return Err(if rows < unknowns {
-                IdentifyError::TooFew { equations: rows, unknowns }
-            } else {
-                IdentifyError::Unseen { unseen, layout: layout.clone() }
-            });
-        }
-        for parameter in unseen.iter().filter_map(|unseen| unseen.parameters.first()) {
-            match parameter {
-                Parameter::Joint(joint) => free.joints[*joint] = false,
-                Parameter::Group(group) => free.groups[*group] = false,
-            }
-            if !dropped.contains(parameter) {
-                dropped.push(*parameter);
-            }
-        }
+    if !unseen.is_empty() && !problem.reduce {
+        let unknowns = layout.parameters().len();
+        return Err(if rows < unknowns {
+            IdentifyError::TooFew { equations: rows, unknowns }
+        } else {
+            IdentifyError::Unseen { unseen, layout: layout.clone(), outliers: vec![] }
+        });
     }
+    let dropped: Vec<Parameter> = unseen.iter().filter_map(|unseen| unseen.parameters.first().copied()).collect();
     let unknowns = layout.parameters().len() - dropped.len();
     if rows < unknowns || unknowns == 0 {
         return Err(IdentifyError::TooFew { equations: rows, unknowns });

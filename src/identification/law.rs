@@ -107,7 +107,7 @@ pub fn fit(normal: &Normal, joints: [bool; 6], seen: &Solution, angles: &[f64], 
         }
         (Some(_), Law::Spring(geometry)) => {
             let rows: Vec<_> = angles.iter().map(|angle| geometry.row(*angle)).collect();
-            spring_start(normal, seen, &rows).ok_or(unseen)?.iter().copied().collect()
+            spring_start(normal, joints, seen, &rows).ok_or(unseen)?.iter().copied().collect()
         }
     };
     let mut state = State { joints: seen.joints, law: start };

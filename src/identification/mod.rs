@@ -21,6 +21,7 @@ pub mod model;
 pub mod normal;
 pub mod outcome;
 pub mod outliers;
+pub mod plan;
 pub mod rotation;
 pub mod setup;
 pub mod sheet;

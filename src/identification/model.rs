@@ -141,6 +141,15 @@ pub struct Noise {
     pub orientation: f64,
 }
 
+impl Noise {
+    /// What deflections (per m) and rotations (per rad) are multiplied by to have unit variance: they are differences of two
+    /// readings, so that their variance is twice that of one.
+    pub fn weights(&self) -> (f64, f64) {
+        let weight = |deviation: f64| 1.0 / (libm::sqrt(2.0) * deviation);
+        (weight(self.position), weight(self.orientation))
+    }
+}
+
 /// One reading as equations of unit variance: `deflection = design * compliances + error`. Rows 3 to 5 are zero in sheets
 /// without orientations.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,7 +160,7 @@ pub struct Observation {
     pub deflection: Vector6<f64>,
 }
 
-/// The equations of all readings. A deflection is the difference of two readings, so its variance is twice theirs.
+/// The equations of all readings.
 pub fn observations(
     robot: &Robot,
     sheet: &Sheet,
@@ -160,7 +169,7 @@ pub fn observations(
     noise: &Noise,
 ) -> Vec<Observation> {
     let base_from_tracker = setup.tracker_from_base.rotation.transpose();
-    let [linear, angular] = [noise.position, noise.orientation].map(|deviation| 1.0 / (libm::sqrt(2.0) * deviation));
+    let (linear, angular) = noise.weights();
     let mut observations = Vec::with_capacity(sheet.readings.len());
     for configuration in &sheet.configurations {
         let frames = Frames::new(robot, &configuration.theta);

@@ -42,6 +42,25 @@ pub struct Free {
     pub groups: Vec<bool>,
 }
 
+impl Free {
+    /// Holds a parameter; whether it was free before.
+    fn hold(&mut self, parameter: Parameter) -> bool {
+        let slot = match parameter {
+            Parameter::Joint(joint) => &mut self.joints[joint],
+            Parameter::Group(group) => &mut self.groups[group],
+        };
+        std::mem::replace(slot, false)
+    }
+
+    /// Whether a parameter is free.
+    pub fn contains(&self, parameter: Parameter) -> bool {
+        match parameter {
+            Parameter::Joint(joint) => self.joints[joint],
+            Parameter::Group(group) => self.groups[group],
+        }
+    }
+}
+
 /// Compliances of all parameters, and the covariance of the free ones for equations of unit variance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
@@ -154,6 +173,25 @@ impl Normal {
             Unseen { parameters: shares.into_iter().map(|(parameter, _)| parameter).collect() }
         };
         dependent.map(name).collect()
+    }
+
+    /// The parameters that can be told, and what the readings do not see, all of it: of every combination the first parameter is
+    /// taken out until the others can be told.
+    pub fn tellable(&self) -> (Free, Vec<Unseen>) {
+        let mut free = self.all_free();
+        let mut all: Vec<Unseen> = Vec::new();
+        loop {
+            let unseen = self.unseen(&free);
+            let known = all.len();
+            for unseen in unseen {
+                if unseen.parameters.first().is_some_and(|first| free.hold(*first)) {
+                    all.push(unseen);
+                }
+            }
+            if all.len() == known {
+                return (free, all);
+            }
+        }
     }
 
     /// Products of the joints' columns less what the free groups explain of them (Schur complement).

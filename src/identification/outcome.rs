@@ -2,7 +2,7 @@
 
 use super::law::ArmParameter;
 use super::model::Parameter;
-use super::setup::Setup;
+use super::setup::{Setup, SetupFit};
 use super::validate::Prediction;
 use crate::robot::Robot;
 use nalgebra::{DMatrix, Vector3};
@@ -46,6 +46,8 @@ pub struct RowResult {
 pub struct Identified {
     /// Base transform and reference points.
     pub setup: Setup,
+    /// How well those fit the unloaded readings.
+    pub setup_fit: SetupFit,
     /// One compliance for each joint, and for each distinct angle of the joint beside a compensator. rad/(N m)
     pub seen: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.

@@ -74,23 +74,26 @@ impl Task<'_> {
         observation.deflection - observation.design * compliances
     }
 
-    /// The estimate without outliers; nothing where the equations are singular.
-    pub fn judge(&self) -> Option<Judgement> {
+    /// The estimate without outliers.
+    ///
+    /// # Errors
+    /// The readings that were kept when they did not tell all parameters any more.
+    pub fn judge(&self) -> Result<Judgement, Vec<bool>> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();
         let mut kept = vec![true; readings];
         let is_searched = equations >= 2 * self.parameters() + 2 * self.sheet.rows_per_reading();
         if is_searched {
-            kept = self.robust_start(equations)?;
+            kept = self.robust_start(equations).ok_or_else(|| kept.clone())?;
         }
         for _ in 0..ROUNDS {
-            let (judgement, verdict) = self.judged(&kept, is_searched)?;
+            let (judgement, verdict) = self.judged(&kept, is_searched).ok_or_else(|| kept.clone())?;
             if !is_searched || verdict == kept {
-                return Some(judgement);
+                return Ok(judgement);
             }
             kept = verdict;
         }
-        self.judged(&kept, is_searched).map(|(judgement, _)| judgement)
+        self.judged(&kept, is_searched).map(|(judgement, _)| judgement).ok_or(kept)
     }
 
     fn robust_start(&self, equations: usize) -> Option<Vec<bool>> {

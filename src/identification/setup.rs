@@ -37,6 +37,21 @@ pub enum SetupError {
     /// The configurations are too much alike.
     #[error("the unloaded readings do not tell the base transform from the reference points")]
     Unseen,
+    /// The readings are not where any tracker and reference points would put them.
+    #[error(
+        "the unloaded readings are {off_mm:.3} mm (rms) away from where the joint angles put their points, this one \
+         {worst_mm:.3} mm, while the flange moves over {moved_mm:.3} mm"
+    )]
+    Misfit {
+        /// Root of the mean square distance. mm
+        off_mm: f64,
+        /// Line of the farthest reading, from 1.
+        line: usize,
+        /// Its distance. mm
+        worst_mm: f64,
+        /// Spread of the flange. mm
+        moved_mm: f64,
+    },
     /// The readings spread over another length than the flange does.
     #[error(
         "the unloaded readings spread over {read_mm:.3} mm (rms) while the flange, by its joint angles, moves over \
@@ -50,10 +65,26 @@ pub enum SetupError {
     },
 }
 
+/// How well base transform and reference points fit the unloaded readings, and how well those tell them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetupFit {
+    /// The reading farthest from where kinematics puts its point: line of the sheet from 1, distance in m.
+    pub worst: (usize, f64),
+    /// Root of the mean square distance of all others. m
+    pub others_rms: f64,
+    /// Root of the mean square distance of the flange from its mean place. m
+    pub flange_rms: f64,
+    /// For each reference point the standard deviation of its place on the flange, in the direction in which it is largest,
+    /// with the residuals taken for noise. m
+    pub point_deviations: Vec<f64>,
+}
+
 /// Configurations that a start is sought from; more would not make it better.
 const START: usize = 60;
 /// Readings and flange may spread over lengths that differ by this factor: a reference point turns about the flange too.
 const SPREAD: f64 = 30.0;
+/// Unloaded readings that are farther off than this share of the flange's spread do not belong to the joint angles.
+const MISFIT: f64 = 0.02;
 /// Below this part of the largest, an eigenvalue of the scaled normal matrix counts as zero.
 const SINGULAR: f64 = 1e-11;
 /// More steps than this are not needed where there is a minimum at all.
@@ -93,7 +124,7 @@ pub fn estimate(
     }
     let (_, state) = best.ok_or(SetupError::Unseen)?;
     let (cost, state) = whole.descend(state);
-    if whole.normal(&state).step.is_none() {
+    if whole.step(&state).is_none() {
         return Err(SetupError::Unseen);
     }
     let translation = state.shift + whole.read_centre - state.rotation * whole.flange_centre;
@@ -102,6 +133,39 @@ pub fn estimate(
         points: state.points,
         residual_rms: libm::sqrt(cost / all.len() as f64),
     })
+}
+
+/// How well a setup fits the unloaded readings for which `used` holds.
+///
+/// # Errors
+/// [`SetupError::Misfit`] where it does not: joint angles, zero positions, axes or units are others than the robot file's.
+pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup) -> Result<SetupFit, SetupError> {
+    let all: Vec<usize> = (0..sheet.readings.len()).filter(|index| used[*index]).collect();
+    let whole = Problem::new(sheet, flanges, &all);
+    let Pose { rotation, translation } = setup.tracker_from_base;
+    let shift = translation - whole.read_centre + rotation * whole.flange_centre;
+    let state = State { rotation, shift, points: setup.points.clone() };
+    let squares: Vec<f64> = whole.rows.iter().map(|row| whole.residual(&state, row).norm_squared()).collect();
+    let sum: f64 = squares.iter().sum();
+    let mean = |sum: f64, count: usize| libm::sqrt(sum.max(0.0) / count.max(1) as f64);
+    let flange_rms = mean(whole.rows.iter().map(|row| row.origin.norm_squared()).sum(), all.len());
+    let farthest = (0..all.len()).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).ok_or(SetupError::Unseen)?;
+    let worst = (sheet.readings[all[farthest]].line, libm::sqrt(squares[farthest]));
+    let off = mean(sum, all.len());
+    if off > MISFIT * flange_rms {
+        let [off_mm, worst_mm, moved_mm] = [off, worst.1, flange_rms].map(|length| length * 1e3);
+        return Err(SetupError::Misfit { off_mm, line: worst.0, worst_mm, moved_mm });
+    }
+    let degrees = (3 * all.len()).saturating_sub(6 + 3 * sheet.points.len());
+    let variance = if degrees > 0 { sum / degrees as f64 } else { 0.0 };
+    let (matrix, _) = whole.equations(&state);
+    let inverse = Scaled::new(&matrix).ok_or(SetupError::Unseen)?.inverse();
+    let deviation = |point: usize| {
+        let own: Matrix3<f64> = inverse.fixed_view::<3, 3>(6 + 3 * point, 6 + 3 * point).into_owned();
+        libm::sqrt((own.symmetric_eigenvalues().max() * variance).max(0.0))
+    };
+    let point_deviations = (0..sheet.points.len()).map(deviation).collect();
+    Ok(SetupFit { worst, others_rms: mean(sum - squares[farthest], all.len() - 1), flange_rms, point_deviations })
 }
 
 /// The unknowns. Readings and flange origins count from their centres, so that `shift` and `rotation` are hardly coupled.
@@ -126,9 +190,36 @@ struct Problem {
     flange_centre: Vector3<f64>,
 }
 
-/// One Gauss-Newton step, where the normal matrix is regular.
-struct Normal {
-    step: Option<DVector<f64>>,
+/// A normal matrix that is regular after scaling its diagonal to one.
+struct Scaled {
+    scale: DVector<f64>,
+    eigen: SymmetricEigen<f64, nalgebra::Dyn>,
+}
+
+impl Scaled {
+    fn new(matrix: &DMatrix<f64>) -> Option<Self> {
+        let scale = matrix.diagonal().map(|value| if value > 0.0 { 1.0 / libm::sqrt(value) } else { 0.0 });
+        let eigen = SymmetricEigen::new(DMatrix::from_fn(scale.len(), scale.len(), |i, j| {
+            matrix[(i, j)] * scale[i] * scale[j]
+        }));
+        (eigen.eigenvalues.min() > SINGULAR * eigen.eigenvalues.max()).then_some(Self { scale, eigen })
+    }
+
+    fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+        let along = self.eigen.eigenvectors.transpose() * right.component_mul(&self.scale);
+        let solved = &self.eigen.eigenvectors * along.component_div(&self.eigen.eigenvalues);
+        solved.component_mul(&self.scale)
+    }
+
+    fn inverse(&self) -> DMatrix<f64> {
+        let size = self.scale.len();
+        let vectors = &self.eigen.eigenvectors;
+        let entry = |i: usize, j: usize| -> f64 {
+            let terms = (0..size).map(|k| vectors[(i, k)] * vectors[(j, k)] / self.eigen.eigenvalues[k]);
+            terms.sum::<f64>() * self.scale[i] * self.scale[j]
+        };
+        DMatrix::from_fn(size, size, entry)
+    }
 }
 
 impl Problem {
@@ -168,8 +259,8 @@ impl Problem {
         self.rows.iter().map(|row| self.residual(state, row).norm_squared()).sum()
     }
 
-    /// Unknowns in order: turn of the rotation from the left, shift, points.
-    fn normal(&self, state: &State) -> Normal {
+    /// Normal matrix and gradient. Unknowns in order: turn of the rotation from the left, shift, points.
+    fn equations(&self, state: &State) -> (DMatrix<f64>, DVector<f64>) {
         let size = 6 + 3 * self.points;
         let mut matrix = DMatrix::<f64>::zeros(size, size);
         let mut gradient = DVector::<f64>::zeros(size);
@@ -188,22 +279,19 @@ impl Problem {
                 }
             }
         }
-        let scale = matrix.diagonal().map(|value| if value > 0.0 { 1.0 / libm::sqrt(value) } else { 0.0 });
-        let scaled = DMatrix::from_fn(size, size, |i, j| matrix[(i, j)] * scale[i] * scale[j]);
-        let eigen = SymmetricEigen::new(scaled);
-        let largest = eigen.eigenvalues.max();
-        if eigen.eigenvalues.min() <= SINGULAR * largest {
-            return Normal { step: None };
-        }
-        let along = eigen.eigenvectors.transpose() * gradient.component_mul(&scale);
-        let step = &eigen.eigenvectors * along.component_div(&eigen.eigenvalues);
-        Normal { step: Some(step.component_mul(&scale)) }
+        (matrix, gradient)
+    }
+
+    /// A Gauss-Newton step, where the normal matrix is regular.
+    fn step(&self, state: &State) -> Option<DVector<f64>> {
+        let (matrix, gradient) = self.equations(state);
+        Scaled::new(&matrix).map(|scaled| scaled.solve(&gradient))
     }
 
     fn descend(&self, mut state: State) -> (f64, State) {
         let mut cost = self.cost(&state);
         for _ in 0..STEPS {
-            let Some(step) = self.normal(&state).step else { break };
+            let Some(step) = self.step(&state) else { break };
             let mut part = 1.0;
             let mut better = None;
             while part > 1e-3 {

@@ -67,6 +67,18 @@ impl Sheet {
     /// The sheet as CSV with [`COLUMNS`]: so many decimals of places in mm, all digits of angles and wrench; names must have no
     /// comma or quote in them. Orientations are left out.
     pub fn csv(&self, decimals: usize) -> String {
+        self.text(|reading| {
+            let read = reading.unloaded.iter().chain(&reading.loaded);
+            read.map(|value| format!("{:.decimals$}", value * 1e3)).collect::<Vec<_>>().join(",")
+        })
+    }
+
+    /// The same with the places left empty: a form to be filled in.
+    pub fn form(&self) -> String {
+        self.text(|_| ",".repeat(5))
+    }
+
+    fn text(&self, read: impl Fn(&Reading) -> String) -> String {
         let mut text = format!("{COLUMNS}\n");
         for reading in &self.readings {
             let Configuration { name, theta, force, moment, .. } = &self.configurations[reading.configuration];
@@ -75,12 +87,10 @@ impl Sheet {
                 .chain(force.iter().copied())
                 .chain(moment.iter().copied())
                 // Sums of rounding from the unit are beyond the ninth decimal.
-                .map(|value| ((value * 1e9).round() / 1e9).to_string())
+                .map(|value| ((value * 1e9).round() / 1e9 + 0.0).to_string())
                 .collect();
-            let read = reading.unloaded.iter().chain(&reading.loaded);
-            let read: Vec<String> = read.map(|value| format!("{:.decimals$}", value * 1e3)).collect();
             let point = &self.points[reading.point];
-            text += &format!("{name},{},{point},{}\n", given.join(","), read.join(","));
+            text += &format!("{name},{},{point},{}\n", given.join(","), read(reading));
         }
         text
     }

@@ -25,8 +25,13 @@ impl Geometry {
     }
 }
 
-/// Eq. 21 with the inverse of the covariance of the stiffnesses as weights.
-pub(super) fn spring_start(normal: &Normal, seen: &Solution, rows: &[Vector3<f64>]) -> Option<Vector3<f64>> {
+/// Eq. 21 with the inverse of the covariance of the stiffnesses as weights; `joints` says which of the others are free.
+pub(super) fn spring_start(
+    normal: &Normal,
+    joints: [bool; 6],
+    seen: &Solution,
+    rows: &[Vector3<f64>],
+) -> Option<Vector3<f64>> {
     let mut matrix = Matrix3::zeros();
     let mut rhs = Vector3::zeros();
     let mut coupling = Matrix3x6::zeros();
@@ -42,10 +47,14 @@ pub(super) fn spring_start(normal: &Normal, seen: &Solution, rows: &[Vector3<f64
         coupling += weighted * group.coupling.transpose();
         coupling_rhs += group.coupling * *compliance;
     }
-    let size = 6;
-    let shared = DMatrix::from_fn(size, size, |a, b| {
-        let is_empty = normal.shared[(a, a)] <= 0.0 || normal.shared[(b, b)] <= 0.0;
-        if is_empty { f64::from(u8::from(a == b)) } else { normal.shared[(a, b)] }
+    // What is held is known, as far as the weights go.
+    let is_free = |joint: usize| joints[joint] && normal.varying != Some(joint);
+    let shared = DMatrix::from_fn(6, 6, |a, b| {
+        if is_free(a) && is_free(b) { normal.shared[(a, b)] } else { f64::from(u8::from(a == b)) }
+    });
+    (0..6).filter(|joint| !is_free(*joint)).for_each(|joint| {
+        coupling.fill_column(joint, 0.0);
+        coupling_rhs[joint] = 0.0;
     });
     let shared = Matrix6::from_iterator(scaled_inverse(&shared)?.iter().copied());
     let matrix = matrix - coupling * shared * coupling.transpose();

@@ -5,13 +5,17 @@
 //! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
 //! many points and segments fail.
 //!
+//! Candidates are looked at through a table where the task allows one ([`super::table`]), and then the basins that go on, and
+//! the best of every generation, are looked at by the planner: only averages are the table's.
+//!
 //! Random numbers are counter-based: every individual of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
 
+use super::appraiser::Appraiser;
 use super::control::{Control, Progress};
 use super::outcome::{Generation, Goal};
-use super::problem::{Cell, Placement};
-use super::redundancy::{Extremum, Planner, Worth};
+use super::problem::{Cell, Placement, Problem};
+use super::redundancy::Worth;
 use super::settings::{PostureSearch, SearchSettings};
 use crate::robot::{Posture, angles::wrap};
 use rand::{Rng, RngExt, SeedableRng};
@@ -40,6 +44,8 @@ pub struct Found {
     pub history: Vec<Generation>,
     /// Placements evaluated.
     pub evaluations: usize,
+    /// Whether a table misled it: what the table promised, the planner does not find.
+    pub misled: bool,
     /// Whether the caller stopped it.
     pub interrupted: bool,
 }
@@ -76,12 +82,14 @@ pub fn rank(goal: Goal, a: Worth, b: Worth) -> Ordering {
 }
 
 /// Searches the cell.
-pub fn search(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal, control: &dyn Control) -> Found {
-    let cell = &planner.problem().cell;
-    let mut population = initial(planner, settings, goal);
-    evaluate(planner, &mut population, 0);
+pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, control: &dyn Control) -> Found {
+    let problem = appraiser.planner().problem();
+    let cell = &problem.cell;
+    let mut population = initial(problem, settings, goal);
+    evaluate(appraiser, &mut population, 0);
     let mut evaluations = population.len();
     let mut history = Vec::new();
+    let mut best = Vec::new();
     let mut archive = Vec::new();
     let mut interrupted = false;
     for generation in 0..=settings.generations {
@@ -95,27 +103,27 @@ pub fn search(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal, cont
                 .collect::<Vec<_>>();
             population.truncate(elite);
             population.extend(children);
-            evaluate(planner, &mut population, elite);
+            evaluate(appraiser, &mut population, elite);
             evaluations += settings.population - elite;
         }
-        // A stable sort: equals stay in the order of their index.
         population.sort_by(|a, b| rank(goal, a.worth, b.worth));
         archive.extend(population.iter().filter(|i| i.worth.mean().is_some()).cloned());
         archive.sort_by(|a, b| rank(goal, a.worth, b.worth));
         archive = distinct(cell, &archive, ARCHIVE);
         let figures = figures(goal, generation, &population, evaluations);
         history.push(figures);
+        best.push(population[0].clone());
         control.report(Progress::Generation { generation: figures, of: settings.generations });
         if control.should_stop() {
             interrupted = true;
             break;
         }
     }
-    archive.truncate(settings.basins);
-    if archive.is_empty() {
-        archive.push(population.swap_remove(0));
-    }
-    Found { basins: archive, history, evaluations, interrupted }
+    archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
+    appraiser.check(&mut history, &best, goal);
+    let settled = appraiser.settle(archive, goal, settings.basins, control);
+    evaluations += settled.looks;
+    Found { basins: settled.basins, history, evaluations, misled: settled.misled, interrupted }
 }
 
 /// The random numbers of one individual: seed and place decide, nothing else.
@@ -136,7 +144,7 @@ fn bounds(cell: &Cell) -> [(f64, f64); 4] {
 }
 
 /// A Latin hypercube: along every gene, one individual in each of equal slices.
-fn initial(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal) -> Vec<Individual> {
+fn initial(problem: &Problem, settings: &SearchSettings, goal: Goal) -> Vec<Individual> {
     let size = settings.population;
     let mut random = stream(settings.seed, goal, 0, size);
     let slices: [Vec<usize>; 4] = std::array::from_fn(|_| {
@@ -146,8 +154,8 @@ fn initial(planner: &Planner<'_>, settings: &SearchSettings, goal: Goal) -> Vec<
         }
         order
     });
-    let bounds = bounds(&planner.problem().cell);
-    let segments = planner.problem().task.segments().len();
+    let bounds = bounds(&problem.cell);
+    let segments = problem.task.segments().len();
     (0..size)
         .map(|index| {
             let mut random = stream(settings.seed, goal, 0, index);
@@ -166,12 +174,11 @@ fn random_posture(random: &mut impl Rng) -> Posture {
     Posture::ALL[random.random_range(0..8)]
 }
 
-fn evaluate(planner: &Planner<'_>, population: &mut [Individual], from: usize) {
+fn evaluate(appraiser: &Appraiser<'_>, population: &mut [Individual], from: usize) {
     population[from..].par_iter_mut().for_each_init(
-        || planner.workspace(),
+        || appraiser.workspace(),
         |workspace, individual| {
-            let scheme = individual.scheme.as_deref();
-            individual.worth = planner.worth(&individual.pose, Extremum::Smallest, scheme, workspace);
+            individual.worth = appraiser.worth(&individual.pose, individual.scheme.as_deref(), workspace);
         },
     );
 }
@@ -276,6 +283,8 @@ pub fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individu
 #[cfg(test)]
 mod tests {
     use super::super::control::Unwatched;
+    use super::super::redundancy::Planner;
+    use super::super::table::Table;
     use super::super::testing::five_segments;
     use super::*;
 
@@ -288,15 +297,20 @@ mod tests {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
         let planner = Planner::new(&problem);
-        let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| search(&planner, &small(), Goal::Best, &Unwatched))
-        };
-        let one = run(1);
-        assert_eq!(one, run(2));
-        assert_eq!(one, run(5));
-        let other = search(&planner, &SearchSettings { seed: 2, ..small() }, Goal::Best, &Unwatched);
-        assert_ne!(one.basins, other.basins);
+        for looks_through_table in [false, true] {
+            let run = |threads: usize, seed: u64| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| {
+                    let table = looks_through_table.then(|| Table::new(&problem).unwrap());
+                    let appraiser = Appraiser::new(&planner, table.as_ref());
+                    search(&appraiser, &SearchSettings { seed, ..small() }, Goal::Best, &Unwatched)
+                })
+            };
+            let one = run(1, 1);
+            assert_eq!(one, run(2, 1));
+            assert_eq!(one, run(5, 1));
+            assert_ne!(one.basins, run(2, 2).basins);
+        }
     }
 
     #[test]
@@ -309,7 +323,8 @@ mod tests {
             (Goal::Best, PostureSearch::Genetic),
         ] {
             let planner = Planner::new(&problem);
-            let found = search(&planner, &SearchSettings { postures, ..small() }, goal, &Unwatched);
+            let appraiser = Appraiser::new(&planner, None);
+            let found = search(&appraiser, &SearchSettings { postures, ..small() }, goal, &Unwatched);
             let best: Vec<f64> = found.history.iter().filter_map(|g| g.best).collect();
             let sign = if goal == Goal::Best { 1.0 } else { -1.0 };
             assert!(best.windows(2).all(|pair| pair[1] * sign <= pair[0] * sign));

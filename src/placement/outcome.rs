@@ -1,6 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
 use super::problem::Placement;
+use super::table::{Accuracy, Shape, Unsuited};
 use crate::robot::Posture;
 use nalgebra::Vector3;
 
@@ -187,11 +188,22 @@ pub struct Refinement {
     pub statuses: Vec<String>,
 }
 
+/// What a search looked through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tabled {
+    /// What was sampled where.
+    pub shape: Shape,
+    /// How far it is from the ordinary evaluator.
+    pub accuracy: Accuracy,
+}
+
 /// The result of the placement job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: [Case; 4],
+    /// The table that the searches looked through, or why there is none; `None` where none was asked for.
+    pub tabled: Option<Result<Tabled, Unsuited>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.

@@ -1,14 +1,16 @@
 //! The placement job: search, refine, plan, map.
 
+use super::appraiser::Appraiser;
 use super::control::{Control, Progress};
 use super::criterion::{normal_part_by_parameters, state};
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::genetic::{self, Found, Individual};
-use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement};
+use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
 use super::refine::{Solution, planned, refine};
-use super::settings::{SearchSettings, TransferSettings};
+use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::table::{Table, Unsuited};
 use super::transfer::cycle;
 use crate::robot::{Posture, angles::wrap};
 use rayon::prelude::*;
@@ -66,7 +68,26 @@ pub fn place(
     control: &dyn Control,
 ) -> Result<Outcome, NothingFeasible> {
     let planner = Planner::new(problem);
-    let mut found = [Goal::Best, Goal::Worst].map(|goal| genetic::search(&planner, settings, goal, control));
+    let table = match settings.tables {
+        Tables::Auto | Tables::Always => Some(Table::new(problem)),
+        Tables::Never => None,
+    };
+    let mut tabled = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(Tabled { shape: *table.shape(), accuracy: table.accuracy() }),
+        Err(unsuited) => Err(unsuited.clone()),
+    });
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&Table<'_>>| {
+        let appraiser = Appraiser::new(&planner, table);
+        [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.misled && !f.interrupted) && !control.should_stop() {
+        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
     // A search that met nothing feasible goes on from what the other met.
     match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.worth.mean().is_some())) {
         [true, true] => {}
@@ -78,7 +99,7 @@ pub fn place(
         }
     }
     let planner = Planner::finer(problem);
-    let (solutions, refinements) = finish(&planner, &found, control)
+    let (solutions, refinements) = finish(&Appraiser::new(&planner, table.as_ref()).looking_closer(2), &found, control)
         .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
     control.report(Progress::Finishing);
     let [best, worst] = &solutions;
@@ -96,7 +117,6 @@ pub fn place(
             cycle: cycle(problem, transfer, &plans),
         }
     };
-    let evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     Ok(Outcome {
         cases: [
             case(1, best, Extremum::Smallest),
@@ -104,6 +124,7 @@ pub fn place(
             case(3, worst, Extremum::Smallest),
             case(4, worst, Extremum::Largest),
         ],
+        tabled,
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         map_best: deflection_map(problem, &best.solution.pose),
@@ -156,29 +177,49 @@ struct Refined {
 /// that rounding does not choose between mirror images.
 const TIE: f64 = 1e-5;
 
+/// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
+/// polished on a table: refinement gains less from there.
+const HOPELESS: f64 = 0.03;
+
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
-/// when nothing feasible went in.
-fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> Option<([Refined; 2], Vec<Refinement>)> {
-    let goals = [Goal::Best, Goal::Worst];
-    let jobs: Vec<(Goal, &Individual)> =
-        goals.iter().zip(found).flat_map(|(goal, f)| f.basins.iter().map(|i| (*goal, i))).collect();
-    let done = AtomicUsize::new(0);
-    let results: Vec<(Goal, Refined, Option<Refinement>)> = jobs
-        .par_iter()
-        .filter_map(|(goal, individual)| {
-            let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
-            let refined = if control.should_stop() {
-                let tube = fine::Tube::full(planner.grid());
-                planned(planner, pose, scheme, tube, &mut planner.workspace()).map(|s| (s, None))
-            } else {
-                refine(planner, pose, *goal, scheme).map(|(solution, report)| (solution, Some(report)))
-            };
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            control.report(Progress::Refined { goal: *goal, done, of: jobs.len() });
-            let (solution, report) = refined?;
-            Some((*goal, Refined { solution, scheme: individual.scheme.clone() }, report))
-        })
+/// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
+fn finish(
+    appraiser: &Appraiser<'_>,
+    found: &[Found; 2],
+    control: &dyn Control,
+) -> Option<([Refined; 2], Vec<Refinement>)> {
+    let jobs: Vec<(Goal, usize, &Individual)> = [Goal::Best, Goal::Worst]
+        .into_iter()
+        .zip(found)
+        .flat_map(|(goal, f)| f.basins.iter().enumerate().map(move |(rank, individual)| (goal, rank, individual)))
         .collect();
+    let done = AtomicUsize::new(0);
+    let run = |jobs: &[(Goal, usize, &Individual)], of: usize| -> Vec<(Goal, Refined, Option<Refinement>)> {
+        let refined = |(goal, _, individual): &(Goal, usize, &Individual)| {
+            let refined = refine_one(appraiser, *goal, individual, control);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            control.report(Progress::Refined { goal: *goal, done, of });
+            refined.map(|(refined, report)| (*goal, refined, report))
+        };
+        jobs.par_iter().filter_map(refined).collect()
+    };
+    let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
+    let mut results = run(&ahead, jobs.len());
+    let hopeful = |(goal, _, individual): &(Goal, usize, &Individual)| {
+        let first = results.iter().find(|(known, ..)| known == goal).map(|(_, refined, _)| refined.solution.mean());
+        match (appraiser.table(), first, individual.worth.mean()) {
+            (Some(_), Some(first), Some(mean)) => match goal {
+                Goal::Best => mean * (1.0 - HOPELESS) < first,
+                Goal::Worst => mean * (1.0 + HOPELESS) > first,
+            },
+            _ => true,
+        }
+    };
+    let others: Vec<_> = others.into_iter().filter(hopeful).collect();
+    let of = ahead.len() + others.len();
+    results.extend(run(&others, of));
+    // In the order of the searches: a stable sort.
+    results.sort_by_key(|(goal, ..)| usize::from(*goal == Goal::Worst));
     let mut refinements = Vec::new();
     let mut chosen: [Option<Refined>; 2] = [None, None];
     for (goal, refined, report) in results {
@@ -194,6 +235,25 @@ fn finish(planner: &Planner<'_>, found: &[Found; 2], control: &dyn Control) -> O
     }
     let [Some(best), Some(worst)] = chosen else { return None };
     Some(([best, worst], refinements))
+}
+
+/// Refines one basin, or only plans it where the job is to stop.
+fn refine_one(
+    appraiser: &Appraiser<'_>,
+    goal: Goal,
+    individual: &Individual,
+    control: &dyn Control,
+) -> Option<(Refined, Option<Refinement>)> {
+    let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
+    let (solution, report) = if control.should_stop() {
+        let planner = appraiser.planner();
+        let tube = fine::Tube::full(planner.grid());
+        (planned(planner, pose, scheme, tube, &mut planner.workspace())?, None)
+    } else {
+        let (solution, report) = refine(appraiser, pose, goal, scheme)?;
+        (solution, Some(report))
+    };
+    Some((Refined { solution, scheme: individual.scheme.clone() }, report))
 }
 
 fn worst_plan(

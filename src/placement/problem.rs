@@ -162,7 +162,7 @@ impl Redundancy {
 }
 
 /// A joint step is never as large as half a turn. rad
-const MOST_STEP: f64 = PI - 1e-6;
+pub(super) const MOST_STEP: f64 = PI - 1e-6;
 
 /// Everything that defines the placement problem.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,6 +9,17 @@ pub enum PostureSearch {
     Genetic,
 }
 
+/// Whether the search looks through a table ([`super::table`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tables {
+    /// Where the task allows it and the table fits in memory.
+    Auto,
+    /// As a wish: a task that does not allow it is refused when it is read.
+    Always,
+    /// Never: the planner looks at every candidate.
+    Never,
+}
+
 /// Settings of the genetic search and of the refinement after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -22,12 +33,21 @@ pub struct SearchSettings {
     pub postures: PostureSearch,
     /// Distinct basins of each search that are refined, at least 1.
     pub basins: usize,
+    /// Whether to look through a table.
+    pub tables: Tables,
 }
 
 impl Default for SearchSettings {
     /// The published population and generations (Caro 2013, section V).
     fn default() -> Self {
-        Self { seed: 1, population: 120, generations: 51, postures: PostureSearch::Exact, basins: 4 }
+        Self {
+            seed: 1,
+            population: 120,
+            generations: 51,
+            postures: PostureSearch::Exact,
+            basins: 4,
+            tables: Tables::Auto,
+        }
     }
 }
 

@@ -103,14 +103,9 @@ pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
     let settings = &run.job.settings;
     let placement = &run.placement;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
-    let inputs: Vec<Value> = run
-        .inputs
-        .iter()
-        .map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 }))
-        .collect();
     json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "inputs": inputs,
+        "inputs": json::inputs(&run.inputs),
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
         "model": model(settings.model),

@@ -5,9 +5,11 @@
 
 use super::number::Unit;
 use super::{Context, words};
-use crate::placement::outcome::{Case, Outcome, PlanPoint, Refinement, Transfer};
+use crate::input::InputFile;
+use crate::placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
 use crate::placement::problem::{Interval, Placement, Problem};
-use crate::placement::settings::PostureSearch;
+use crate::placement::settings::{PostureSearch, Tables};
+use crate::placement::table::{Axis, Unsuited};
 use serde_json::{Map, Value, json};
 
 /// How long a computation took.
@@ -36,7 +38,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
     document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
     document.insert("robot".to_owned(), json!(problem.robot.name()));
     document.insert("seed".to_owned(), json!(context.search.seed));
-    document.insert("inputs".to_owned(), inputs(context));
+    document.insert("inputs".to_owned(), inputs(&context.inputs));
     document.insert("search".to_owned(), search(context));
     document.insert("transfer".to_owned(), transfer_settings(context));
     document.insert("cell".to_owned(), cell(problem));
@@ -62,10 +64,42 @@ fn common(outcome: &Outcome, context: &Context) -> Map<String, Value> {
     Map::from_iter([
         ("evaluations".to_owned(), json!(outcome.evaluations)),
         ("states".to_owned(), json!(outcome.states)),
+        ("table".to_owned(), outcome.tabled.as_ref().map_or(Value::Null, tabled)),
         ("interrupted".to_owned(), json!(outcome.interrupted)),
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ])
+}
+
+/// Errors of a table, relative.
+const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
+
+/// The table that the search looked through, or why there is none.
+fn tabled(tabled: &Result<Tabled, Unsuited>) -> Value {
+    match tabled {
+        Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),
+        Ok(Tabled { shape, accuracy }) => {
+            let axis = |axis: &Axis| {
+                json!({
+                    "first_mm": number(Unit::PLACE_MM, axis.first),
+                    "step_mm": number(Unit::PLACE_MM, axis.step),
+                    "count": axis.count,
+                })
+            };
+            json!({
+                "used": true,
+                "radius": axis(&shape.radius),
+                "height": axis(&shape.height),
+                "headings": shape.headings,
+                "states": shape.states(),
+                "bytes": shape.bytes(),
+                "compared_states": accuracy.states,
+                "rms_error": number(TABLE_ERROR, accuracy.rms),
+                "largest_error": number(TABLE_ERROR, accuracy.largest),
+                "disputed_share": number(TABLE_ERROR, accuracy.disputed),
+            })
+        }
+    }
 }
 
 fn cases(outcome: &Outcome, with_plans: bool) -> Value {
@@ -145,10 +179,9 @@ fn refinement(refinement: &Refinement) -> Value {
     })
 }
 
-fn inputs(context: &Context) -> Value {
-    let entry =
-        |input: &crate::input::InputFile| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 });
-    context.inputs.iter().map(entry).collect()
+/// The files that a result depends on, as every JSON document states them.
+pub fn inputs(files: &[InputFile]) -> Value {
+    files.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 })).collect()
 }
 
 fn search(context: &Context) -> Value {
@@ -156,11 +189,17 @@ fn search(context: &Context) -> Value {
         PostureSearch::Exact => "exact",
         PostureSearch::Genetic => "genetic",
     };
+    let tables = match context.search.tables {
+        Tables::Auto => "auto",
+        Tables::Always => "always",
+        Tables::Never => "never",
+    };
     json!({
         "population": context.search.population,
         "generations": context.search.generations,
         "postures": postures,
         "basins": context.search.basins,
+        "tables": tables,
     })
 }
 

@@ -14,7 +14,7 @@ pub mod output;
 pub mod picture;
 pub mod tables;
 pub mod text;
-mod words;
+pub(crate) mod words;
 
 #[cfg(test)]
 mod testing;

@@ -124,9 +124,17 @@ fn the_other_tables_have_their_columns() {
 fn json_has_the_keys_of_the_contract() {
     let timing = Timing { wall: 2.0, threads: 8 };
     let document = place_json(outcome(), &context(), &timing);
-    for key in
-        ["evaluations", "states", "states_per_second", "wall_s", "threads", "interrupted", "refinements", "reference"]
-    {
+    for key in [
+        "evaluations",
+        "states",
+        "states_per_second",
+        "wall_s",
+        "threads",
+        "interrupted",
+        "refinements",
+        "reference",
+        "table",
+    ] {
         assert!(document.get(key).is_some(), "{key}");
     }
     assert_eq!(document["states_per_second"], 78_624_000.0);

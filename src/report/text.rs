@@ -1,10 +1,11 @@
 //! The short table for people.
 
-use super::number::fixed;
+use super::number::{figures, fixed};
 use super::{Context, words};
 use crate::input::Reference;
 use crate::placement::outcome::{Outcome, ratio};
 use crate::placement::problem::Problem;
+use crate::placement::table::Unsuited;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
@@ -25,6 +26,21 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
+    match &outcome.tabled {
+        Some(Ok(tabled)) => {
+            let (states, megabytes) = (tabled.shape.states(), tabled.shape.bytes() as f64 / 1e6);
+            let error = figures(tabled.accuracy.rms * 100.0);
+            line(
+                &mut text,
+                &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
+            );
+        }
+        Some(Err(unsuited @ Unsuited::Misleading)) => {
+            line(&mut text, &format!("searched again without a table: {unsuited}"));
+        }
+        Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
+        None => {}
+    }
     if outcome.interrupted {
         line(&mut text, "The search was stopped before its end: this is the best result so far.");
     }

@@ -75,6 +75,7 @@ pub struct Dual<const N: usize> {
 
 impl<const N: usize> Dual<N> {
     /// The independent variable number `index`, at `value`.
+    #[inline]
     pub fn variable(value: f64, index: usize) -> Self {
         let mut gradient = [0.0; N];
         gradient[index] = 1.0;
@@ -82,11 +83,13 @@ impl<const N: usize> Dual<N> {
     }
 
     /// Applies the chain rule: `value` is f(self), `slope` its derivative f'(self).
+    #[inline]
     fn chain(self, value: f64, slope: f64) -> Self {
         Self { value, gradient: self.gradient.map(|g| g * slope) }
     }
 
     /// `a * self' + b * other'` beside the given value.
+    #[inline]
     fn combine(self, other: Self, value: f64, a: f64, b: f64) -> Self {
         let mut gradient = [0.0; N];
         for (k, g) in gradient.iter_mut().enumerate() {
@@ -97,20 +100,29 @@ impl<const N: usize> Dual<N> {
 }
 
 impl<const N: usize> Scalar for Dual<N> {
+    #[inline]
     fn constant(value: f64) -> Self {
         Self { value, gradient: [0.0; N] }
     }
+    #[inline]
     fn value(self) -> f64 {
         self.value
     }
+    #[inline]
+    fn scale(self, factor: f64) -> Self {
+        self.chain(self.value * factor, factor)
+    }
+    #[inline]
     fn sqrt(self) -> Self {
         let root = libm::sqrt(self.value);
         self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })
     }
+    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (sine, cosine) = libm::sincos(self.value);
         (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
+    #[inline]
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
         let (a, b) = if square > 0.0 { (x.value / square, -self.value / square) } else { (0.0, 0.0) };
@@ -120,6 +132,7 @@ impl<const N: usize> Scalar for Dual<N> {
 
 impl<const N: usize> Add for Dual<N> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.combine(other, self.value + other.value, 1.0, 1.0)
     }
@@ -127,6 +140,7 @@ impl<const N: usize> Add for Dual<N> {
 
 impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.combine(other, self.value - other.value, 1.0, -1.0)
     }
@@ -134,6 +148,7 @@ impl<const N: usize> Sub for Dual<N> {
 
 impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.combine(other, self.value * other.value, other.value, self.value)
     }
@@ -141,6 +156,7 @@ impl<const N: usize> Mul for Dual<N> {
 
 impl<const N: usize> Div for Dual<N> {
     type Output = Self;
+    #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         self.combine(other, value, 1.0 / other.value, -value / other.value)
@@ -149,45 +165,53 @@ impl<const N: usize> Div for Dual<N> {
 
 impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         self.chain(-self.value, -1.0)
     }
 }
 
 impl<const N: usize> AddAssign for Dual<N> {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<const N: usize> SubAssign for Dual<N> {
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl<const N: usize> MulAssign for Dual<N> {
+    #[inline]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
 impl<const N: usize> DivAssign for Dual<N> {
+    #[inline]
     fn div_assign(&mut self, other: Self) {
         *self = *self / other;
     }
 }
 
 impl<const N: usize> Zero for Dual<N> {
+    #[inline]
     fn zero() -> Self {
         Self::constant(0.0)
     }
+    #[inline]
     fn is_zero(&self) -> bool {
         self.value == 0.0 && self.gradient.iter().all(|g| *g == 0.0)
     }
 }
 
 impl<const N: usize> One for Dual<N> {
+    #[inline]
     fn one() -> Self {
         Self::constant(1.0)
     }

@@ -10,7 +10,7 @@ use super::milling::milling_from;
 use super::printed::printed_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
-use super::source::{Source, sha256};
+use super::source::{Source, input_file};
 use super::tables::spindle_from;
 use crate::assessment::benchmark::Plane;
 use crate::assessment::map::Grid;
@@ -79,12 +79,12 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let selection =
         selection.unwrap_or(Selection { accuracies: vec![], forces: vec![], remaining_share: 1.0, gravity });
 
-    let mut inputs = vec![input("config", &file.file_name().unwrap_or_default().to_string_lossy(), source.bytes())];
+    let mut inputs = vec![source.as_config()];
     let robots = robots_from(&robots, yields.range_share, &mut inputs)?;
     let printed = reference.optional(|field| {
         let [tables] = field.table()?.fields(["tables"])?;
         let named = tables.named_file()?;
-        inputs.push(input("reference", &named.name, &named.bytes));
+        inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
         printed_from(&Source::new(&named.file, named.bytes)?)
     })?;
     let asked = !selection.forces.is_empty();
@@ -98,10 +98,6 @@ const RATED: f64 = 0.8;
 /// Standard acceleration of gravity. m/s^2
 const GRAVITY: f64 = 9.806_65;
 
-fn input(role: &'static str, name: &str, bytes: &[u8]) -> InputFile {
-    InputFile { role, name: name.to_owned(), sha256: sha256(bytes) }
-}
-
 /// The robots of a list, with one compliance in place of a range where a share of the range is given.
 fn robots_from(
     field: &Field<'_>,
@@ -111,7 +107,7 @@ fn robots_from(
     let mut robots: Vec<Robot> = Vec::new();
     for entry in field.list("the paths of one or more robot files, relative to the folder of this file")? {
         let NamedFile { name, file, bytes } = entry.named_file()?;
-        inputs.push(input("robot", &name, &bytes));
+        inputs.push(input_file("robot", name, &bytes));
         let robot = robot_from(&Source::new(&file, bytes)?)?;
         if robots.iter().any(|other| other.name() == robot.name()) {
             let problem = format!("names a second robot called '{}'", robot.name());

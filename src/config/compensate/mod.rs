@@ -8,7 +8,7 @@ mod tests;
 use super::reader::{Field, Table};
 use super::robot::robot_from;
 use super::run::read_run;
-use super::source::{Source, sha256};
+use super::source::{Source, input_file};
 use crate::compensation::{Compensation, Model, Settings, other_geometry};
 use crate::input::{InputError, InputFile};
 use crate::placement::problem::Placement;
@@ -54,8 +54,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     let settings = settings.optional(|field| settings_from(&field.table()?))?.unwrap_or_default();
     let settings = Settings { characteristic_length: length, ..settings };
 
-    let config = file.file_name().unwrap_or_default().to_string_lossy();
-    let mut inputs = vec![input("config", &config, source.bytes())];
+    let mut inputs = vec![source.as_config()];
     for read in run.inputs {
         let is_run = read.role == "config";
         inputs.push(if is_run { InputFile { role: "run", name: run_file.name.clone(), ..read } } else { read });
@@ -63,7 +62,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     let plan_file = plan.named_file()?;
     let rows = rows_from(&plan_file.file, &plan_file.bytes, run.problem.task.path())?;
     let plan = placed(&plan_file.file, &rows, &run.problem)?;
-    inputs.push(input("plan", &plan_file.name, &plan_file.bytes));
+    inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));
 
     let real = match reality {
         Some(path) => Some((path.to_string_lossy().replace('\\', "/"), Source::read(path)?)),
@@ -77,16 +76,12 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     let reality = match real {
         None => robot.clone(),
         Some((name, source)) => {
-            inputs.push(input("reality", &name, source.bytes()));
+            inputs.push(input_file("reality", name, source.bytes()));
             reality_from(&source, &robot)?
         }
     };
     let job = Compensation { robot, reality, spindle: run.problem.spindle, stations: plan.stations, settings };
     Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes: plan.note.into_iter().collect() })
-}
-
-fn input(role: &'static str, name: &str, bytes: &[u8]) -> InputFile {
-    InputFile { role, name: name.to_owned(), sha256: sha256(bytes) }
 }
 
 /// More iterations than this are not allowed.

@@ -14,22 +14,23 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 mod refusals;
+mod setups;
 mod validation;
 
 const COMPENSATOR: Compensator =
     Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha: -0.35, free_length: 0.6 };
-const GEOMETRY: Geometry = Geometry { a: COMPENSATOR.a, l: COMPENSATOR.l, alpha: COMPENSATOR.alpha };
+pub(super) const GEOMETRY: Geometry = Geometry { a: COMPENSATOR.a, l: COMPENSATOR.l, alpha: COMPENSATOR.alpha };
 const ALONE: f64 = 0.33e-6;
-const NOISE: f64 = 3e-5;
+pub(super) const NOISE: f64 = 3e-5;
 
 /// The arm to be found: compliances as identified for a KR 270 (Klimchik et al. 2017, Table 4), with a compensator.
-fn arm() -> Robot {
+pub(super) fn arm() -> Robot {
     let mut laws = [0.54e-6, ALONE, 0.42e-6, 2.79e-6, 3.48e-6, 2.074e-6].map(Compliance::from);
     laws[1] = Compliance::Compensated { alone: ALONE, compensator: COMPENSATOR };
     kr270().with_compliances(laws).unwrap()
 }
 
-fn cell(points: usize) -> Cell {
+pub(super) fn cell(points: usize) -> Cell {
     let places = [Vector3::new(0.1, 0.05, 0.2), Vector3::new(-0.12, 0.08, 0.25), Vector3::new(0.02, -0.15, 0.3)];
     Cell {
         tracker_from_base: Pose {
@@ -65,12 +66,12 @@ fn shots(random: &mut ChaCha8Rng, count: usize, distinct: usize) -> Vec<Shot> {
 }
 
 /// Normal numbers (Box and Muller 1958).
-fn gauss(random: &mut ChaCha8Rng) -> f64 {
+pub(super) fn gauss(random: &mut ChaCha8Rng) -> f64 {
     let u: f64 = random.random_range(f64::MIN_POSITIVE..1.0);
     libm::sqrt(-2.0 * libm::log(u)) * libm::cos(random.random_range(0.0..TAU))
 }
 
-fn problem(sheet: Sheet, cell: &Cell) -> Problem {
+pub(super) fn problem(sheet: Sheet, cell: &Cell) -> Problem {
     Problem {
         robot: kr270(),
         sheet,
@@ -168,6 +169,11 @@ fn reported_deviations_and_intervals_are_those_of_many_sheets() {
     let false_alarms = found.iter().filter(|found| found.outliers().count() > 0).count();
     // One sheet in a hundred, by the rule; five standard deviations of that count are 19.
     assert!((1..35).contains(&false_alarms), "{false_alarms} of {REPETITIONS} sheets have outliers");
+    // The law is the true one, so that its probability is any number from 0 to 1.
+    let probabilities = found.iter().map(|found| found.law_probability.unwrap());
+    let mean = probabilities.clone().sum::<f64>() / REPETITIONS as f64;
+    let low = probabilities.filter(|probability| *probability < 0.05).count();
+    assert!((mean - 0.5).abs() < 0.03 && (40..=110).contains(&low), "{mean} {low}");
     let noise = found.iter().map(|found| found.noise).sum::<f64>() / REPETITIONS as f64;
     assert!((noise / NOISE - 1.0).abs() < 0.01, "{noise}");
 }

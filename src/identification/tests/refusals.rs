@@ -45,6 +45,45 @@ fn what_cannot_be_seen_is_named_and_held_only_on_request() {
 }
 
 #[test]
+fn a_varying_joint_that_is_seen_at_no_angle_keeps_its_law() {
+    // Along axes 2 and 3: nothing but rounding is left of their columns.
+    let along = |shot: &mut Shot| {
+        let axis = crate::robot::Frames::new(&arm(), &shot.0).twist(1, &Vector3::zeros()).1;
+        shot.1 = axis * 2700.0;
+    };
+    for law in [Law::Constant, Law::Spring(GEOMETRY)] {
+        let problem = Problem { varying: Some((1, law)), ..changed(along, &cell(3)) };
+        assert_eq!(unseen(&problem).len(), 6);
+        let found = identify(&Problem { reduce: true, ..problem }).unwrap();
+        assert_eq!(found.held, [Parameter::Joint(1), Parameter::Joint(2)]);
+        assert_eq!(found.robot.joints()[1].compliance, kr270().joints()[1].compliance);
+        assert_eq!(found.arm.len(), 4);
+        for estimate in &found.arm {
+            assert!((estimate.value / arm_truth(estimate.parameter) - 1.0).abs() < 1e-9, "{estimate:?}");
+        }
+    }
+}
+
+#[test]
+fn of_two_joints_that_look_alike_one_is_held_and_the_compensator_is_found_all_the_same() {
+    let straight = Problem { reduce: true, ..changed(|shot| shot.0[4] = 0.0, &cell(3)) };
+    // Held at the truth, the rest comes out true; straight through the sum of both otherwise.
+    let mut compliances = kr270().constant_compliances().unwrap();
+    compliances[3] = 2.79e-6;
+    compliances[5] = 2.074e-6;
+    let found = identify(&Problem { robot: kr270().with_compliances(compliances).unwrap(), ..straight }).unwrap();
+    assert_eq!(found.held.len(), 1);
+    assert_eq!(found.arm.len(), 7);
+    for estimate in &found.arm {
+        assert!((estimate.value / arm_truth(estimate.parameter) - 1.0).abs() < 1e-9, "{estimate:?}");
+    }
+    for estimate in &found.seen {
+        let truth = truth(estimate.parameter, estimate.angle);
+        assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
+    }
+}
+
+#[test]
 fn sheets_that_tell_too_little_are_refused() {
     let few = |count: usize, distinct: usize| {
         let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), count, distinct);

@@ -1,94 +1,173 @@
-//! Four numbers worked on at once: plain Rust that the compiler turns into vector instructions.
+//! Several numbers worked on at once, by the widest vectors that the processor has.
 //!
-//! Every operation is exactly the one of `f64` in each lane, so results do not depend on the width of the machine's
-//! vectors. Choices are made with masks, never with branches.
+//! Every operation is exactly the one of `f64` in each lane, nothing is fused and nothing is summed across lanes, so results
+//! do not depend on the width of the vectors. Choices are made with masks, never with branches.
 
+use pulp::{Arch, Scalar256b, Simd, WithSimd, bytemuck};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-/// Number of lanes.
-pub const WIDTH: usize = 4;
+/// Most lanes that any processor has here: rows that are read in lanes go on this far beyond their end.
+pub const MOST_LANES: usize = 8;
 
-/// Four numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lanes(pub [f64; WIDTH]);
+/// Which instructions of the processor are used: chosen once, the same results for all.
+#[derive(Debug, Clone, Copy)]
+pub struct Instructions(Option<Arch>);
 
-/// Four yes or no answers, all bits set for yes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Mask(pub [u64; WIDTH]);
+impl Instructions {
+    /// The best that this processor has.
+    pub fn best() -> Self {
+        match Arch::new() {
+            Arch::Scalar => Self::plain(),
+            arch => Self(Some(arch)),
+        }
+    }
+
+    /// What every processor has.
+    pub fn plain() -> Self {
+        Self(None)
+    }
+
+    /// Plain ones, and all others that this processor has.
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::plain()];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        all.extend(pulp::x86::V3::try_new().map(|v3| Self(Some(Arch::V3(v3)))));
+        if !matches!(Arch::new(), Arch::Scalar) {
+            all.push(Self::best());
+        }
+        all
+    }
+
+    /// Runs `work` with them.
+    #[inline(always)]
+    pub fn run<W: WithSimd>(self, work: W) -> W::Output {
+        match self.0 {
+            None => work.with_simd(Scalar256b),
+            Some(arch) => arch.dispatch(work),
+        }
+    }
+}
+
+/// Some numbers, as many as `S` has lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Lanes<S: Simd> {
+    simd: S,
+    values: S::f64s,
+}
+
+/// As many yes or no answers.
+#[derive(Debug, Clone, Copy)]
+pub struct Mask<S: Simd> {
+    simd: S,
+    bits: S::m64s,
+}
 
 macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for Lanes {
-            type Output = Lanes;
+    ($trait:ident, $method:ident, $op:ident) => {
+        impl<S: Simd> $trait for Lanes<S> {
+            type Output = Self;
             #[inline(always)]
-            fn $method(self, other: Lanes) -> Lanes {
-                let mut out = [0.0; WIDTH];
-                for k in 0..WIDTH {
-                    out[k] = self.0[k] $op other.0[k];
-                }
-                Lanes(out)
+            fn $method(self, other: Self) -> Self {
+                Self { values: self.simd.$op(self.values, other.values), ..self }
             }
         }
-        impl $trait<f64> for Lanes {
-            type Output = Lanes;
+        impl<S: Simd> $trait<f64> for Lanes<S> {
+            type Output = Self;
             #[inline(always)]
-            fn $method(self, other: f64) -> Lanes {
-                self $op Lanes::splat(other)
+            fn $method(self, other: f64) -> Self {
+                self.$method(Self::splat(self.simd, other))
             }
         }
     };
 }
 
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+lanewise!(Add, add, add_f64s);
+lanewise!(Sub, sub, sub_f64s);
+lanewise!(Mul, mul, mul_f64s);
+lanewise!(Div, div, div_f64s);
 
-impl Neg for Lanes {
-    type Output = Lanes;
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
     #[inline(always)]
-    fn neg(self) -> Lanes {
-        Lanes(self.0.map(|v| -v))
+    fn neg(self) -> Self {
+        Self { values: self.simd.neg_f64s(self.values), ..self }
     }
 }
 
-impl Lanes {
+impl<S: Simd> Lanes<S> {
+    /// Number of lanes.
+    pub const COUNT: usize = S::F64_LANES;
+
     /// The same number in every lane.
     #[inline(always)]
-    pub fn splat(value: f64) -> Self {
-        Self([value; WIDTH])
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self { simd, values: simd.splat_f64s(value) }
     }
 
-    /// Four neighbours of a slice, from `start`.
+    /// The same number in every lane, as many as here.
     #[inline(always)]
-    pub fn load(values: &[f64], start: usize) -> Self {
-        let mut out = [0.0; WIDTH];
-        out.copy_from_slice(&values[start..start + WIDTH]);
-        Self(out)
+    pub fn all(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
     }
 
-    /// Writes to four neighbours of a slice, from `start`.
+    /// Neighbours in a slice, from `start`.
+    #[inline(always)]
+    pub fn load(simd: S, values: &[f64], start: usize) -> Self {
+        let (whole, _) = S::as_simd_f64s(&values[start..start + Self::COUNT]);
+        Self { simd, values: whole[0] }
+    }
+
+    /// Writes to neighbours in a slice, from `start`.
     #[inline(always)]
     pub fn store(self, values: &mut [f64], start: usize) {
-        values[start..start + WIDTH].copy_from_slice(&self.0);
+        let (whole, _) = S::as_mut_simd_f64s(&mut values[start..start + Self::COUNT]);
+        whole[0] = self.values;
+    }
+
+    /// The numbers, and zeros after the last lane.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; MOST_LANES] {
+        let mut array = [0.0; MOST_LANES];
+        self.store(&mut array, 0);
+        array
+    }
+
+    /// Small whole numbers, and zeros after the last lane.
+    #[inline(always)]
+    pub fn to_whole(self) -> [i16; MOST_LANES] {
+        let shifted = (self + SHIFT).to_array();
+        let mut whole = [0; MOST_LANES];
+        for (whole, shifted) in whole.iter_mut().zip(shifted) {
+            *whole = shifted.to_bits() as i16;
+        }
+        whole
+    }
+
+    /// A function of `f64` in every lane.
+    #[inline(always)]
+    pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        let mut array = self.to_array();
+        for value in &mut array[..Self::COUNT] {
+            *value = function(*value);
+        }
+        Self::load(self.simd, &array, 0)
     }
 
     /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
+        Self { values: self.simd.sqrt_f64s(self.values), ..self }
     }
 
     /// Absolute value.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        Self { values: self.simd.abs_f64s(self.values), ..self }
     }
 
     /// The nearest whole number, for magnitudes below 2^51.
     #[inline(always)]
     pub fn round(self) -> Self {
-        const SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
         (self + SHIFT) - SHIFT
     }
 
@@ -99,24 +178,22 @@ impl Lanes {
         near.less(self).select(near + 1.0, near)
     }
 
-    /// Which lanes are below the other's.
+    /// Which lanes are below the other's; none that is NaN.
     #[inline(always)]
-    pub fn less(self, other: Self) -> Mask {
-        let mut out = [0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = if self.0[k] < other.0[k] { u64::MAX } else { 0 };
-        }
-        Mask(out)
+    pub fn less(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, bits: self.simd.less_than_f64s(self.values, other.values) }
     }
 
-    /// Which lanes are below or equal to the other's.
+    /// Which lanes are below or equal to the other's; none that is NaN.
     #[inline(always)]
-    pub fn at_most(self, other: Self) -> Mask {
-        let mut out = [0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = if self.0[k] <= other.0[k] { u64::MAX } else { 0 };
-        }
-        Mask(out)
+    pub fn at_most(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, bits: self.simd.less_than_or_equal_f64s(self.values, other.values) }
+    }
+
+    /// Which lanes are equal to the other's; none that is NaN.
+    #[inline(always)]
+    pub fn equal(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, bits: self.simd.equal_f64s(self.values, other.values) }
     }
 
     /// The larger of two, lane by lane.
@@ -134,12 +211,10 @@ impl Lanes {
     /// The magnitude with the sign of `sign`.
     #[inline(always)]
     pub fn with_sign_of(self, sign: Self) -> Self {
-        const SIGN: u64 = 1 << 63;
-        let mut out = [0.0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = f64::from_bits((self.0[k].to_bits() & !SIGN) | (sign.0[k].to_bits() & SIGN));
-        }
-        Self(out)
+        let simd = self.simd;
+        let bit = simd.splat_f64s(-0.0);
+        let magnitude = simd.and_f64s(self.values, simd.not_f64s(bit));
+        Self { values: simd.or_f64s(magnitude, simd.and_f64s(sign.values, bit)), ..self }
     }
 
     /// Angle of the vector (x, self) in [-pi, pi], to 4e-16 relative; zero for the zero vector.
@@ -154,20 +229,23 @@ impl Lanes {
         let far = (big * 0.414_213_562_373_095_03).less(small);
         let numerator = far.select(small - big, small);
         let denominator = far.select(small + big, big);
-        let zero = denominator.at_most(Self::splat(0.0));
-        let q = numerator / zero.select(Self::splat(1.0), denominator);
+        let zero = denominator.at_most(self.all(0.0));
+        let q = numerator / zero.select(self.all(1.0), denominator);
         let z = q * q;
-        let mut p = Self::splat(ATAN[11]);
+        let mut p = self.all(ATAN[11]);
         for k in (0..11).rev() {
             p = p * z + ATAN[k];
         }
         let mut angle = p * q;
         angle = far.select(angle + FRAC_PI_4, angle);
-        angle = swap.select(Self::splat(FRAC_PI_2) - angle, angle);
-        angle = x.less(Self::splat(0.0)).select(Self::splat(PI) - angle, angle);
+        angle = swap.select(self.all(FRAC_PI_2) - angle, angle);
+        angle = x.less(self.all(0.0)).select(self.all(PI) - angle, angle);
         angle.with_sign_of(self)
     }
 }
+
+/// Added to a number of magnitude below 2^51 this leaves a whole number in the last bits: 1.5 * 2^52.
+const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of [`Lanes::atan2`].
 const ATAN: [f64; 12] = [
@@ -185,106 +263,63 @@ const ATAN: [f64; 12] = [
     -0.017805395704537506,
 ];
 
-impl Mask {
+impl<S: Simd> Mask<S> {
+    /// The same answer in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, yes: bool) -> Self {
+        let one = Lanes::splat(simd, 1.0);
+        if yes { one.at_most(one) } else { one.less(one) }
+    }
+
     /// Where yes `yes`, elsewhere `no`.
     #[inline(always)]
-    pub fn select(self, yes: Lanes, no: Lanes) -> Lanes {
-        let mut out = [0.0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = f64::from_bits((yes.0[k].to_bits() & self.0[k]) | (no.0[k].to_bits() & !self.0[k]));
-        }
-        Lanes(out)
+    pub fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
+        Lanes { simd: self.simd, values: self.simd.select_f64s(self.bits, yes.values, no.values) }
     }
 
     /// Whether any lane says yes.
     #[inline(always)]
     pub fn any(self) -> bool {
-        self.0.iter().fold(0, |all, bits| all | bits) != 0
+        bytemuck::bytes_of(&self.bits).iter().fold(0, |all, bits| all | bits) != 0
     }
 
-    /// Whether every lane that the other says yes in says yes here.
+    /// The first lane that says yes; as many as there are lanes where none does.
     #[inline(always)]
-    pub fn covers(self, other: Self) -> bool {
-        (0..WIDTH).fold(0, |missing, k| missing | (other.0[k] & !self.0[k])) == 0
+    pub fn first(self) -> usize {
+        let bytes = bytemuck::bytes_of(&self.bits);
+        let mut mask = 0;
+        if bytes.len() == 8 * S::F64_LANES {
+            for k in 0..S::F64_LANES {
+                mask |= (u32::from(bytes[8 * k]) & 1) << k;
+            }
+        } else {
+            mask = u32::from(bytes[0]);
+        }
+        if mask == 0 { S::F64_LANES } else { mask.trailing_zeros() as usize }
     }
 
-    /// The answer of one lane.
+    /// Yes here but not there.
     #[inline(always)]
-    pub fn lane(self, k: usize) -> bool {
-        self.0[k] != 0
-    }
-
-    /// The same answer in every lane.
-    #[inline(always)]
-    pub fn splat(yes: bool) -> Self {
-        Self([if yes { u64::MAX } else { 0 }; WIDTH])
+    pub fn and_not(self, other: Self) -> Self {
+        Self { bits: self.simd.and_m64s(self.bits, self.simd.not_m64s(other.bits)), ..self }
     }
 }
 
-impl BitAnd for Mask {
-    type Output = Mask;
+impl<S: Simd> BitAnd for Mask<S> {
+    type Output = Self;
     #[inline(always)]
-    fn bitand(self, other: Mask) -> Mask {
-        let mut out = [0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = self.0[k] & other.0[k];
-        }
-        Mask(out)
+    fn bitand(self, other: Self) -> Self {
+        Self { bits: self.simd.and_m64s(self.bits, other.bits), ..self }
     }
 }
 
-impl BitOr for Mask {
-    type Output = Mask;
+impl<S: Simd> BitOr for Mask<S> {
+    type Output = Self;
     #[inline(always)]
-    fn bitor(self, other: Mask) -> Mask {
-        let mut out = [0; WIDTH];
-        for k in 0..WIDTH {
-            out[k] = self.0[k] | other.0[k];
-        }
-        Mask(out)
+    fn bitor(self, other: Self) -> Self {
+        Self { bits: self.simd.or_m64s(self.bits, other.bits), ..self }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-    use std::f64::consts::PI;
-
-    fn atan2(y: f64, x: f64) -> f64 {
-        Lanes::splat(y).atan2(Lanes::splat(x)).0[0]
-    }
-
-    proptest! {
-        #[test]
-        fn arctangent_agrees_with_libm(angle in -PI..PI, scale in -12.0..12.0_f64) {
-            let r = libm::exp(scale);
-            let (y, x) = (r * libm::sin(angle), r * libm::cos(angle));
-            let expected = libm::atan2(y, x);
-            prop_assert!((atan2(y, x) - expected).abs() <= 4.5e-16 * expected.abs().max(1e-300), "{y} {x}");
-        }
-
-        #[test]
-        fn rounding_and_choice(value in -1e6..1e6_f64, other in -1e6..1e6_f64) {
-            let (a, b) = (Lanes::splat(value), Lanes::splat(other));
-            prop_assert_eq!(a.ceil().0[1], value.ceil());
-            prop_assert!((a.round().0[2] - value).abs() <= 0.5);
-            prop_assert_eq!(a.max(b).0[3], value.max(other));
-            prop_assert_eq!(a.min(b).0[3], value.min(other));
-            prop_assert_eq!(a.less(b).lane(0), value < other);
-            prop_assert_eq!(a.with_sign_of(b).0[0], value.copysign(other));
-        }
-    }
-
-    #[test]
-    fn arctangent_on_the_axes() {
-        for (y, x) in
-            [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0), (1.0, 1.0), (-1.0, -1.0), (0.0, 0.0), (-0.0, -1.0)]
-        {
-            assert!((atan2(y, x) - libm::atan2(y, x)).abs() <= 4.5e-16, "{y} {x}");
-        }
-        assert_eq!(atan2(0.0, 0.0), 0.0);
-        // What comes out NaN must never pass a comparison.
-        assert!(!Lanes::splat(f64::NAN).at_most(Lanes::splat(1.0)).any());
-    }
-}
+mod tests;

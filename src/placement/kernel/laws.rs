@@ -1,14 +1,16 @@
-//! Joint compliances in lanes: the same as [`Robot::compliances_at`], four states at a time.
+//! Joint compliances in lanes: the same as [`Robot::compliances_at`], several states at a time.
 
 use super::lanes::Lanes;
+use super::limit::Limit;
 use crate::robot::{Compensator, Compliance, Robot};
+use pulp::Simd;
 
 /// The compliance laws of an arm, ready for lanes.
 #[derive(Debug, Clone)]
 pub(super) struct Laws {
     laws: [Law; 6],
     /// All six, where none changes with the joint angle. rad/(N m)
-    constants: Option<[Lanes; 6]>,
+    constants: Option<[f64; 6]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -39,35 +41,37 @@ impl Laws {
                 Law::Spring { alone, compensator, sin_cos_alpha: libm::sincos(compensator.alpha) }
             }
         });
-        Self { laws, constants: robot.constant_compliances().map(|constants| constants.map(Lanes::splat)) }
+        Self { laws, constants: robot.constant_compliances() }
     }
 
-    /// All six compliances, where none changes with the joint angle. rad/(N m)
+    /// All six compliances at the sines and cosines of the joint angles, which are the real ones where a joint has only one.
+    /// rad/(N m)
     #[inline(always)]
-    pub fn constants(&self) -> Option<[Lanes; 6]> {
-        self.constants
-    }
-
-    /// All six compliances at joint angles (rad) that are the real ones where a joint has only one, given with their sines
-    /// and cosines. rad/(N m)
-    pub fn at(&self, angles: &[Lanes; 6], directions: &[[Lanes; 2]; 6]) -> [Lanes; 6] {
-        std::array::from_fn(|j| self.laws[j].at(angles[j], directions[j]))
+    pub fn at<S: Simd>(&self, simd: S, limits: &[Limit; 6], directions: &[[Lanes<S>; 2]; 6]) -> [Lanes<S>; 6] {
+        let mut compliances = [Lanes::splat(simd, 0.0); 6];
+        for j in 0..6 {
+            compliances[j] = match &self.constants {
+                Some(constants) => Lanes::splat(simd, constants[j]),
+                None => self.laws[j].at(simd, &limits[j], directions[j]),
+            };
+        }
+        compliances
     }
 }
 
 impl Law {
     #[inline(always)]
-    fn at(&self, angle: Lanes, [sine, cosine]: [Lanes; 2]) -> Lanes {
+    fn at<S: Simd>(&self, simd: S, limit: &Limit, [sine, cosine]: [Lanes<S>; 2]) -> Lanes<S> {
         match *self {
-            Self::Constant(value) => Lanes::splat(value),
+            Self::Constant(value) => Lanes::splat(simd, value),
             Self::Linear { min, width, at_min, rise } => {
-                let share = ((angle - min) * (1.0 / width)).max(Lanes::splat(0.0)).min(Lanes::splat(1.0));
-                share * rise + at_min
+                let share = (limit.angle([sine, cosine]) - min) * (1.0 / width);
+                share.max(share.all(0.0)).min(share.all(1.0)) * rise + at_min
             }
             Self::Spring { alone, compensator, sin_cos_alpha: (sin_alpha, cos_alpha) } => {
                 let cos_psi = cosine * cos_alpha - sine * sin_alpha;
-                let stiffness = Lanes(cos_psi.0.map(|cosine| compensator.stiffness_at(cosine)));
-                Lanes::splat(alone) / (stiffness * alone + 1.0)
+                let stiffness = cos_psi.map(|cosine| compensator.stiffness_at(cosine));
+                cosine.all(alone) / (stiffness * alone + 1.0)
             }
         }
     }

@@ -1,9 +1,11 @@
 //! What the uncertainty of the compliances adds to a score, in lanes: the same as
-//! [`State::margin`](super::super::criterion::State), four states at a time.
+//! [`State::margin`](super::super::criterion::State), several states at a time.
 
 use super::lanes::Lanes;
+use super::limit::Limit;
 use crate::placement::problem::Problem;
 use crate::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
+use pulp::Simd;
 
 /// The uncertainty of an arm's compliances, ready for lanes.
 #[derive(Debug, Clone)]
@@ -57,27 +59,28 @@ impl Slope {
         }
     }
 
-    /// At a joint angle (rad) that is the real one where the joint has only one, given with its sine and cosine, and with
-    /// the compliance there.
+    /// At the sine and cosine of a joint angle that is the real one where the joint has only one, and with the compliance
+    /// there.
     #[inline(always)]
-    fn at(&self, angle: Lanes, [sine, cosine]: [Lanes; 2], compliance: Lanes) -> Lanes {
+    fn at<S: Simd>(&self, limit: &Limit, [sine, cosine]: [Lanes<S>; 2], compliance: Lanes<S>) -> Lanes<S> {
         let cos_psi = |(sin_alpha, cos_alpha): (f64, f64)| cosine * cos_alpha - sine * sin_alpha;
         match *self {
-            Self::One => Lanes::splat(1.0),
+            Self::One => compliance.all(1.0),
             Self::Linear { from, width } => {
-                ((angle - from) * (1.0 / width)).max(Lanes::splat(0.0)).min(Lanes::splat(1.0))
+                let share = (limit.angle([sine, cosine]) - from) * (1.0 / width);
+                share.max(share.all(0.0)).min(share.all(1.0))
             }
             Self::Alone { alone } => {
                 let share = compliance * (1.0 / alone);
                 share * share
             }
             Self::SpringStiffness { compensator, sin_cos_alpha } => {
-                let slopes = cos_psi(sin_cos_alpha).0.map(|c| compensator.slope_by_spring_stiffness_at(c));
-                -(compliance * compliance) * Lanes(slopes)
+                let slopes = cos_psi(sin_cos_alpha).map(|c| compensator.slope_by_spring_stiffness_at(c));
+                -(compliance * compliance) * slopes
             }
             Self::FreeLength { compensator, sin_cos_alpha } => {
-                let slopes = cos_psi(sin_cos_alpha).0.map(|c| compensator.slope_by_free_length_at(c));
-                -(compliance * compliance) * Lanes(slopes)
+                let slopes = cos_psi(sin_cos_alpha).map(|c| compensator.slope_by_free_length_at(c));
+                -(compliance * compliance) * slopes
             }
         }
     }
@@ -94,21 +97,23 @@ impl Spread {
     }
 
     /// The standard deviation of the deflection's normal part times the confidence, from what each joint adds to that part
-    /// per compliance (m per rad/(N m)), the joint angles (rad) with their sines and cosines, and the compliances there. m
-    pub fn margin(
+    /// per compliance (m per rad/(N m)), the sines and cosines of the joint angles, and the compliances there. m
+    #[inline(always)]
+    pub fn margin<S: Simd>(
         &self,
-        parts: &[Lanes; 6],
-        angles: &[Lanes; 6],
-        turned: &[[Lanes; 2]; 6],
-        compliances: &[Lanes; 6],
-    ) -> Lanes {
-        let mut gradient = [Lanes::splat(0.0); Uncertainty::MOST_PARAMETERS];
+        simd: S,
+        limits: &[Limit; 6],
+        parts: &[Lanes<S>; 6],
+        directions: &[[Lanes<S>; 2]; 6],
+        compliances: &[Lanes<S>; 6],
+    ) -> Lanes<S> {
+        let mut gradient = [Lanes::splat(simd, 0.0); Uncertainty::MOST_PARAMETERS];
         for (entry, (j, slope)) in gradient.iter_mut().zip(&self.slopes) {
-            *entry = parts[*j] * slope.at(angles[*j], turned[*j], compliances[*j]);
+            *entry = parts[*j] * slope.at(&limits[*j], directions[*j], compliances[*j]);
         }
-        let mut variance = Lanes::splat(0.0);
+        let mut variance = Lanes::splat(simd, 0.0);
         for direction in &self.directions {
-            let mut seen = Lanes::splat(0.0);
+            let mut seen = Lanes::splat(simd, 0.0);
             for (share, entry) in direction.iter().zip(gradient) {
                 seen = seen + entry * *share;
             }

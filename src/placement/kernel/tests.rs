@@ -15,11 +15,10 @@ fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usiz
 
 fn compare_flips(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>, flips: Flips) -> usize {
     let kernel = Kernel::new(problem, &problem.redundancy, flips);
-    let mut scratch = kernel.scratch();
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let mut allowed = 0;
     for point in points {
-        kernel.evaluate(point, pose, &mut scratch, &mut states);
+        kernel.evaluate(point, pose, &mut states);
         for class in PostureClass::ALL {
             for k in 0..problem.redundancy.beta_count {
                 let found = states.scores(class)[3 + k];
@@ -36,7 +35,9 @@ fn compare_flips(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item 
                     let score = expected.iter().zip(asked).find(|(_, asked)| *asked).unwrap().0.score;
                     assert!((found - score).abs() < 1e-12 * (1.0 + found), "{found} {score}");
                     for j in 0..6 {
-                        let angle = states.joint(class, j)[3 + k];
+                        let [sine, cosine] = states.directions(class, j).map(|row| row[3 + k]);
+                        assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-12, "joint {} {sine} {cosine}", j + 1);
+                        let angle = libm::atan2(sine, cosine);
                         assert!(wrap(angle - expected[0].joints[j]).abs() < 1e-10, "joint {} {angle}", j + 1);
                     }
                 }
@@ -194,12 +195,67 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
     }
 }
 
+/// Every bit of the scores, and of the joint angles of allowed states, for some points.
+fn bits(problem: &Problem, instructions: Instructions, poses: &[[f64; 4]]) -> Vec<u64> {
+    let mut bits = Vec::new();
+    for flips in Flips::of(&problem.robot) {
+        let kernel = Kernel::new(problem, &problem.redundancy, *flips).with_instructions(instructions);
+        let mut states = States::new(problem.redundancy.beta_count, 2);
+        for pose in poses {
+            for point in (0..problem.task.points().len()).step_by(7) {
+                kernel.evaluate(point, pose, &mut states);
+                for class in PostureClass::ALL {
+                    bits.push(u64::from(states.is_alive(class)));
+                    states.wrap_around(class);
+                    for k in 0..problem.redundancy.beta_count + 4 {
+                        let score = states.scores(class)[k];
+                        bits.push(score.to_bits());
+                        if score.is_finite() {
+                            let rows = (0..6).flat_map(|j| states.directions(class, j));
+                            bits.extend(rows.map(|row| row[k].to_bits()));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    bits
+}
+
+#[test]
+fn every_processor_gives_the_same_bits() {
+    let range = Compliance::Range { at_min: 5e-7, at_max: 1.2e-6 };
+    let plain = five_segments();
+    let mut narrow = with_laws(plain.clone(), &[(1, compensated(0.2, 3e-7)), (2, range), (4, range)]);
+    narrow.criterion.force_uncertainty = 0.1;
+    narrow.constraints.max_deflection = Some(1.2e-3);
+    let mut sprung = with_uncertainty(with_laws(plain.clone(), &[(1, compensated(0.2, 3e-7))]), 0.1);
+    sprung.criterion.confidence = 2.0;
+    // All over the cell, and out of reach, above axis 1, stretched: whatever comes out NaN or infinite on the way.
+    let mut poses: Vec<[f64; 4]> = (0..8)
+        .map(|k| [-0.3 + 0.08 * f64::from(k), -1.64 - 0.07 * f64::from(k), -0.6 + 0.05 * f64::from(k), f64::from(k)])
+        .collect();
+    poses.extend([[0.0, 0.0, 0.5, 0.0], [0.0, -4.0, -0.4, 0.0], [0.0, -2.55, 0.2, 1.0], [1e-9, 1e-9, 2.0, -3.0]]);
+    for problem in [plain, narrow, sprung] {
+        // Counts that fill the last lanes and that do not; fewer values than lanes.
+        for count in [120, 121, 37, 5, 3] {
+            let mut problem = problem.clone();
+            problem.redundancy.beta_count = count;
+            let expected = bits(&problem, Instructions::plain(), &poses);
+            assert!(count < 30 || expected.len() > 10_000, "{}", expected.len());
+            for instructions in Instructions::all() {
+                assert!(bits(&problem, instructions, &poses) == expected, "{instructions:?} with {count} values");
+            }
+        }
+    }
+}
+
 #[test]
 fn continues_rows_cyclically() {
     let problem = five_segments();
     let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
     let mut states = States::new(120, 5);
-    kernel.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut kernel.scratch(), &mut states);
+    kernel.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut states);
     for class in PostureClass::ALL {
         states.wrap_around(class);
         let row = states.scores(class);

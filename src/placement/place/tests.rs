@@ -1,7 +1,8 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
 use super::super::control::Unwatched;
-use super::super::settings::PostureSearch;
+use super::super::settings::{PostureSearch, Tables};
+use super::super::table::Unsuited;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
 
@@ -41,6 +42,49 @@ fn a_cell_out_of_reach_says_why() {
 }
 
 #[test]
+fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    let run = |problem: &Problem, tables: Tables| {
+        let settings = SearchSettings { tables, population: 24, generations: 8, basins: 2, ..small() };
+        place(problem, &settings, &TransferSettings::default(), &Unwatched).unwrap()
+    };
+    let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
+    assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3));
+    assert_eq!(without.tabled, None);
+    // The ordinary evaluator has the last word, and the table never costs more than it finds.
+    assert!(with.cases[0].plan.mean <= without.cases[0].plan.mean * 1.001);
+    assert!(with.cases[2].plan.mean >= without.cases[2].plan.mean * 0.999);
+    let mut tilted = problem.clone();
+    let mut wrenches = tilted.task.wrenches().to_vec();
+    wrenches[3].moment.x = 0.5;
+    tilted.task = crate::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
+    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsuited::Moment { point: 3 })));
+}
+
+#[test]
+fn a_search_notices_that_its_table_misleads() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    let sound = Table::new(&problem).unwrap();
+    // A table that knows nothing of a third of the force.
+    let weaker = problem.task.wrenches().iter().map(|w| crate::task::Wrench { force: w.force / 1.5, ..*w });
+    let weaker = crate::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
+    let weaker = Problem { task: weaker, ..problem.clone() };
+    let wrong = Table::new(&weaker).unwrap();
+    let planner = Planner::new(&problem);
+    let misled = |table: Option<&Table<'_>>| {
+        let found = genetic::search(&Appraiser::new(&planner, table), &small(), Goal::Best, &Unwatched);
+        assert_eq!(found.basins[0].worth.mean(), {
+            let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());
+            planner.worth(pose, Extremum::Smallest, scheme, &mut planner.workspace()).mean()
+        });
+        found.misled
+    };
+    assert_eq!([misled(None), misled(Some(&sound)), misled(Some(&wrong))], [false, false, true]);
+}
+
+#[test]
 fn stopping_early_still_returns_a_result() {
     struct Stop;
     impl Control for Stop {
@@ -52,7 +96,8 @@ fn stopping_early_still_returns_a_result() {
     problem.redundancy.beta_count = 24;
     let outcome = place(&problem, &small(), &TransferSettings::default(), &Stop).unwrap();
     assert!(outcome.interrupted && outcome.refinements.is_empty());
-    assert_eq!(outcome.evaluations, 32);
+    // Two populations, and what is planned of them.
+    assert!((33..=36).contains(&outcome.evaluations), "{}", outcome.evaluations);
 }
 
 /// Mean of |normal part| over a plan, with other compliances.

@@ -43,6 +43,18 @@ pub(super) fn plan(
     best
 }
 
+/// Segments of more points than this are gone through in blocks.
+const MOST_LAYERS: usize = 4096;
+
+/// What is planned: one segment in one posture.
+pub(super) struct Search<'s> {
+    pub planner: &'s Planner<'s>,
+    pub span: &'s Span<usize>,
+    pub pose: &'s [f64; 4],
+    pub extremum: Extremum,
+    pub posture: Posture,
+}
+
 fn one_posture(
     planner: &Planner<'_>,
     span: &Span<usize>,
@@ -51,36 +63,70 @@ fn one_posture(
     posture: Posture,
     workspace: &mut Workspace,
 ) -> Option<Choice> {
-    let count = planner.grid.beta_count;
-    let mut layers: Vec<Vec<Node>> = Vec::with_capacity(span.len());
-    for point in span.clone() {
-        let mut layer = nodes(planner, point, pose, posture, workspace);
-        if let Some(before) = layers.last() {
-            connect(before, &mut layer, planner.reaches[point], count, &planner.steps[point]);
-            layer.retain(|node| node.cost.is_finite());
-        } else {
-            layer.iter_mut().for_each(|node| node.cost = 0.0);
+    let block = if span.len() > MOST_LAYERS { span.len().isqrt() } else { span.len() };
+    Search { planner, span, pose, extremum, posture }.plan(block, workspace)
+}
+
+impl Search<'_> {
+    /// The cheapest plan. Only the layers of one block of points are kept, and the first ones of the others, from which
+    /// theirs are found again.
+    pub fn plan(&self, block: usize, workspace: &mut Workspace) -> Option<Choice> {
+        let length = self.span.len();
+        let mut firsts = vec![self.first(workspace)?];
+        let mut layers = Vec::new();
+        for place in (0..length).step_by(block) {
+            layers = self.block(firsts.last()?, place, (place + block).min(length), workspace)?;
+            if place + block < length {
+                firsts.push(self.next(layers.last()?, place + block, workspace)?);
+            }
         }
-        if layer.is_empty() {
-            return None;
+        let last = layers.last()?;
+        let mut index = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost))?;
+        let cost = last[index].cost * self.extremum.sign();
+        let (mut betas, mut joints) = (Vec::with_capacity(length), Vec::with_capacity(length));
+        for (number, first) in firsts.iter().enumerate().rev() {
+            if number + 1 < firsts.len() {
+                layers = self.block(first, number * block, (number + 1) * block, workspace)?;
+            }
+            for layer in layers.iter().rev() {
+                let node = &layer[index];
+                betas.push(self.planner.grid.beta(node.beta));
+                joints.push(node.joints);
+                index = node.from;
+            }
         }
-        layer.iter_mut().for_each(|node| node.cost += node.score * extremum.sign());
-        layers.push(layer);
+        betas.reverse();
+        joints.reverse();
+        let ways = vec![Way { posture: self.posture, joints }];
+        Some(Choice { points: self.span.clone(), betas, cost, ways })
     }
-    let last = layers.last()?;
-    let mut index = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost))?;
-    let cost = last[index].cost * extremum.sign();
-    let mut betas = Vec::with_capacity(span.len());
-    let mut joints = Vec::with_capacity(span.len());
-    for layer in layers.iter().rev() {
-        let node = &layer[index];
-        betas.push(planner.grid.beta(node.beta));
-        joints.push(node.joints);
-        index = node.from;
+
+    /// The layers of the points at `from` up to `to`, the first one given.
+    fn block(&self, first: &[Node], from: usize, to: usize, workspace: &mut Workspace) -> Option<Vec<Vec<Node>>> {
+        let mut layers = vec![first.to_vec()];
+        for place in from + 1..to {
+            layers.push(self.next(layers.last()?, place, workspace)?);
+        }
+        Some(layers)
     }
-    betas.reverse();
-    joints.reverse();
-    Some(Choice { points: span.clone(), betas, cost, ways: vec![Way { posture, joints }] })
+
+    /// The layer of the first point, where it has states.
+    fn first(&self, workspace: &mut Workspace) -> Option<Vec<Node>> {
+        let mut layer = nodes(self.planner, self.span.start, self.pose, self.posture, workspace);
+        layer.iter_mut().for_each(|node| node.cost = node.score * self.extremum.sign());
+        Some(layer).filter(|layer| !layer.is_empty())
+    }
+
+    /// The layer after another, where some of its states can be reached.
+    fn next(&self, before: &[Node], place: usize, workspace: &mut Workspace) -> Option<Vec<Node>> {
+        let point = self.span.start + place;
+        let planner = self.planner;
+        let mut layer = nodes(planner, point, self.pose, self.posture, workspace);
+        connect(before, &mut layer, planner.pace.reach(point), planner.grid.beta_count, &planner.steps[point]);
+        layer.retain(|node| node.cost.is_finite());
+        layer.iter_mut().for_each(|node| node.cost += node.score * self.extremum.sign());
+        Some(layer).filter(|layer| !layer.is_empty())
+    }
 }
 
 /// Every real configuration of every allowed grid state of one point, in the order of beta.
@@ -90,7 +136,7 @@ fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture,
     let Some(kernel) = planner.kernels.iter().find(|kernel| kernel.flips().contains(posture)) else {
         return Vec::new();
     };
-    kernel.evaluate(point, pose, &mut space.scratch, &mut space.now);
+    kernel.evaluate(point, pose, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
     for beta in 0..planner.grid.beta_count {

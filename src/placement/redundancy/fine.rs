@@ -8,6 +8,7 @@ use super::super::criterion;
 use super::super::problem::{Problem, Redundancy};
 use super::turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
 use super::{Extremum, SegmentPlan};
+use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
 const TUBE: usize = 5;
@@ -16,6 +17,9 @@ const REPEATS: usize = 8;
 
 /// A pass that gains less than this share of the cost ends its level.
 const LEAST_GAIN: f64 = 1e-9;
+
+/// Points that one thread lays at least.
+const LEAST_SHARE: usize = 500;
 
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,9 +54,12 @@ struct Node {
 pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube, plan: &mut SegmentPlan) -> bool {
     let mut better = false;
     let mut spacing = tube.first;
+    let mut layers = vec![Layer { states: [None; TUBE], is_fresh: false }; plan.points.len()];
     while spacing >= tube.last {
+        layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
-            if !level(problem, pose, extremum, spacing, plan) {
+            lay(problem, pose, spacing, plan, &mut layers);
+            if !level(problem, extremum, plan, &mut layers) {
                 break;
             }
             better = true;
@@ -60,6 +67,14 @@ pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube
         spacing /= 2.0;
     }
     better
+}
+
+/// The values of beta that a level lays at one point.
+#[derive(Clone)]
+struct Layer {
+    states: [Option<Node>; TUBE],
+    /// Whether they lie around the present plan, with the present spacing.
+    is_fresh: bool,
 }
 
 /// The sum of scores and the real joint angles of fixed betas at `pose`, or `None` when they break a constraint there.
@@ -93,27 +108,44 @@ fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, pl
     Some(Node { beta, joints, score: state.score(), cost: f64::INFINITY, from: 0 })
 }
 
-/// One pass at one spacing; whether the plan got better by more than rounding.
-fn level(problem: &Problem, pose: &[f64; 4], extremum: Extremum, spacing: f64, plan: &mut SegmentPlan) -> bool {
-    let sign = extremum.sign();
-    let middle = (TUBE / 2) as f64;
-    let mut layers: Vec<[Option<Node>; TUBE]> = Vec::with_capacity(plan.points.len());
-    for (place, point) in plan.points.clone().enumerate() {
-        let mut layer: [Option<Node>; TUBE] = std::array::from_fn(|k| {
-            let beta = plan.betas[place] + (k as f64 - middle) * spacing;
-            node(problem, pose, point, plan, place, beta)
+/// Lays values of beta around the plan, where that moved since.
+fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
+    let middle = TUBE / 2;
+    let first = plan.points.start;
+    layers.par_iter_mut().enumerate().with_min_len(LEAST_SHARE).for_each(|(place, layer)| {
+        if layer.is_fresh {
+            return;
+        }
+        layer.is_fresh = true;
+        let own = plan.betas[place];
+        // The plan itself was met before, at the latest spacing.
+        let known = layer.states.iter().flatten().find(|node| node.beta == own && node.joints == plan.joints[place]);
+        let known = known.copied();
+        layer.states = std::array::from_fn(|k| {
+            let beta = own + (k as f64 - middle as f64) * spacing;
+            known.filter(|_| k == middle).or_else(|| node(problem, pose, first + place, plan, place, beta))
         });
+    });
+}
+
+/// One pass over what was laid; whether the plan got better by more than rounding.
+fn level(problem: &Problem, extremum: Extremum, plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
+    let sign = extremum.sign();
+    for (place, point) in plan.points.clone().enumerate() {
+        let (done, open) = layers.split_at_mut(place);
+        let before = done.last().map(|layer| &layer.states);
         let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
         let beta_limit = if place > 0 { problem.beta_step_limit(point) + BETA_ROUNDING } else { f64::INFINITY };
-        for node in layer.iter_mut().flatten() {
-            let best = match layers.last() {
+        for node in open[0].states.iter_mut().flatten() {
+            let best = match before {
                 None => Some((0.0, 0)),
                 Some(before) => before
                     .iter()
                     .enumerate()
                     .filter_map(|(index, old)| old.as_ref().map(|old| (index, old)))
                     .filter(|(_, old)| {
-                        (node.beta - old.beta).abs() <= beta_limit
+                        old.cost.is_finite()
+                            && (node.beta - old.beta).abs() <= beta_limit
                             && inside_steps(&old.joints, &node.joints, &joint_limits)
                     })
                     .map(|(index, old)| (old.cost, index))
@@ -121,20 +153,18 @@ fn level(problem: &Problem, pose: &[f64; 4], extremum: Extremum, spacing: f64, p
             };
             (node.cost, node.from) = best.map_or((f64::INFINITY, 0), |(cost, from)| (cost + sign * node.score, from));
         }
-        for slot in &mut layer {
-            *slot = slot.filter(|node| node.cost.is_finite());
-        }
-        layers.push(layer);
     }
     let end = layers.last().and_then(|layer| {
-        (0..TUBE).filter_map(|k| layer[k].map(|node| (node.cost, k))).min_by(|a, b| a.0.total_cmp(&b.0))
+        let ends = layer.states.iter().enumerate().filter_map(|(k, node)| node.map(|node| (node.cost, k)));
+        ends.filter(|(cost, _)| cost.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     let Some((cost, mut index)) = end else { return false };
     if plan.cost.is_finite() && cost >= plan.cost * sign - LEAST_GAIN * plan.cost.abs() {
         return false;
     }
-    for place in (0..layers.len()).rev() {
-        let Some(node) = layers[place][index] else { return false };
+    for (place, layer) in layers.iter_mut().enumerate().rev() {
+        let Some(node) = layer.states[index] else { return false };
+        layer.is_fresh = plan.betas[place] == node.beta && plan.joints[place] == node.joints;
         plan.betas[place] = node.beta;
         plan.joints[place] = node.joints;
         index = node.from;

@@ -7,6 +7,7 @@
 //! The plan is made in steps:
 //! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
 //!    turn (twice where the two flips of a class yield differently: [`Flips`]). This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
+//!    Between points closer than a step of the grid takes, the steps found are spread over as many points as each takes (`pace`).
 //! 2. `turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
 //! 3. `exact`: only where that fails, dynamic programming over (beta, turns) in one posture.
@@ -15,10 +16,13 @@
 pub mod band;
 mod exact;
 pub mod fine;
+mod pace;
 mod segment;
+mod sweep;
 mod turns;
 
-use super::kernel::{Flips, Kernel, Scratch, States};
+use super::kernel::lanes::Instructions;
+use super::kernel::{Flips, Kernel, States};
 use super::problem::{Problem, Redundancy};
 use crate::robot::{Posture, turns::Range};
 use std::ops::Range as Span;
@@ -97,18 +101,19 @@ pub struct Planner<'a> {
     problem: &'a Problem,
     grid: Redundancy,
     kernels: Vec<Kernel<'a>>,
-    reaches: Vec<usize>,
+    pace: pace::Pace,
     steps: Vec<[f64; 6]>,
-    modulo: [bool; 6],
+    /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
+    ranges: [Option<Range>; 6],
+    instructions: Instructions,
 }
 
 /// Space of one thread to plan in.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    scratch: Scratch,
     before: States,
     now: States,
-    came_from: Vec<i16>,
+    record: sweep::Record,
 }
 
 /// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
@@ -121,11 +126,12 @@ impl<'a> Planner<'a> {
     }
 
     /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
-    /// degree, and, down to an eighth of a degree, at most what the rate of beta allows between any two points.
+    /// degree and at most what the rate of beta allows between any two points, those apart where that is less than an eighth
+    /// of a degree.
     pub fn finer(problem: &'a Problem) -> Self {
         let segments = problem.task.segments().iter();
         let steps = segments.flat_map(|span| span.clone().skip(1)).map(|point| problem.beta_step_limit(point));
-        let narrowest = steps.fold(WIDEST_STEP, f64::min).max(NARROWEST_STEP);
+        let narrowest = steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min);
         Self::on_grid(problem, problem.redundancy.divided(narrowest))
     }
 
@@ -133,22 +139,17 @@ impl<'a> Planner<'a> {
         let count = problem.task.points().len();
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
-        let step = grid.beta_step();
-        let reach = |point: usize| {
-            let most = grid.beta_count / 2;
-            let steps = problem.beta_step_limit(point) / step + STEP_ROUNDING;
-            if steps >= most as f64 { most } else { steps as usize }
-        };
         let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
         Self {
             problem,
             grid,
             kernels: Flips::of(&problem.robot).iter().map(|flips| Kernel::new(problem, &grid, *flips)).collect(),
-            reaches: (0..count).map(|p| if is_start(&p) { 0 } else { reach(p) }).collect(),
+            pace: pace::Pace::new(problem, &grid),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
-            // difference modulo a turn means anything; theta_5 only changes its sign.
-            modulo: std::array::from_fn(|j| j == 3 || j == 5 || (j != 4 && ranges[j].has_turns())),
+            // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
+            ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
+            instructions: Instructions::best(),
         }
     }
 
@@ -164,7 +165,7 @@ impl<'a> Planner<'a> {
 
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
-        self.reaches.iter().copied().max().unwrap_or(0)
+        self.pace.widest()
     }
 
     /// Space for one thread.
@@ -173,10 +174,9 @@ impl<'a> Planner<'a> {
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
-            scratch: self.kernels[0].scratch(),
             before: States::new(count, pad),
             now: States::new(count, pad),
-            came_from: vec![0; longest * 4 * count],
+            record: sweep::Record::new(longest, count),
         }
     }
 

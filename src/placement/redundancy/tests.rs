@@ -1,10 +1,12 @@
 //! The planner against check values, and against plain dynamic programming over every real configuration.
 
+use super::sweep::Pass;
 use super::*;
 use crate::placement::criterion::state;
 use crate::placement::testing::{compensated, five_segments, with_laws};
 use crate::robot::angles::yaw_from_q4;
 use crate::robot::{Compliance, Joint, PostureClass, Robot};
+use crate::task::{PathPoint, Task, ToolPath};
 
 fn published_optimum() -> [f64; 4] {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
@@ -148,15 +150,9 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let f = f64::from(k);
             let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
             for span in problem.task.segments() {
-                let sweep = planner.sweep(
-                    &planner.kernels[0],
-                    span.clone(),
-                    &pose,
-                    Extremum::Smallest,
-                    None,
-                    &mut workspace,
-                    false,
-                );
+                let kernel = &planner.kernels[0];
+                let pass = Pass { kernel, span, pose: &pose, extremum: Extremum::Smallest, is_paced: false };
+                let sweep = planner.sweep(pass, None, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
                     let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);
@@ -216,4 +212,86 @@ fn says_which_points_and_segments_have_no_plan() {
     let none = planner.plan(&published_optimum(), Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
     assert!(none.blocked_points.is_empty());
     assert_eq!(none.broken_segments, [(0, 1), (1, 22), (2, 43), (3, 64), (4, 85)]);
+}
+
+#[test]
+fn plans_of_blocks_are_those_of_whole_segments() {
+    let mut problem = with_prototype_steps(five_segments());
+    problem.redundancy.beta_count = 60;
+    problem.redundancy.max_beta_rate *= 3.0;
+    let planner = Planner::new(&problem);
+    let (pose, extremum) = (published_optimum(), Extremum::Largest);
+    let mut compared = 0;
+    for kernel in &planner.kernels {
+        for span in problem.task.segments() {
+            let pass = Pass { kernel, span, pose: &pose, extremum, is_paced: false };
+            let mut whole = planner.workspace();
+            let sweep = planner.sweep(pass, None, &mut whole, false);
+            // Blocks that end with the segment, that do not, and of the least length.
+            for most in [5, 7, 1, 19, 20, 21].map(|steps| steps * 4 * 60) {
+                let mut blocks = planner.workspace();
+                blocks.record = sweep::Record::with_most(span.len(), 60, most);
+                let again = planner.sweep(pass, None, &mut blocks, false);
+                assert_eq!(again.ends, sweep.ends);
+                for class in PostureClass::ALL.into_iter().filter(|class| sweep.ends[class.index()].is_some()) {
+                    compared += 1;
+                    let betas = planner.trace(pass, class, &sweep, &mut whole);
+                    assert_eq!(planner.trace(pass, class, &again, &mut blocks), betas, "{span:?} {class:?} {most}");
+                }
+            }
+            let posture = Posture::ALL[2];
+            let search = exact::Search { planner: &planner, span, pose: &pose, extremum, posture };
+            let expected = search.plan(span.len(), &mut whole);
+            assert!(expected.is_some());
+            for block in [1, 4, 7, 20, 30] {
+                assert_eq!(search.plan(block, &mut whole), expected, "{span:?} {block}");
+            }
+        }
+    }
+    assert!(compared >= 30, "{compared}");
+}
+
+/// The same path with so many points for each of its own.
+fn denser(problem: &Problem, times: usize) -> Problem {
+    let task = &problem.task;
+    let (mut points, mut wrenches) = (Vec::new(), Vec::new());
+    for (segment, span) in task.segments().iter().enumerate() {
+        for point in span.clone() {
+            let (here, wrench) = (task.points()[point], task.wrenches()[point]);
+            let parts = if point + 1 < span.end { times } else { 1 };
+            for part in 0..parts {
+                let next = task.points()[(point + 1).min(span.end - 1)].position;
+                let position = here.position + (next - here.position) * (part as f64 / times as f64);
+                points.push((segment as u32 + 1, PathPoint { position, ..here }));
+                wrenches.push(wrench);
+            }
+        }
+    }
+    let path = ToolPath::new(points).unwrap();
+    Problem { task: Task::new(path, wrenches).unwrap(), ..problem.clone() }
+}
+
+#[test]
+fn beta_keeps_its_pace_where_points_are_close() {
+    // Near the best placement, where the rate of beta binds; steps of the path that are a third of a step of the grid.
+    let pose = [0.0, -1.64, -0.214, 1.378];
+    let dense = denser(&five_segments(), 10);
+    let extremum = Extremum::Smallest;
+    let planner = Planner::new(&dense);
+    assert!(dense.task.segments().iter().all(|span| planner.pace.is_spread(span)));
+    let mut workspace = planner.workspace();
+    let plans = planner.plan(&pose, extremum, None, &mut workspace).unwrap();
+    assert_sound(&dense, &pose, &plans);
+    let found = plans.iter().map(|plan| plan.cost).sum::<f64>() / dense.task.points().len() as f64;
+    let worth = planner.worth(&pose, extremum, None, &mut workspace).mean().unwrap();
+    assert!((found - worth).abs() < 1e-12 * found, "{found} {worth}");
+    // A grid so fine that nothing is saved up, and beta held still.
+    let mean = |beta_count: usize, share: f64| {
+        let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
+        let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
+        super::tests::worth(&Problem { redundancy, ..dense.clone() }, &pose, extremum).mean().unwrap()
+    };
+    let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
+    // Spread steps leave the grid, so that they may come out a little below the finest.
+    assert!((found - fine).abs() < 0.05 * (still - fine), "{fine} {found} {still}");
 }

@@ -6,7 +6,7 @@
 
 use super::super::problem::Problem;
 use super::super::redundancy::{Planner, Workspace, fine};
-use super::linearise::{UNITS, linearise};
+use super::linearise::{Curvature, UNITS, linearise};
 use super::solver::Run;
 use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
 use super::{Solution, inside, planned};
@@ -80,7 +80,7 @@ fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64
 
 /// Gradient of the mean score of the best plan with respect to the pose, postures fixed. m per scaled unit
 pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
-    let locals = linearise(problem, solution)?;
+    let locals = linearise(problem, solution, Curvature::Beta)?;
     let question = Question { trust: 1e-3, curved: true, pose_stays: true };
     let answer = solve(problem, solution, &locals, question).ok()?;
     Some(Vector4::from(answer.pose_gradient))

@@ -32,18 +32,29 @@ pub struct Local {
     pub curvature: Matrix5<f64>,
 }
 
-/// Gradient steps for the curvature, in scaled variables.
+/// Step from gradient to gradient for the curvature, in scaled variables.
 const CURVATURE_STEP: f64 = 1e-4;
 
+/// How much of the curvature is asked for: each variable costs an evaluation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Curvature {
+    /// None: it is left at zero.
+    None,
+    /// Along beta, and between beta and the pose: all that matters while the pose stays.
+    Beta,
+    /// All of it.
+    Full,
+}
+
 /// All path points of a solution, in order; `None` when one cannot be reached, which a solution rules out.
-pub fn linearise(problem: &Problem, solution: &Solution) -> Option<Vec<Local>> {
+pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Option<Vec<Local>> {
     let mut locals = Vec::with_capacity(problem.task.points().len());
     for plan in &solution.plans {
         for (place, point) in plan.points.clone().enumerate() {
             let at = [solution.pose[0], solution.pose[1], solution.pose[2], solution.pose[3], plan.betas[place]];
             let centre = gradient(problem, point, at, plan.posture)?;
             let centre = (centre.0, if is_near_kink(&centre.1) { centre.1 } else { Vec::new() });
-            let curvature = curvature(problem, point, at, plan.posture, &centre);
+            let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
             let (state, changes) = centre;
             let margin = if changes.is_empty() { state.margin } else { Dual::constant(0.0) };
             locals.push(Local {
@@ -101,7 +112,13 @@ fn curvature(
     at: [f64; LOCAL],
     posture: Posture,
     centre: &Differentiated,
+    asked: Curvature,
 ) -> Matrix5<f64> {
+    let from = match asked {
+        Curvature::None => return Matrix5::zeros(),
+        Curvature::Beta => LOCAL - 1,
+        Curvature::Full => 0,
+    };
     let sign = if centre.0.normal_part.value < 0.0 { -1.0 } else { 1.0 };
     let margin = centre.0.margin.value;
     let is_smooth = centre.1.is_empty();
@@ -114,18 +131,21 @@ fn curvature(
         sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k] + margin
     };
     let mut hessian = Matrix5::zeros();
-    for k in 0..LOCAL {
-        let shifted = |h: f64| {
-            let mut moved = at;
-            moved[k] += h * UNITS[k];
-            gradient(problem, point, moved, posture)
-        };
-        let (Some(up), Some(down)) = (shifted(CURVATURE_STEP), shifted(-CURVATURE_STEP)) else {
-            return Matrix5::zeros();
-        };
+    for k in from..LOCAL {
+        let mut moved = at;
+        moved[k] += CURVATURE_STEP * UNITS[k];
+        let Some(there) = gradient(problem, point, moved, posture) else { return Matrix5::zeros() };
         for j in 0..LOCAL {
-            hessian[(j, k)] = (slope(&up, j) - slope(&down, j)) / (2.0 * CURVATURE_STEP);
+            hessian[(j, k)] = (slope(&there, j) - slope(centre, j)) / CURVATURE_STEP;
         }
+    }
+    if asked == Curvature::Beta {
+        let beta = LOCAL - 1;
+        if hessian[(beta, beta)] <= 0.0 {
+            return Matrix5::zeros();
+        }
+        hessian.set_row(beta, &hessian.column(beta).transpose());
+        return hessian;
     }
     let symmetric = (hessian + hessian.transpose()) * 0.5;
     let eigen = SymmetricEigen::new(symmetric);

@@ -22,6 +22,7 @@ pub mod linearise;
 pub mod solver;
 pub mod subproblem;
 
+use super::appraiser::{self, Appraiser};
 use super::outcome::{CANCELLED, Goal, Refinement};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, Workspace, fine};
@@ -72,13 +73,15 @@ pub fn planned(
 /// Refines from one pose, with the posture scheme found anew in every round or kept as given. `None` when the pose has no
 /// plan to start from.
 pub fn refine(
-    planner: &Planner<'_>,
+    appraiser: &Appraiser<'_>,
     start: &[f64; 4],
     goal: Goal,
     scheme: Option<&[Posture]>,
 ) -> Option<(Solution, Refinement)> {
+    let planner = appraiser.planner();
     let problem = planner.problem();
     let mut workspace = planner.workspace();
+    let mut looks = appraiser.workspace();
     let tube = fine::Tube::full(planner.grid());
     let mut best = planned(planner, start, scheme, tube, &mut workspace)?;
     let mut report = Refinement {
@@ -125,7 +128,7 @@ pub fn refine(
         let gained = (before - best.mean()).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
-            match poll(planner, &best, goal, scheme, &mut workspace) {
+            match poll(appraiser, &best, goal, scheme, &mut workspace, &mut looks) {
                 Some(better) => best = better,
                 None => break,
             }
@@ -144,21 +147,24 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-
 /// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
 fn poll(
-    planner: &Planner<'_>,
+    appraiser: &Appraiser<'_>,
     centre: &Solution,
     goal: Goal,
     scheme: Option<&[Posture]>,
     workspace: &mut Workspace,
+    looks: &mut appraiser::Workspace,
 ) -> Option<Solution> {
+    let planner = appraiser.planner();
     let problem = planner.problem();
     let tube = fine::Tube::full(planner.grid());
     let sign = match goal {
         Goal::Best => 1.0,
         Goal::Worst => -1.0,
     };
+    let mut look = |pose: &[f64; 4]| appraiser.table().and_then(|_| appraiser.worth(pose, scheme, looks).mean());
+    let here = look(&centre.pose);
     let mut best: Option<Solution> = None;
     for distance in POLLS {
         for k in 0..4 {
@@ -166,6 +172,12 @@ fn poll(
                 let mut pose = centre.pose;
                 pose[k] += side * distance * linearise::UNITS[k];
                 let pose = inside(problem, pose);
+                // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
+                // next, sees to be no better.
+                let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
+                if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_no_better) {
+                    continue;
+                }
                 let Some(near) = planned(planner, &pose, scheme, tube, workspace) else { continue };
                 let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
                 if near.mean() * sign < known * sign {

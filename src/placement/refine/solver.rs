@@ -3,7 +3,7 @@
 //! The parameter vector is x, y, z (m), yaw and every beta (rad). argmin's executor runs it, so its observers and its
 //! termination apply.
 
-use super::linearise::linearise;
+use super::linearise::{Curvature, linearise};
 use super::subproblem::{Question, solve};
 use super::{Solution, inside, moved};
 use crate::placement::problem::Problem;
@@ -102,7 +102,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
     fn next_iter(&mut self, _: &mut ArgminProblem<()>, state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
         let known = self.known()?;
         let mean = known.mean();
-        let Some(locals) = linearise(self.problem, &known) else {
+        let Some(locals) = linearise(self.problem, &known, Curvature::Full) else {
             self.ending = Some("a point cannot be linearised".to_owned());
             return Ok((state.param(parameters(&known)).cost(mean), None));
         };

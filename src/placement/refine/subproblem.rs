@@ -8,7 +8,7 @@
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
 
 use super::super::problem::{Interval, Problem};
-use super::linearise::{LOCAL, Local, UNITS, linearise};
+use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::{LENGTH_UNIT, Solution};
 use crate::robot::angles::wrap;
 use crate::robot::scalar::Dual;
@@ -304,7 +304,7 @@ const KKT_TRUST: f64 = 1e-2;
 /// the subproblem could not be solved.
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let question = Question { trust: KKT_TRUST, curved: false, pose_stays: false };
-    linearise(problem, solution)
+    linearise(problem, solution, Curvature::None)
         .and_then(|locals| solve(problem, solution, &locals, question).ok())
         .map_or(f64::INFINITY, |answer| answer.promised / KKT_TRUST)
 }

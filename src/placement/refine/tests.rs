@@ -28,7 +28,7 @@ fn best_gets_better_and_stays_allowed() {
         [(five_segments(), published_optimum()), (five_segments_compensated(), [0.0, -1.7, -0.4, 0.7])]
     {
         let planner = Planner::finer(&problem);
-        let (solution, report) = refine(&planner, &start, Goal::Best, None).unwrap();
+        let (solution, report) = refine(&Appraiser::new(&planner, None), &start, Goal::Best, None).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
         assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
@@ -59,10 +59,10 @@ fn margins_may_be_driven_to_their_kink() {
     let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
     problem.robot = problem.robot.with_uncertainty(known).unwrap();
     let planner = Planner::new(&problem);
-    let (solution, report) = refine(&planner, &published_optimum(), Goal::Best, None).unwrap();
+    let (solution, report) = refine(&Appraiser::new(&planner, None), &published_optimum(), Goal::Best, None).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
-    let locals = linearise::linearise(&problem, &solution).unwrap();
+    let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
     let margins = || locals.iter().map(|local| local.state.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
     for local in locals.iter().filter(|local| !local.changes.is_empty()) {
@@ -76,7 +76,8 @@ fn margins_may_be_driven_to_their_kink() {
 fn worst_gets_worse_and_stays_allowed() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(&planner, &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
 }
@@ -85,7 +86,7 @@ fn worst_gets_worse_and_stays_allowed() {
 fn a_start_without_a_plan_is_refused() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    assert_eq!(refine(&planner, &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
+    assert_eq!(refine(&Appraiser::new(&planner, None), &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
 }
 
 #[test]
@@ -95,7 +96,8 @@ fn constraints_bind_and_hold() {
     problem.constraints.min_inverse_condition = 0.4;
     problem.constraints.max_deflection = Some(1.5e-3);
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
 }
@@ -107,7 +109,8 @@ fn joint_speeds_bind_and_hold() {
     joints.iter_mut().for_each(|j| j.max_speed = Some(0.25));
     problem.robot = crate::robot::Robot::new("slow", joints).unwrap();
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(&planner, &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
     let used = solution.plans.iter().flat_map(|plan| {
@@ -150,7 +153,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
         let planner = Planner::finer(&problem);
         let tube = fine::Tube::full(planner.grid());
         let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
-        let locals = linearise::linearise(&problem, &here).unwrap();
+        let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
                 for k in 0..linearise::LOCAL {
@@ -179,7 +182,7 @@ fn a_cell_without_room_is_refined_in_beta_alone() {
     problem.cell.yaw = Interval { min: pose[3], max: pose[3] };
     let planner = Planner::finer(&problem);
     for goal in [Goal::Best, Goal::Worst] {
-        let (solution, report) = refine(&planner, &pose, goal, None).unwrap();
+        let (solution, report) = refine(&Appraiser::new(&planner, None), &pose, goal, None).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean <= report.start_mean * (1.0 + 1e-12));
         assert!((0..4).all(|k| (solution.pose[k] - pose[k]).abs() < 1e-12), "{:?}", solution.pose);

@@ -1,6 +1,6 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
-use super::super::json::Timing;
+use super::super::json::{Timing, inputs};
 use super::super::number::Unit;
 use super::{AssessmentContext, elbow, load};
 use crate::assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
@@ -20,11 +20,8 @@ pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing:
 /// The content of `summary.json`: byte for byte the same for the same inputs.
 pub fn summary_json(study: &Study, assessment: &Assessment, context: &AssessmentContext) -> Value {
     let mut document = common(assessment, context);
-    let inputs = context.inputs.iter();
-    let inputs: Vec<Value> =
-        inputs.map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 })).collect();
     document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
-    document.insert("inputs".to_owned(), json!(inputs));
+    document.insert("inputs".to_owned(), inputs(&context.inputs));
     document.insert("benchmark".to_owned(), benchmark(study, context.range_share));
     Value::Object(document)
 }

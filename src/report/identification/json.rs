@@ -1,5 +1,6 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
+use super::super::json::inputs;
 use super::super::number::Unit;
 use super::{URAD, key, rounded};
 use crate::config::IdentifyRun;
@@ -16,11 +17,6 @@ const DIGITS: usize = 12;
 /// The document: compliances as seen, compensator, arm with covariance, residuals, outliers, prediction error.
 pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
     let sheet = &run.problem.sheet;
-    let inputs: Vec<Value> = run
-        .inputs
-        .iter()
-        .map(|input| json!({ "role": input.role, "name": input.name, "sha256": input.sha256 }))
-        .collect();
     let worst = found
         .prediction
         .worst
@@ -30,7 +26,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "robot": found.robot.name(),
-        "inputs": inputs,
+        "inputs": inputs(&run.inputs),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
         "compliances": found.seen.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
@@ -41,7 +37,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
             map.extend(numbers(estimate, factor, ["value", "std", "low", "high"]));
             Value::Object(map)
         }).collect::<Vec<_>>(),
-        "held": found.held.iter().map(|parameter| joint_of(found, *parameter) + 1).collect::<Vec<_>>(),
+        "held": held(found),
         "noise_mm": millimetres(found.noise),
         "noise_estimated": found.is_noise_estimated,
         "noise_ratio": rounded(libm::sqrt(found.variance_ratio), 6),
@@ -69,6 +65,15 @@ fn joint_of(found: &Identified, parameter: Parameter) -> usize {
         Parameter::Joint(joint) => joint,
         Parameter::Group(_) => found.varying.unwrap_or_default(),
     }
+}
+
+/// The joints that keep the compliance of the robot file: not those of which one angle alone is not seen.
+fn held(found: &Identified) -> Vec<usize> {
+    let joint = |parameter: &Parameter| match parameter {
+        Parameter::Joint(joint) => Some(joint + 1),
+        Parameter::Group(_) => None,
+    };
+    found.held.iter().filter_map(joint).collect()
 }
 
 fn numbers<P>(estimate: &Estimate<P>, factor: f64, names: [&str; 4]) -> [(String, Value); 4] {
@@ -131,10 +136,14 @@ fn setup(run: &IdentifyRun, found: &Identified) -> Value {
     let base = &found.setup.tracker_from_base;
     let rotation: Vec<Value> =
         base.rotation.row_iter().map(|row| row.iter().map(|v| rounded(*v, DIGITS)).collect()).collect();
-    let points = run.problem.sheet.points.iter().zip(&found.setup.points);
+    let points = run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations);
+    let (line, distance) = found.setup_fit.worst;
     json!({
         "tracker_from_base": { "xyz_mm": triple(&base.translation), "rotation": rotation },
-        "points": points.map(|(name, place)| json!({ "point": name, "flange_mm": triple(place) })).collect::<Vec<_>>(),
+        "points": points
+            .map(|((name, place), std)| json!({ "point": name, "flange_mm": triple(place), "std_mm": millimetres(*std) }))
+            .collect::<Vec<_>>(),
         "residual_rms_mm": millimetres(found.setup.residual_rms),
+        "worst": { "line": line, "mm": millimetres(distance) },
     })
 }

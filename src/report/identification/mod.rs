@@ -1,6 +1,7 @@
-//! Reports of `stead identify fit`: the robot file, the report for programs, tables, the picture, the table for people.
+//! Reports of `stead identify fit`, and in [`plan`] those of `stead identify plan`: the robot file, the report for programs, tables, the picture, the table for people.
 
 mod json;
+pub mod plan;
 mod robot_file;
 mod tables;
 #[cfg(test)]
@@ -42,6 +43,15 @@ fn key(parameter: &ArmParameter) -> (String, f64) {
         Quantity::Compliance => (format!("joints[{number}].compliance_urad_per_nm"), 1e6),
         Quantity::SpringStiffness => (format!("joints[{number}].compensator.spring_stiffness_n_per_mm"), 1e-3),
         Quantity::FreeLength => (format!("joints[{number}].compensator.free_length_mm"), 1e3),
+    }
+}
+
+/// Its unit there.
+fn unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Compliance => "urad/(N m)",
+        Quantity::SpringStiffness => "N/mm",
+        Quantity::FreeLength => "mm",
     }
 }
 

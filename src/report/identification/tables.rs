@@ -3,7 +3,7 @@
 use super::super::number::{Unit, fixed};
 use super::super::output::ReportError;
 use super::super::tables::table;
-use super::{URAD, key, rounded};
+use super::{URAD, key, rounded, unit};
 use crate::config::IdentifyRun;
 use crate::identification::Identified;
 use crate::identification::model::Parameter;
@@ -34,12 +34,7 @@ pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
     });
     let arm = found.arm.iter().map(|estimate| {
         let (name, factor) = key(&estimate.parameter);
-        let unit = match estimate.parameter.quantity {
-            crate::identification::law::Quantity::Compliance => "urad/(N m)",
-            crate::identification::law::Quantity::SpringStiffness => "N/mm",
-            crate::identification::law::Quantity::FreeLength => "mm",
-        };
-        let mut row = vec![name, unit.to_owned(), String::new()];
+        let mut row = vec![name, unit(estimate.parameter.quantity).to_owned(), String::new()];
         row.extend(
             [estimate.value, estimate.deviation, estimate.interval[0], estimate.interval[1]]
                 .map(|value| number(value * factor)),

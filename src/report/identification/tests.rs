@@ -37,6 +37,21 @@ fn a_robot_file_changes_in_its_compliances_alone_however_it_is_written() {
     }
     assert_eq!(new.matches("[covariance]").count(), 1);
     assert_eq!(document["covariance"]["parameters"].as_array().unwrap().len(), found.arm.len());
+    // The covariance in the units of the names, entry by entry.
+    let unit = |name: &str| match name.rsplit('_').collect::<Vec<_>>()[..2] {
+        ["nm", "per"] => 1e6,
+        ["mm", "per"] => 1e-3,
+        _ => 1e3,
+    };
+    let table = &document["covariance"];
+    let names: Vec<&str> = table["parameters"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    for (i, row) in table["matrix"].as_array().unwrap().iter().enumerate() {
+        for (j, entry) in row.as_array().unwrap().iter().enumerate() {
+            let expected = found.covariance[(i, j)] * unit(names[i]) * unit(names[j]);
+            let scale = found.arm[i].deviation * found.arm[j].deviation * unit(names[i]) * unit(names[j]);
+            assert!((entry.as_float().unwrap() - expected).abs() < 1e-9 * scale, "{i} {j}");
+        }
+    }
     assert!(matches!(robot_file("name = 1", &found), Err(ReportError::Format { .. })));
 }
 

@@ -4,7 +4,8 @@ use super::super::number::fixed;
 use super::super::text::aligned;
 use super::{URAD, key};
 use crate::config::IdentifyRun;
-use crate::identification::model::Parameter;
+use crate::identification::law::Quantity;
+use crate::identification::model::{Layout, Parameter};
 use crate::identification::outcome::Estimate;
 use crate::identification::{Identified, RowResult};
 
@@ -35,6 +36,7 @@ pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
         text += &format!(", at worst {} mm ({})", fixed(rms * 1e3, 4), sheet.configurations[index].name);
     }
     text += "\n";
+    text += &format!("unloaded readings fit the joint angles to {} mm rms\n", fixed(found.setup.residual_rms * 1e3, 4));
     for row in found.outliers() {
         text += &outlier(run, row);
     }
@@ -97,18 +99,88 @@ fn outlier(run: &IdentifyRun, row: &RowResult) -> String {
     )
 }
 
+/// Distances below this are rounding. m
+const ROUNDING: f64 = 1e-9;
 /// Estimates worth less than this many standard deviations are hardly seen.
 const HARDLY: f64 = 5.0;
+
+/// Unloaded readings that are farther off than this share of the flange's spread leave levers in doubt that matter.
+const MISFIT: f64 = 2e-3;
+/// Likewise reference points with a larger standard deviation.
+const LOOSE: f64 = 1e-3;
+/// A reading so many times as far off as the others is not like them.
+const FAR: f64 = 6.0;
+
+/// What is to be known about base transform and reference points.
+fn setup_notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
+    let mut notes = Vec::new();
+    let (off, fit) = (found.setup.residual_rms, &found.setup_fit);
+    let (line, distance) = fit.worst;
+    if off > MISFIT * fit.flange_rms || distance > FAR * fit.others_rms.max(ROUNDING) {
+        notes.push(format!(
+            "line {line}: the unloaded reading is {} mm away from where the joint angles put it (all: {} mm rms); levers may \
+             be wrong by as much",
+            fixed(distance * 1e3, 3),
+            fixed(off * 1e3, 3)
+        ));
+    }
+    for (name, deviation) in run.problem.sheet.points.iter().zip(&fit.point_deviations) {
+        if *deviation > LOOSE * fit.flange_rms {
+            notes.push(format!(
+                "the place of point {name} on the flange is only known to {} mm (standard deviation), which the intervals \
+                 do not count: turn the flange every way",
+                fixed(deviation * 1e3, 2)
+            ));
+        }
+    }
+    notes
+}
+
+/// Compliances so many times those of the robot file, up or down, in the middle: rather a unit than an arm.
+const SCALE: f64 = 5.0;
+
+/// Whether all compliances are off by a common factor.
+fn scale_note(run: &IdentifyRun, found: &Identified) -> Option<String> {
+    let start = run.problem.robot.joints();
+    let ratio =
+        |e: &Estimate<Parameter>| e.value / start[joint_of(found, e.parameter)].compliance_at(e.angle.unwrap_or(0.0));
+    let mut ratios: Vec<f64> = found.seen.iter().map(ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let middle = *ratios.get(ratios.len() / 2)?;
+    (!(1.0 / SCALE..=SCALE).contains(&middle)).then(|| {
+        format!(
+            "the compliances are {} times those of the robot file (median): are forces in N and places in mm?",
+            super::rounded(middle, 3)
+        )
+    })
+}
 
 /// What the user should know about the result though nothing failed.
 fn notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
     let mut notes = Vec::new();
+    let layout = Layout::new(&run.problem.sheet, found.varying, run.problem.angle_tolerance);
     for parameter in &found.held {
         let joint = joint_of(found, *parameter) + 1;
-        notes.push(format!("the compliance of joint {joint} is not seen: it keeps the value of the robot file"));
+        notes.push(match layout.angle(*parameter) {
+            None => format!(
+                "the compliance of joint {joint} is not seen: it keeps the value of the robot file, which intervals and \
+                 covariance take for exact"
+            ),
+            Some(angle) => format!(
+                "nothing is seen of joint {joint} at {} deg: its compliance there follows from its other angles",
+                fixed(angle.to_degrees(), 2)
+            ),
+        });
     }
+    notes.extend(setup_notes(run, found));
+    notes.extend(scale_note(run, found));
     for estimate in found.arm.iter().filter(|estimate| estimate.value < HARDLY * estimate.deviation) {
-        notes.push(format!("{} is hardly seen: load the arm so that this joint turns", key(&estimate.parameter).0));
+        let joint = estimate.parameter.joint + 1;
+        let advice = match estimate.parameter.quantity {
+            Quantity::Compliance => "load the arm so that this joint turns".to_owned(),
+            _ => format!("take more angles of joint {joint}, wider apart"),
+        };
+        notes.push(format!("{} is hardly seen: {advice}", key(&estimate.parameter).0));
     }
     let ratio = libm::sqrt(found.variance_ratio);
     if !found.is_noise_estimated && !(0.8..1.25).contains(&ratio) {

@@ -15,6 +15,7 @@ mod deflections;
 mod hatch;
 mod indicators;
 mod lettering;
+mod measurement_plan;
 mod patches;
 mod plane_view;
 mod polar;
@@ -28,6 +29,7 @@ pub use cutting::cutting;
 pub use deflection_map::deflection_map;
 pub use deflections::deflections;
 pub use indicators::indicators;
+pub use measurement_plan::measurement_plan;
 pub use polar::polar;
 
 #[cfg(test)]

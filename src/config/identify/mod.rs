@@ -1,9 +1,13 @@
-//! Identification files: the config of `stead identify fit`.
+//! Identification files: the config of `stead identify fit` and `stead identify plan`, so that one file serves both.
+
+mod plan;
+
+pub use plan::{PlanRun, read_plan};
 
 use super::reader::{Field, Table};
 use super::robot::robot_from;
-use super::sheet::sheet_from;
-use super::source::{Source, sha256};
+use super::sheet::{repeated, sheet_from};
+use super::source::{Document, Source, input_file};
 use crate::identification::Problem;
 use crate::identification::law::Law;
 use crate::identification::spring::Geometry;
@@ -33,8 +37,8 @@ pub struct IdentifyRun {
 /// Keys: `robot`, `sheet` (paths relative to the folder of the file), `load_point_mm` (where the wrench acts, flange frame);
 /// optionally `noise_mm` and `noise_deg` (standard deviation of one coordinate of one reading; both are needed for sheets with
 /// orientations), `[compensator]` (`joint`, `a_mm`, `l_mm`, `alpha_deg`; else that of the robot file, if it has one), `[base]`
-/// (`rotation` from the robot base to the tracker's frame, to start from) and `[fit]` (`reduce`,
-/// `distinct_q2`, `angle_tolerance_deg`). The shipped file explains each.
+/// (`rotation` from the robot base to the tracker's frame, to start from), `[fit]` (`reduce`,
+/// `distinct_q2`, `angle_tolerance_deg`) and `[plan]`, which is for [`read_plan`] alone. The shipped file explains each.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
@@ -42,23 +46,11 @@ pub struct IdentifyRun {
 pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     let source = Source::read(file)?;
     let document = source.parse()?;
-    let [robot, sheet, load_point, noise, noise_deg, compensator, base, fit] = Table::root(&document).fields([
-        "robot",
-        "sheet",
-        "load_point_mm",
-        "noise_mm",
-        "noise_deg",
-        "compensator",
-        "base",
-        "fit",
-    ])?;
-    let robot_file = robot.named_file()?;
-    let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
-    let robot = robot_from(&robot_source)?;
+    let Shared {
+        robot, robot_input, robot_text, sheet, load_point, noise, noise_deg, fit, varying, note, start, ..
+    } = Shared::new(&document)?;
     let sheet_file = sheet.named_file()?;
     let readings = sheet_from(&sheet_file.file, &sheet_file.bytes, &robot)?;
-    let position_noise = noise.optional(Field::positive)?.map(|mm| mm / 1e3);
-    let orientation_noise = noise_deg.optional(Field::positive)?.map(f64::to_radians);
     if readings.is_full_pose() {
         for field in [&noise, &noise_deg] {
             if !field.is_given() {
@@ -67,28 +59,73 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
             }
         }
     }
-    let fit = fit.optional(|field| fit_from(&field.table()?))?.unwrap_or(PLAIN);
-    let given = compensator.optional(|field| compensator_from(&field.table()?, &robot))?;
-    let (varying, note) = varying_from(&robot, given, fit.is_distinct);
-    let input = |role, name: &str, bytes: &[u8]| InputFile { role, name: name.to_owned(), sha256: sha256(bytes) };
-    let inputs = vec![
-        input("config", &file.file_name().unwrap_or_default().to_string_lossy(), source.bytes()),
-        input("robot", &robot_file.name, robot_source.bytes()),
-        input("sheet", &sheet_file.name, &sheet_file.bytes),
-    ];
+    let notes = note.into_iter().chain(repeated(&readings)).collect();
+    let inputs = vec![source.as_config(), robot_input, input_file("sheet", &sheet_file.name, &sheet_file.bytes)];
     let problem = Problem {
         robot,
         sheet: readings,
-        load_point: load_point.vector3()? / 1e3,
-        noise: position_noise,
-        orientation_noise,
+        load_point,
+        noise: noise.optional(Field::positive)?.map(|mm| mm / 1e3),
+        orientation_noise: noise_deg.optional(Field::positive)?.map(f64::to_radians),
         varying,
         angle_tolerance: fit.angle_tolerance,
-        start: base.optional(|field| base_from(&field.table()?))?,
+        start,
         reduce: fit.reduce,
     };
-    let robot_text = String::from_utf8_lossy(robot_source.bytes()).into_owned();
-    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes: note.into_iter().collect() })
+    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
+}
+
+/// What the file says to both commands, and the fields that one of them alone reads.
+struct Shared<'a> {
+    robot: Robot,
+    robot_input: InputFile,
+    robot_text: String,
+    sheet: Field<'a>,
+    load_point: Vector3<f64>,
+    noise: Field<'a>,
+    noise_deg: Field<'a>,
+    fit: Fit,
+    varying: Option<(usize, Law)>,
+    note: Option<String>,
+    start: Option<Matrix3<f64>>,
+    plan: Field<'a>,
+}
+
+impl<'a> Shared<'a> {
+    fn new(document: &'a Document<'a>) -> Result<Self, InputError> {
+        let [robot, sheet, load_point, noise, noise_deg, compensator, base, fit, plan] =
+            Table::root(document).fields([
+                "robot",
+                "sheet",
+                "load_point_mm",
+                "noise_mm",
+                "noise_deg",
+                "compensator",
+                "base",
+                "fit",
+                "plan",
+            ])?;
+        let robot_file = robot.named_file()?;
+        let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
+        let robot = robot_from(&robot_source)?;
+        let fit = fit.optional(|field| fit_from(&field.table()?))?.unwrap_or(PLAIN);
+        let given = compensator.optional(|field| compensator_from(&field.table()?, &robot))?;
+        let (varying, note) = varying_from(&robot, given, fit.is_distinct);
+        Ok(Self {
+            robot,
+            robot_input: input_file("robot", &robot_file.name, robot_source.bytes()),
+            robot_text: String::from_utf8_lossy(robot_source.bytes()).into_owned(),
+            sheet,
+            load_point: load_point.vector3()? / 1e3,
+            noise,
+            noise_deg,
+            fit,
+            varying,
+            note,
+            start: base.optional(|field| base_from(&field.table()?))?,
+            plan,
+        })
+    }
 }
 
 /// The table `[fit]`.

@@ -1,4 +1,6 @@
-//! `stead identify`: joint compliances from measurements.
+//! `stead identify`: which measurements to take, and joint compliances from them.
+
+mod plan;
 
 use super::arguments::{IdentifyCommand, IdentifyFitOptions};
 use super::{Failure, out_folder, print, say};
@@ -11,10 +13,12 @@ use crate::identification::{IdentifyError, identify};
 use crate::input::InputError;
 use crate::report::identification::{identify_json, identify_text, write_identified};
 use crate::report::json;
+use crate::report::words::compliance_name;
 
 pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
     match command {
         IdentifyCommand::Fit(options) => fit(options),
+        IdentifyCommand::Plan(options) => plan::run(options),
     }
 }
 
@@ -54,6 +58,14 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
             .in_field("unloaded_x_mm")
             .allowed("places in millimetres, and joint angles in degrees as the robot counts them")
             .into(),
+        IdentifyError::Setup(SetupError::Misfit { line, .. }) => bad(error.to_string())
+            .at_line(line)
+            .in_field("unloaded_x_mm")
+            .allowed(
+                "places in millimetres in a right-handed frame that stands still, and joint angles in degrees as the robot \
+                 file counts them, each with its own reading",
+            )
+            .into(),
         IdentifyError::Setup(_) => bad(error.to_string())
             .at_line(first)
             .in_field("unloaded_x_mm")
@@ -66,9 +78,21 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
         IdentifyError::NoiseUnknown { .. } => {
             bad(error.to_string()).at_line(first).allowed("more readings, or noise_mm in the config").into()
         }
-        IdentifyError::Unseen { unseen, layout } => bad(unseen_words(&unseen, &layout))
+        IdentifyError::Unseen { unseen, layout, outliers } if !outliers.is_empty() => {
+            let lines: Vec<String> = outliers.iter().map(usize::to_string).collect();
+            bad(format!("without the outliers of lines {}, {}", lines.join(", "), unseen_words(&unseen, &layout)))
+                .at_line(outliers[0])
+                .allowed("readings that agree with each other, and more of them for every compliance")
+                .into()
+        }
+        IdentifyError::Unseen { unseen, layout, .. } => bad(unseen_words(&unseen, &layout))
             .at_line(first)
             .allowed("loads that turn every joint, each in its own way; or fit.reduce = true to keep what is not seen")
+            .into(),
+        IdentifyError::Negative { .. } => bad(error.to_string())
+            .at_line(first)
+            .in_field("force_x_n")
+            .allowed("the wrench that acts on the robot, in its base frame, and the place under it as loaded_*_mm")
             .into(),
         IdentifyError::Law(LawError::TooFewAngles { joint, .. } | LawError::Unseen { joint }) => bad(error.to_string())
             .at_line(first)
@@ -83,13 +107,7 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
 
 /// Every parameter or combination that is not seen, by name.
 fn unseen_words(unseen: &[Unseen], layout: &Layout) -> String {
-    let name = |parameter: &Parameter| {
-        let joint = layout.joint(*parameter) + 1;
-        match layout.angle(*parameter) {
-            Some(angle) => format!("k_{joint} at {:.2} deg", angle.to_degrees()),
-            None => format!("k_{joint}"),
-        }
-    };
+    let name = |parameter: &Parameter| compliance_name(layout.joint(*parameter), layout.angle(*parameter));
     let words = |unseen: &Unseen| {
         let names: Vec<String> = unseen.parameters.iter().map(name).collect();
         match &names[..] {

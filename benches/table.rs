@@ -1,0 +1,93 @@
+//! The table for upright tools on the published case: `cargo bench --bench table`.
+//!
+//! First how far it is from the ordinary evaluator and from the planner; then what it takes to build, and what a placement takes
+//! through it and without it.
+
+#![allow(clippy::expect_used, clippy::print_stdout, reason = "a benchmark of shipped files")]
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use std::path::Path;
+use stead::config::read_run;
+use stead::placement::problem::Problem;
+use stead::placement::redundancy::{Extremum, Planner};
+use stead::placement::table::{Lane, Table};
+
+fn main() {
+    let problem = problem();
+    let planner = Planner::new(&problem);
+    let table = Table::new(&problem).expect("the published case suits a table");
+    println!("table: {} states, {} bytes, {:?}", table.shape().states(), table.shape().bytes(), table.accuracy());
+    let lane = Lane::of(&planner);
+    let (mut looking, mut space) = (table.workspace(&lane), planner.workspace());
+    let mut errors: Vec<f64> = poses()
+        .iter()
+        .filter_map(|pose| {
+            let looked = table.worth(pose, &lane, None, &mut looking).mean()?;
+            Some((looked / planner.worth(pose, Extremum::Smallest, None, &mut space).mean()? - 1.0).abs())
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    println!(
+        "mean deflection against the planner, relative: median {:.1e}, largest {:.1e}, {} placements",
+        errors[errors.len() / 2],
+        errors[errors.len() - 1],
+        errors.len()
+    );
+    divan::main();
+}
+
+fn problem() -> Problem {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/caro-2013.toml");
+    read_run(&file).expect("the shipped run is valid").problem
+}
+
+/// Placements spread over the cell.
+fn poses() -> Vec<[f64; 4]> {
+    let share = |k: usize, n: usize| (k * 7 % n) as f64 / n as f64;
+    (0..40)
+        .map(|k| {
+            [
+                -0.3 + 0.6 * share(k, 20),
+                -2.24 + 0.6 * share(k, 11),
+                -0.6 + 0.38 * share(k, 13),
+                -3.1 + 6.2 * share(k, 17),
+            ]
+        })
+        .collect()
+}
+
+#[divan::bench]
+fn build(bencher: Bencher) {
+    let problem = problem();
+    bencher.bench_local(|| black_box(Table::new(&problem)));
+}
+
+/// A placement through the table, on a grid of beta of so many values.
+#[divan::bench(args = [120, 360, 720])]
+fn worth(bencher: Bencher, count: usize) {
+    let problem = problem();
+    let table = Table::new(&problem).expect("the published case suits a table");
+    let lane = Lane::new(&problem, count);
+    let mut workspace = table.workspace(&lane);
+    let poses = poses();
+    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
+        for pose in &poses {
+            black_box(table.worth(black_box(pose), &lane, None, &mut workspace));
+        }
+    });
+}
+
+/// The same by the planner.
+#[divan::bench]
+fn planned(bencher: Bencher) {
+    let problem = problem();
+    let planner = Planner::new(&problem);
+    let mut workspace = planner.workspace();
+    let poses = poses();
+    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
+        for pose in &poses {
+            black_box(planner.worth(pose, Extremum::Smallest, None, &mut workspace));
+        }
+    });
+}

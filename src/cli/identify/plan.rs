@@ -1,0 +1,73 @@
+//! `stead identify plan`: the measurements to take.
+
+use super::super::arguments::IdentifyPlanOptions;
+use super::super::progress::Steps;
+use super::super::{Failure, on_threads, out_folder, print, say};
+use crate::config::{PlanRun, read_plan};
+use crate::identification::plan::{PlanError, plan};
+use crate::input::InputError;
+use crate::report::identification::plan::{SHEET, is_form, plan_json, plan_text, write_plan};
+use crate::report::json;
+use std::path::Path;
+
+pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
+    let run = read_plan(&options.config, options.seed)?;
+    let out = out_folder(options.out.as_deref(), &options.config)?;
+    keep_readings(&out.folder.path().join(SHEET))?;
+    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    let steps = Steps::start("choosing");
+    let result = on_threads(options.threads, || plan(&run.request, &|done, of| steps.show(done, of)));
+    steps.finish();
+    let (planned, _) = result.inspect_err(|_| out.give_up())?;
+    let planned = planned.map_err(|error| {
+        out.give_up();
+        failure(&run, error)
+    })?;
+    let written = write_plan(&out.folder, &run, &planned);
+    if options.json {
+        print(&json::bytes(&plan_json(&run, &planned)));
+    } else {
+        let where_to = match &written {
+            Ok(_) => format!("\n{SHEET} to be filled in, and what it will tell, in {}\n", out.folder.path().display()),
+            Err(_) => String::new(),
+        };
+        print((plan_text(&run, &planned) + &where_to).as_bytes());
+    }
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+}
+
+/// Refuses to write over a sheet that somebody has filled in.
+fn keep_readings(sheet: &Path) -> Result<(), Failure> {
+    match std::fs::read(sheet) {
+        Ok(bytes) if !is_form(&bytes) => {
+            Err(InputError::new(sheet, "is a sheet with readings in it, which a new plan would write over")
+                .allowed("another folder (--out), or no sheet.csv but an empty one there")
+                .into())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What is wrong with the numbers asked for is bad input; what nothing was found for is not.
+fn failure(run: &PlanRun, error: PlanError) -> Failure {
+    let size = run.request.configurations.to_string();
+    let few = |allowed: &str| {
+        InputError::new(&run.file, error.to_string())
+            .at_line(run.configurations_line)
+            .in_field("plan.configurations")
+            .found(size.clone())
+            .allowed(allowed)
+            .into()
+    };
+    match error {
+        PlanError::TooFew { .. } => {
+            few("at least as many components as compliances: more configurations or reference points")
+        }
+        PlanError::Setup(_) => few("more configurations or reference points, with the flange turned every way"),
+        PlanError::Law(_) => few("3 or more, and as many levels_deg"),
+        PlanError::NothingTold(_) => few("more configurations"),
+        PlanError::TooFewCandidates { .. } | PlanError::NoTest | PlanError::NothingSeen | PlanError::Stopped => {
+            Failure::Job(format!("{}:{}: plan: {error}", run.file.display(), run.table_line))
+        }
+    }
+}
