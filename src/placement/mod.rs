@@ -14,6 +14,7 @@
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
 pub mod appraiser;
+pub mod certify;
 pub mod control;
 pub mod criterion;
 pub mod feasibility;

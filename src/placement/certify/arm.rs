@@ -4,10 +4,10 @@
 //! Everything is in the radial frame of the tool centre point: x away from axis 1, z along it. Joint 1 is left to
 //! [`super::cost`], and so are joints 4 and 6, whose limits are relaxed.
 
-use super::elbow::{Bend, Links};
 use super::conditioning::{Plane, Wrist};
+use super::elbow::{Bend, Links};
+use super::lanes::Mask;
 use super::number::Number;
-use crate::placement::kernel::lanes::Mask;
 use crate::placement::problem::Problem;
 use crate::robot::{Geometry, PostureClass, angles::ANGLE_ROUNDING};
 use nalgebra::{Matrix3, Vector3};

@@ -82,7 +82,8 @@ impl Pointwise {
             return [0.0; CORNERS];
         }
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        let slope = [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
+        let slope =
+            [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
         let [x, y, z] = [0, 1, 2].map(|k| sign * slope[k] * region.half[k]);
         let (low, high) = (least - z, least + z);
         [low - x - y, low + x - y, low - x + y, low + x + y, high - x - y, high + x - y, high - x + y, high + x + y]

@@ -1,6 +1,6 @@
 //! Elbow and wrist as functions of one number each, continued where no state is allowed.
 
-use crate::placement::kernel::lanes::Lanes;
+use super::lanes::Lanes;
 
 /// Upper arm and forearm, as [`Number::elbow`] needs them.
 ///

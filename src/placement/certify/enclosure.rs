@@ -2,8 +2,8 @@
 
 use super::elbow::{Bend, Links};
 use super::interval::Interval;
+use super::lanes::{Lanes, Mask};
 use super::number::{Number, PAIR, PAIRS, Slope, VARIABLES, ZERO};
-use crate::placement::kernel::lanes::{Lanes, Mask};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Intervals for the value, the gradient and the second derivatives over a region; and the value and the gradient in its
@@ -281,7 +281,8 @@ impl Number for Enclosure {
         *sure = *sure & fine;
         // Elsewhere some number that does no harm.
         let one = Lanes::splat(1.0);
-        let value = Interval { middle: fine.select(self.value.middle, one), radius: fine.select(self.value.radius, ZERO) };
+        let value =
+            Interval { middle: fine.select(self.value.middle, one), radius: fine.select(self.value.radius, ZERO) };
         let middle = Slope { value: fine.select(self.middle.value, one), ..self.middle };
         Self { value, middle, ..self }
     }

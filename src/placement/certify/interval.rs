@@ -1,8 +1,8 @@
 //! Interval arithmetic in lanes, by middle and radius, without outward rounding: what is proven with it is proven up to
 //! rounding.
 
+use super::lanes::Lanes;
 use super::number::ZERO;
-use crate::placement::kernel::lanes::Lanes;
 
 /// An interval: all numbers within `radius` of `middle`.
 #[derive(Debug, Clone, Copy)]

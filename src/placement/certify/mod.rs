@@ -19,6 +19,7 @@ mod cost;
 mod elbow;
 mod enclosure;
 mod interval;
+mod lanes;
 mod number;
 mod prepare;
 mod reduced;

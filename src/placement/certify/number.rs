@@ -4,7 +4,7 @@
 //! One formula serves both ([`super::arm`]).
 
 use super::elbow::{Bend, Links};
-use crate::placement::kernel::lanes::{Lanes, Mask};
+use super::lanes::{Lanes, Mask};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Independent variables: radius and height of the tool centre point, heading of the spindle against its azimuth.
@@ -52,7 +52,7 @@ pub(super) struct Slope {
 }
 
 /// Zero in every lane.
-pub(super) const ZERO: Lanes = Lanes([0.0; crate::placement::kernel::lanes::WIDTH]);
+pub(super) const ZERO: Lanes = Lanes([0.0; super::lanes::WIDTH]);
 
 impl Slope {
     /// The independent variable number `index`.
@@ -66,10 +66,7 @@ impl Slope {
     /// Sine and cosine of the heading, given as plain numbers.
     #[inline(always)]
     pub fn heading(sine: Lanes, cosine: Lanes) -> (Self, Self) {
-        (
-            Self { value: sine, gradient: [ZERO, ZERO, cosine] },
-            Self { value: cosine, gradient: [ZERO, ZERO, -sine] },
-        )
+        (Self { value: sine, gradient: [ZERO, ZERO, cosine] }, Self { value: cosine, gradient: [ZERO, ZERO, -sine] })
     }
 
     /// A function of it, from its value and derivative there.

@@ -90,7 +90,8 @@ pub fn certifiable(problem: &Problem) -> Result<(), Unfit> {
     }
     let points = problem.task.points();
     let first = points.first().map_or(1.0, |p| p.axis.z.signum());
-    if let Some(point) = points.iter().position(|p| libm::hypot(p.axis.x, p.axis.y) > LEANING || p.axis.z * first < 0.0) {
+    if let Some(point) = points.iter().position(|p| libm::hypot(p.axis.x, p.axis.y) > LEANING || p.axis.z * first < 0.0)
+    {
         return Err(Unfit::Tilted(point));
     }
     if let Some(point) = problem.task.wrenches().iter().position(|w| w.moment.norm() != 0.0) {
@@ -171,10 +172,7 @@ fn whole(problem: &Problem) -> Region {
     let z = problem.cell.position[2];
     let root = problem.robot.geometry().root_in_base.z;
     let (a, b) = ((z.min - root) * side, (z.max - root) * side);
-    Region {
-        middle: [(near + far) / 2.0, (a + b) / 2.0, 0.0],
-        half: [(far - near) / 2.0, (a - b).abs() / 2.0, PI],
-    }
+    Region { middle: [(near + far) / 2.0, (a + b) / 2.0, 0.0], half: [(far - near) / 2.0, (a - b).abs() / 2.0, PI] }
 }
 
 /// Where path points of placements of the cell can be.
@@ -184,7 +182,8 @@ fn extent(problem: &Problem) -> Extent {
     let most = points.iter().map(|p| p.distance).fold(0.0, f64::max);
     let low = points.iter().map(|p| p.height).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.height).fold(f64::NEG_INFINITY, f64::max);
-    let [(near, far), (bottom, top)] = [0, 1].map(|k| (region.middle[k] - region.half[k], region.middle[k] + region.half[k]));
+    let [(near, far), (bottom, top)] =
+        [0, 1].map(|k| (region.middle[k] - region.half[k], region.middle[k] + region.half[k]));
     Extent { radius: ((near - most).max(NEAREST), far + most), height: (bottom + low, top + high) }
 }
 
@@ -210,7 +209,8 @@ impl Yaws {
         let middle = libm::atan2(y0 + y1, x0 + x1);
         let off = |x: f64, y: f64| crate::robot::angles::wrap(libm::atan2(y, x) - middle);
         let all = [off(x0, y0), off(x0, y1), off(x1, y0), off(x1, y1)];
-        let (low, high) = (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) =
+            (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
         let (from, to) = (cell.yaw.min - middle - high, cell.yaw.max - middle - low);
         let range = (to - from < TAU).then_some((side(problem) * (from + to) / 2.0, (to - from) / 2.0 + 1e-9));
         Self { range }

@@ -78,8 +78,18 @@ impl Reduced {
             for point in span.clone() {
                 let Some(force) = self.force_of[point] else { continue };
                 let p = bounded.points[point].over(region)?;
-                let ratio = (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading) * 2.0;
-                let number = if ratio <= 1.0 { 0 } else if ratio <= 2.0 { 1 } else if ratio <= 4.0 { 2 } else { return None };
+                let ratio =
+                    (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
+                        * 2.0;
+                let number = if ratio <= 1.0 {
+                    0
+                } else if ratio <= 2.0 {
+                    1
+                } else if ratio <= 4.0 {
+                    2
+                } else {
+                    return None;
+                };
                 let level = &self.levels[number];
                 let size = (1usize << number) as f64;
                 let (length, turn) = (self.steps.length * size, heading * size);
@@ -95,7 +105,8 @@ impl Reduced {
                     p.z - self.extent.height.0 - length * j as f64,
                     chi - turn * k as f64,
                 ];
-                let at = (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.forces + force) * 4;
+                let at =
+                    (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.forces + force) * 4;
                 for class in 0..4 {
                     let e = &level.entries[at + class];
                     let s = e.slope.map(f64::from);
@@ -155,14 +166,17 @@ impl Level {
                 for k in 0..counts[2] {
                     for kind in 0..forces * 4 {
                         let children = || {
-                            near(i, n0).flat_map(move |i2| near(j, n1).map(move |j2| (i2, j2))).flat_map(move |(i2, j2)| {
-                                (0..3).map(move |d| {
-                                    let k2 = (2 * k + d + n2 - 1) % n2;
-                                    let e = self.entries[((i2 * n1 + j2) * n2 + k2) * forces * 4 + kind];
-                                    let off = [i2 as f64 - 2.0 * i as f64, j2 as f64 - 2.0 * j as f64, d as f64 - 1.0];
-                                    ([off[0] * half[0], off[1] * half[1], off[2] * half[2]], e)
-                                })
-                            })
+                            near(i, n0).flat_map(move |i2| near(j, n1).map(move |j2| (i2, j2))).flat_map(
+                                move |(i2, j2)| {
+                                    (0..3).map(move |d| {
+                                        let k2 = (2 * k + d + n2 - 1) % n2;
+                                        let e = self.entries[((i2 * n1 + j2) * n2 + k2) * forces * 4 + kind];
+                                        let off =
+                                            [i2 as f64 - 2.0 * i as f64, j2 as f64 - 2.0 * j as f64, d as f64 - 1.0];
+                                        ([off[0] * half[0], off[1] * half[1], off[2] * half[2]], e)
+                                    })
+                                },
+                            )
                         };
                         out.push(below_all(children(), children(), half));
                     }
@@ -292,7 +306,8 @@ impl State {
         let rest = known.rest.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
         let of = |a: usize, b: usize, rest: f64| {
-            let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest;
+            let moved =
+                (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest;
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, rest[1]), of(3, 4, rest[2]));

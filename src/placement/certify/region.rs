@@ -80,8 +80,8 @@ impl Point {
         let swing = (moved / least).min(2.0);
         let sine_most = (sin_azimuth.abs() + swing).min(1.0);
         let cosine_most = (cos_azimuth.abs() + swing).min(1.0);
-        let turn_most = turn_of_azimuth.abs()
-            + (a / least + (radius + a) * (moved / (least * least) + swing / least)).max(0.0);
+        let turn_most =
+            turn_of_azimuth.abs() + (a / least + (radius + a) * (moved / (least * least) + swing / least)).max(0.0);
         let far = radius + a;
         let r_rr = sine_most * sine_most / least;
         let r_rt = sine_most * turn_most;

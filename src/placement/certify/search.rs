@@ -134,7 +134,8 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
             break;
         }
         let batch: Vec<Open> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
-        let results: Vec<Option<Vec<(Region, Evaluated)>>> = batch.par_iter().map(|open| children(&bounded, open, ceiling)).collect();
+        let results: Vec<Option<Vec<(Region, Evaluated)>>> =
+            batch.par_iter().map(|open| children(&bounded, open, ceiling)).collect();
         for (open, children) in batch.into_iter().zip(results) {
             let Some(children) = children else {
                 stuck.push(open);
@@ -162,7 +163,13 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
 }
 
 /// The boxes that the reduced tables leave open.
-fn survivors(bounded: &Bounded, reduced: &Reduced, whole: Region, ceiling: f64, nodes: &mut usize) -> Vec<(f64, Region)> {
+fn survivors(
+    bounded: &Bounded,
+    reduced: &Reduced,
+    whole: Region,
+    ceiling: f64,
+    nodes: &mut usize,
+) -> Vec<(f64, Region)> {
     let mut open = vec![whole];
     let mut left = Vec::new();
     while !open.is_empty() {
@@ -197,13 +204,13 @@ fn children(bounded: &Bounded, open: &Open, ceiling: f64) -> Option<Vec<(Region,
     }
     let halves = open.region.split(side).into_iter().filter(|half| bounded.yaws.allow(half));
     let bounds = halves.map(|half| {
-            let level = bounded.level(&half).unwrap_or(0);
-            let mut tube = (*open.tube).clone();
-            while tube.level < level {
-                tube = tube.halved();
-            }
-            let found = bounded.below(&half, &tube, ceiling);
-            (half, found)
-        });
+        let level = bounded.level(&half).unwrap_or(0);
+        let mut tube = (*open.tube).clone();
+        while tube.level < level {
+            tube = tube.halved();
+        }
+        let found = bounded.below(&half, &tube, ceiling);
+        (half, found)
+    });
     Some(bounds.collect())
 }

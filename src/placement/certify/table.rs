@@ -7,8 +7,8 @@
 use super::arm::{Arm, Yield};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
+use super::lanes::{Lanes, WIDTH};
 use super::number::PAIR;
-use crate::placement::kernel::lanes::{Lanes, WIDTH};
 use crate::robot::PostureClass;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
@@ -156,7 +156,8 @@ impl Table {
     #[inline]
     pub fn node(&self, arm: &Arm, level: usize, at: [usize; 2], cell: usize, class: PostureClass) -> &Node {
         let stored = &self.levels[level];
-        let chunk = ((at[0] * stored.counts[1] + at[1]) * (stored.counts[2] / CHUNK) + cell / CHUNK) * 4 + class.index();
+        let chunk =
+            ((at[0] * stored.counts[1] + at[1]) * (stored.counts[2] / CHUNK) + cell / CHUNK) * 4 + class.index();
         let nodes = stored.chunks[chunk].get_or_init(|| {
             let mut nodes = Box::new([Node::Empty; CHUNK]);
             let first = cell / CHUNK * CHUNK;

@@ -43,9 +43,7 @@ impl Tube {
 
     /// The same with cells half as wide.
     pub fn halved(&self) -> Self {
-        let spread = |word: u32| {
-            (0..32).filter(|bit| word >> bit & 1 == 1).fold(0u64, |out, bit| out | 3 << (2 * bit))
-        };
+        let spread = |word: u32| (0..32).filter(|bit| word >> bit & 1 == 1).fold(0u64, |out, bit| out | 3 << (2 * bit));
         let words = self.words.iter().flat_map(|w| [spread(*w as u32), spread((*w >> 32) as u32)]).collect();
         Self { level: self.level + 1, count: self.count * 2, words }
     }
