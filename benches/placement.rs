@@ -8,39 +8,19 @@
 
 #![allow(clippy::expect_used, reason = "a benchmark of shipped files")]
 
+mod published;
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use std::path::Path;
-use stead::config::read_run;
+use published::{poses, problem};
 use stead::placement::kernel::lanes::Instructions;
 use stead::placement::kernel::{Flips, Kernel, States};
-use stead::placement::problem::Problem;
 use stead::placement::redundancy::band::{self, Step};
 use stead::placement::redundancy::{Extremum, Planner};
 use stead::robot::PostureClass;
 
 fn main() {
     divan::main();
-}
-
-fn problem() -> Problem {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/caro-2013.toml");
-    read_run(&file).expect("the shipped run is valid").problem
-}
-
-/// Placements spread over the cell.
-fn poses() -> Vec<[f64; 4]> {
-    let share = |k: usize, n: usize| (k * 7 % n) as f64 / n as f64;
-    (0..20)
-        .map(|k| {
-            [
-                -0.3 + 0.6 * share(k, 20),
-                -2.24 + 0.6 * share(k, 11),
-                -0.6 + 0.38 * share(k, 13),
-                -3.1 + 6.2 * share(k, 17),
-            ]
-        })
-        .collect()
 }
 
 #[divan::bench(args = instructions())]
@@ -50,7 +30,7 @@ fn kernel(bencher: Bencher, instructions: usize) {
         Kernel::new(&problem, &problem.redundancy, Flips::Both).with_instructions(Instructions::all()[instructions]);
     let mut states = States::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
-    let poses = poses();
+    let poses = poses(20);
     bencher.counter(ItemsCount::new(poses.len() * points * problem.redundancy.beta_count)).bench_local(|| {
         for pose in &poses {
             for point in 0..points {
@@ -124,7 +104,7 @@ fn worth(bencher: Bencher) {
     let problem = problem();
     let planner = Planner::new(&problem);
     let mut workspace = planner.workspace();
-    let poses = poses();
+    let poses = poses(20);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
             black_box(planner.worth(pose, Extremum::Smallest, None, &mut workspace));

@@ -5,11 +5,11 @@
 
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a benchmark of shipped files")]
 
+mod published;
+
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use std::path::Path;
-use stead::config::read_run;
-use stead::placement::problem::Problem;
+use published::{poses, problem};
 use stead::placement::redundancy::{Extremum, Planner};
 use stead::placement::table::{Lane, Table};
 
@@ -20,7 +20,7 @@ fn main() {
     println!("table: {} states, {} bytes, {:?}", table.shape().states(), table.shape().bytes(), table.accuracy());
     let lane = Lane::of(&planner);
     let (mut looking, mut space) = (table.workspace(&lane), planner.workspace());
-    let mut errors: Vec<f64> = poses()
+    let mut errors: Vec<f64> = poses(40)
         .iter()
         .filter_map(|pose| {
             let looked = table.worth(pose, &lane, None, &mut looking).mean()?;
@@ -37,26 +37,6 @@ fn main() {
     divan::main();
 }
 
-fn problem() -> Problem {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/caro-2013.toml");
-    read_run(&file).expect("the shipped run is valid").problem
-}
-
-/// Placements spread over the cell.
-fn poses() -> Vec<[f64; 4]> {
-    let share = |k: usize, n: usize| (k * 7 % n) as f64 / n as f64;
-    (0..40)
-        .map(|k| {
-            [
-                -0.3 + 0.6 * share(k, 20),
-                -2.24 + 0.6 * share(k, 11),
-                -0.6 + 0.38 * share(k, 13),
-                -3.1 + 6.2 * share(k, 17),
-            ]
-        })
-        .collect()
-}
-
 #[divan::bench]
 fn build(bencher: Bencher) {
     let problem = problem();
@@ -70,7 +50,7 @@ fn worth(bencher: Bencher, count: usize) {
     let table = Table::new(&problem).expect("the published case suits a table");
     let lane = Lane::new(&problem, count);
     let mut workspace = table.workspace(&lane);
-    let poses = poses();
+    let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
             black_box(table.worth(black_box(pose), &lane, None, &mut workspace));
@@ -84,7 +64,7 @@ fn planned(bencher: Bencher) {
     let problem = problem();
     let planner = Planner::new(&problem);
     let mut workspace = planner.workspace();
-    let poses = poses();
+    let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
             black_box(planner.worth(pose, Extremum::Smallest, None, &mut workspace));

@@ -2,11 +2,11 @@
 
 use super::arguments::AssessOptions;
 use super::progress::Steps;
-use super::{Failure, on_threads, out_folder, print, say};
+use super::{Failure, on_threads, out_folder, say};
 use crate::assessment::study::assess;
 use crate::config::read_assessment;
 use crate::report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use crate::report::json::{self, Timing};
+use crate::report::json::Timing;
 use std::time::Instant;
 
 pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
@@ -40,15 +40,9 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     });
     let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course };
     let written = write_assessment(&out.folder, &run.study, &assessment, &context);
-    if options.json {
-        print(&json::bytes(&assess_json(&assessment, &context, &Timing { wall, threads })));
-    } else {
-        let where_to = match &written {
-            Ok(_) => format!("; results in {}", out.folder.path().display()),
-            Err(_) => String::new(),
-        };
-        let table = assessment_text(&assessment, &context);
-        print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
-    }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    let document = || assess_json(&assessment, &context, &Timing { wall, threads });
+    let where_to = |folder| format!("; results in {folder}");
+    out.show(written, options.json, document, where_to, |where_to| {
+        format!("{}in {wall:.1} s on {threads} threads{where_to}\n", assessment_text(&assessment, &context))
+    })
 }

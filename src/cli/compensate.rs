@@ -18,14 +18,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
         out.give_up();
     })?;
     let written = write_compensation(&out.folder, &run, &outcome);
-    if options.json {
-        print(&json::bytes(&compensation_json(&run, &outcome)));
-    } else {
-        let where_to = match &written {
-            Ok(_) => format!("results in {}\n", out.folder.path().display()),
-            Err(_) => String::new(),
-        };
-        print(format!("{}{where_to}", compensation_text(&run, &outcome)).as_bytes());
-    }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    let document = || compensation_json(&run, &outcome);
+    let where_to = |folder| format!("results in {folder}\n");
+    out.show(written, options.json, document, where_to, |where_to| compensation_text(&run, &outcome) + &where_to)
 }

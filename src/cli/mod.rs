@@ -18,11 +18,13 @@ use crate::assessment::study::AssessError;
 use crate::compensation::NotCompensated;
 use crate::input::InputError;
 use crate::placement::place::NothingFeasible;
+use crate::report::json;
 use crate::report::output::{Folder, ReportError};
 use arguments::{Arguments, Command};
 use clap::Parser;
+use serde_json::Value;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Display, Path};
 use std::process::ExitCode;
 
 /// Why a command ends without its result.
@@ -115,6 +117,25 @@ impl OutFolder {
             // Goes only if it is empty, as it should be.
             let _ = std::fs::remove_dir(self.folder.path());
         }
+    }
+
+    /// Shows a result, as a JSON document or as text with what `where_to` says of the folder that its files are in; only then
+    /// says what went wrong with the files: whatever happened to them, the result of a long job is shown.
+    fn show<'a, T>(
+        &'a self,
+        written: Result<T, ReportError>,
+        is_json: bool,
+        document: impl FnOnce() -> Value,
+        where_to: impl FnOnce(Display<'a>) -> String,
+        text: impl FnOnce(String) -> String,
+    ) -> Result<(), Failure> {
+        if is_json {
+            print(&json::bytes(&document()));
+        } else {
+            let where_to = written.as_ref().map_or_else(|_| String::new(), |_| where_to(self.folder.path().display()));
+            print(text(where_to).as_bytes());
+        }
+        written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
     }
 }
 

@@ -35,20 +35,15 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
 
     let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
-    // Whatever happened to the files, the result of a long search is shown.
-    if options.json {
-        print(&json::bytes(&json::place_json(&outcome, &context, &Timing { wall, threads })));
-    } else {
+    let document = || json::place_json(&outcome, &context, &Timing { wall, threads });
+    let where_to = |folder| format!("; results in {folder}");
+    let shown = out.show(written, options.json, document, where_to, |where_to| {
         let table = text::placement_text(&run.problem, &outcome, &context);
-        let where_to = match &written {
-            Ok(_) => format!("; results in {}", out.folder.path().display()),
-            Err(_) => String::new(),
-        };
-        print(format!("{table}in {wall:.1} s on {threads} threads{where_to}\n").as_bytes());
-    }
+        format!("{table}in {wall:.1} s on {threads} threads{where_to}\n")
+    });
     mention_cancellation(&run.problem, outcome.cases[0].plan.mean);
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    shown
 }

@@ -115,8 +115,9 @@ impl<'a> Appraiser<'a> {
         self.planner.worth(pose, Extremum::Smallest, scheme, space)
     }
 
-    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are polished first, those that end at the same place are taken once, and
-    /// where the planner does not find what the table promised, the start may go on instead.
+    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are
+    /// polished first, those that end at the same place are taken once, and where the planner does not find what the table
+    /// promised, the start may go on instead.
     pub fn settle(&self, sorted: Vec<Individual>, goal: Goal, most: usize, control: &dyn Control) -> Settled {
         let Some(table) = self.table else {
             let mut basins = sorted;

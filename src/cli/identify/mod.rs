@@ -3,7 +3,7 @@
 mod plan;
 
 use super::arguments::{IdentifyCommand, IdentifyFitOptions};
-use super::{Failure, out_folder, print, say};
+use super::{Failure, out_folder, say};
 use crate::config::{IdentifyRun, read_identification};
 use crate::identification::law::LawError;
 use crate::identification::model::{Layout, Parameter};
@@ -12,7 +12,6 @@ use crate::identification::setup::SetupError;
 use crate::identification::{IdentifyError, identify};
 use crate::input::InputError;
 use crate::report::identification::{identify_json, identify_text, write_identified};
-use crate::report::json;
 use crate::report::words::compliance_name;
 
 pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
@@ -31,16 +30,9 @@ fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
         failure(&run, error)
     })?;
     let written = write_identified(&out.folder, &run, &found);
-    if options.json {
-        print(&json::bytes(&identify_json(&run, &found)));
-    } else {
-        let where_to = match &written {
-            Ok(_) => format!("\nresults in {}\n", out.folder.path().display()),
-            Err(_) => String::new(),
-        };
-        print((identify_text(&run, &found) + &where_to).as_bytes());
-    }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    let document = || identify_json(&run, &found);
+    let where_to = |folder| format!("\nresults in {folder}\n");
+    out.show(written, options.json, document, where_to, |where_to| identify_text(&run, &found) + &where_to)
 }
 
 /// What is wrong with the sheet is bad input, at its line where there is one; what comes out of a sound sheet is not.

@@ -2,12 +2,11 @@
 
 use super::super::arguments::IdentifyPlanOptions;
 use super::super::progress::Steps;
-use super::super::{Failure, on_threads, out_folder, print, say};
+use super::super::{Failure, on_threads, out_folder, say};
 use crate::config::{PlanRun, read_plan};
 use crate::identification::plan::{PlanError, plan};
 use crate::input::InputError;
 use crate::report::identification::plan::{SHEET, is_form, plan_json, plan_text, write_plan};
-use crate::report::json;
 use std::path::Path;
 
 pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
@@ -24,16 +23,9 @@ pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
         failure(&run, error)
     })?;
     let written = write_plan(&out.folder, &run, &planned);
-    if options.json {
-        print(&json::bytes(&plan_json(&run, &planned)));
-    } else {
-        let where_to = match &written {
-            Ok(_) => format!("\n{SHEET} to be filled in, and what it will tell, in {}\n", out.folder.path().display()),
-            Err(_) => String::new(),
-        };
-        print((plan_text(&run, &planned) + &where_to).as_bytes());
-    }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    let document = || plan_json(&run, &planned);
+    let where_to = |folder| format!("\n{SHEET} to be filled in, and what it will tell, in {folder}\n");
+    out.show(written, options.json, document, where_to, |where_to| plan_text(&run, &planned) + &where_to)
 }
 
 /// Refuses to write over a sheet that somebody has filled in.

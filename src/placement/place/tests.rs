@@ -50,7 +50,7 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
         place(problem, &settings, &TransferSettings::default(), &Unwatched).unwrap()
     };
     let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
-    assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3));
+    assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3), "{:?}", with.tabled);
     assert_eq!(without.tabled, None);
     // The ordinary evaluator has the last word, and the table never costs more than it finds.
     assert!(with.cases[0].plan.mean <= without.cases[0].plan.mean * 1.001);

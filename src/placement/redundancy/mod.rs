@@ -108,6 +108,13 @@ pub struct Planner<'a> {
     instructions: Instructions,
 }
 
+/// Largest change of the beta number at every path point from the one before, on a grid: where points are so close that the
+/// rate of beta allows less than a step between neighbours, a step after every few of them.
+pub fn beta_steps(problem: &Problem, grid: &Redundancy) -> Vec<usize> {
+    let pace = pace::Pace::new(problem, grid);
+    (0..problem.task.points().len()).map(|point| pace.step(point).0).collect()
+}
+
 /// Space of one thread to plan in.
 #[derive(Debug, Clone)]
 pub struct Workspace {

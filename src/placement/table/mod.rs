@@ -27,12 +27,11 @@ pub use accuracy::Accuracy;
 pub use shape::{Axis, Shape};
 pub use worth::Workspace;
 
-use super::problem::Problem;
-use super::redundancy::Planner;
+use super::problem::{Problem, Redundancy};
+use super::redundancy::{Planner, beta_steps};
 use crate::robot::{Compliance, turns::Range};
 use look::Station;
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::TAU;
 
 /// Why a problem cannot be searched through a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -118,18 +117,11 @@ impl Lane {
 
     /// A grid of `count` values over a full turn, with the steps that the rate of beta allows on it.
     pub fn new(problem: &Problem, count: usize) -> Self {
-        let step = TAU / count as f64;
-        let mut reaches = vec![0; problem.task.points().len()];
-        for point in problem.task.segments().iter().flat_map(|span| span.clone().skip(1)) {
-            let steps = problem.beta_step_limit(point) / step + STEP_ROUNDING;
-            reaches[point] = if steps >= (count / 2) as f64 { count / 2 } else { steps as usize };
-        }
+        let grid = Redundancy { beta_count: count, ..problem.redundancy };
+        let reaches = beta_steps(problem, &grid);
         Self { count, reaches }
     }
 }
-
-/// Steps of beta are compared with their limit up to this share of the grid's step: rounding.
-const STEP_ROUNDING: f64 = 1e-9;
 
 impl<'a> Table<'a> {
     /// Whether a problem can be searched through a table, and through one of what shape.
