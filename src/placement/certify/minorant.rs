@@ -104,7 +104,8 @@ pub(super) struct State {
 }
 
 impl State {
-    fn new(known: &Known, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+    /// Of a model about a radius, within `half` of its place, which is `off` the node.
+    pub fn new(known: &Known, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
         let values = known.values.map(|v| v.map(f64::from));
         let rest = known.rest.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
