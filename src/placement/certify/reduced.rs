@@ -82,9 +82,10 @@ impl Reduced {
                 let level = &self.levels[number];
                 let size = (1usize << number) as f64;
                 let (length, turn) = (self.steps.length * size, heading * size);
-                let i = ((p.r - self.extent.radius.0) / length + 0.5) as usize;
-                let j = ((p.z - self.extent.height.0) / length + 0.5) as usize;
-                if i >= level.counts[0] || j >= level.counts[1] {
+                let along = [(p.r, self.extent.radius.0), (p.z, self.extent.height.0)]
+                    .map(|(value, from)| (value - from) / length + 0.5);
+                let [i, j] = along.map(|k| k as usize);
+                if along.iter().any(|k| *k < 0.0) || i >= level.counts[0] || j >= level.counts[1] {
                     return None;
                 }
                 let chi = p.chi.rem_euclid(TAU);

@@ -227,7 +227,8 @@ fn placements_are_seen_along_axis_1() {
             let (point, at) = anywhere(&setting, &mut random);
             let pose = setting.pose_at(point, at, 0.7);
             let workpiece = crate::placement::problem::base_from_workpiece(&pose);
-            let tip = workpiece.point(&setting.problem.task.points()[point].position);
+            let root = setting.problem.robot.geometry().root_in_base;
+            let tip = workpiece.point(&setting.problem.task.points()[point].position) - root;
             assert!((libm::hypot(tip.x, tip.y) - at[0]).abs() < 1e-12, "{name}");
             let one: &Point = &setting.bounded.points[point];
             assert!(one.distance >= 0.0);

@@ -142,7 +142,6 @@ fn sums_along_the_path_are_below_plans_and_close() {
         let (bound, value, _) = bound_and_value(&setting, half);
         assert!(value.is_finite() && bound <= value, "{bound} {value}");
         assert!(bound >= close * value, "no power: {bound} of {value}");
-        println!("{half:?} {bound} {value}");
     }
 }
 
