@@ -8,7 +8,7 @@
 use super::arm::Arm;
 use super::cost::{CORNERS, Pointwise};
 use super::prepare::Yaws;
-use super::region::{Point, Region};
+use super::region::{Placed, Point, Region};
 use super::table::{Node, Table};
 use super::tube::Tube;
 use super::window::{NOTHING, Window, least, plus};
@@ -46,14 +46,29 @@ impl Bounded {
         })
     }
 
+    /// Where a point is over a box; `None` where some of it may be nearer to axis 1 than tables reach, so that nothing is known.
+    ///
+    /// Tables hold every radius of the cell beyond that, and every height ([`super::prepare`]).
+    pub fn placed(&self, point: usize, region: &Region) -> Option<Placed> {
+        let placed = self.points[point].over(region)?;
+        // A point is never nearer to axis 1 than the workpiece origin less its distance from there.
+        let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
+        let least = nearest.max(placed.r - placed.reach[0]);
+        if least < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
+    }
+
     /// Bounds a box from below, on the level of the tube; cells through which every way costs `ceiling` (m, sum) or more
     /// leave the tube.
+    ///
+    /// A point that tables do not answer for, whether its box is too large for the level or may leave the table, costs
+    /// nothing and loses no cell: such a box is never infeasible, and stays open until it is cut.
     pub fn below(&self, region: &Region, tube: &Tube, ceiling: f64) -> Evaluated {
         let mut tube = tube.clone();
         let count = tube.count();
         let width = TAU / count as f64;
+        let all_placed = (0..self.points.len()).map(|point| self.placed(point, region));
         let points: Option<Vec<Pointwise>> =
-            self.points.iter().map(|p| Some(Pointwise::new(p, p.over(region)?, self.first))).collect();
+            all_placed.zip(&self.points).map(|(placed, p)| Some(Pointwise::new(p, placed?, self.first))).collect();
         let Some(points) = points else { return Evaluated { sum: 0.0, tube } };
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<Ways> = Vec::new();
@@ -71,7 +86,9 @@ impl Bounded {
                     }
                     let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums: vec![NOTHING; count] };
                     end = NOTHING;
-                    let found = self.table.nearest(tube.level, points[point].placed.r, points[point].placed.z);
+                    let placed = &points[point].placed;
+                    let answers = self.table.answers(tube.level, [placed.reach[0], placed.reach[1]]);
+                    let found = self.table.nearest(tube.level, placed.r, placed.z).filter(|_| answers);
                     let cells: Vec<usize> = tube.cells(point, class.index()).collect();
                     for cell in cells {
                         if place > 0 && window.out[cell][0] == f64::INFINITY {
@@ -148,7 +165,7 @@ impl Bounded {
     /// From which to which number of cells a way may step up, to `point` from the one before.
     ///
     /// Beta is the heading less the direction of the feed (or the other way round), both against the azimuth of the point.
-    fn steps(&self, region: &Region, points: &[Pointwise], point: usize, width: f64) -> (isize, isize) {
+    pub fn steps(&self, region: &Region, points: &[Pointwise], point: usize, width: f64) -> (isize, isize) {
         let (before, here) = (&points[point - 1].placed, &points[point].placed);
         let [a, _, g] = region.half;
         let unsure = (here.slope_chi[0] - before.slope_chi[0]).abs() * a

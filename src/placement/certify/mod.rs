@@ -5,9 +5,10 @@
 //! for every placement of the cell, every posture scheme and every plan of beta.
 //!
 //! 1. `arm` is the closed form, evaluated in two number types: `number` (slopes) and `enclosure` (intervals for value,
-//!    gradient and second derivatives; `interval`, `elbow`, `conditioning`).
+//!    gradient and second derivatives; `interval`, `elbow`, `conditioning`, `limits`).
 //! 2. `table` holds, node by node, an affine model of the compliance with what it leaves out, or that no state is allowed.
-//! 3. `reduced` minimises over the heading once for all placements: minorants over radius, height and direction of the feed.
+//! 3. `reduced` minimises over the heading once for all placements: minorants over radius, height and direction of the feed
+//!    (`minorant`).
 //! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
 //! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
 //! 6. `search` goes through the boxes, most promising first.
@@ -20,6 +21,8 @@ mod elbow;
 mod enclosure;
 mod interval;
 mod lanes;
+mod limits;
+mod minorant;
 mod number;
 mod prepare;
 mod reduced;
@@ -28,6 +31,9 @@ mod search;
 mod table;
 mod tube;
 mod window;
+
+#[cfg(test)]
+mod tests;
 
 pub use prepare::{Unfit, certifiable};
 pub use region::Region;

@@ -1,28 +1,17 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
-use super::arm::Arm;
 use super::bound::Bounded;
-use super::number::VARIABLES;
+use super::minorant::{Affine, EMPTY, State, ZERO, below_all, collect, minorant};
 use super::region::{Point, Region};
-use super::table::{Extent, FUNCTIONS, Known, Node, Steps, Table};
+use super::table::{Extent, Steps};
 use crate::robot::PostureClass;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// An affine function about a node, below what a point costs in one posture class within a step of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Affine {
-    value: f32,
-    slope: [f32; VARIABLES],
-}
-
-const EMPTY: Affine = Affine { value: f32::INFINITY, slope: [0.0; VARIABLES] };
-const ZERO: Affine = Affine { value: 0.0, slope: [0.0; VARIABLES] };
-
 /// Reduced tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
 pub(super) struct Reduced {
-    levels: Vec<Level>,
+    pub levels: Vec<Level>,
     extent: Extent,
     steps: Steps,
     /// For each path point the number of its force; `None` where it is left out.
@@ -31,9 +20,9 @@ pub(super) struct Reduced {
 }
 
 #[derive(Debug, Clone)]
-struct Level {
-    counts: [usize; 3],
-    entries: Vec<Affine>,
+pub(super) struct Level {
+    pub counts: [usize; 3],
+    pub entries: Vec<Affine>,
 }
 
 /// Kinds of force looked at: the most frequent ones.
@@ -68,7 +57,7 @@ impl Reduced {
     }
 
     /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`
-    /// for a box too large for the tables.
+    /// for a box too large for the tables, or one that may leave them.
     pub fn below(&self, bounded: &Bounded, region: &Region) -> Option<f64> {
         let mut totals = [0.0; 8];
         let [a, b, g] = region.half;
@@ -77,7 +66,7 @@ impl Reduced {
             let mut sums = [[0.0f64; 4]; 4];
             for point in span.clone() {
                 let Some(force) = self.force_of[point] else { continue };
-                let p = bounded.points[point].over(region)?;
+                let p = bounded.placed(point, region)?;
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;
@@ -93,9 +82,10 @@ impl Reduced {
                 let level = &self.levels[number];
                 let size = (1usize << number) as f64;
                 let (length, turn) = (self.steps.length * size, heading * size);
-                let i = ((p.r - self.extent.radius.0) / length + 0.5) as usize;
-                let j = ((p.z - self.extent.height.0) / length + 0.5) as usize;
-                if i >= level.counts[0] || j >= level.counts[1] {
+                let along = [(p.r, self.extent.radius.0), (p.z, self.extent.height.0)]
+                    .map(|(value, from)| (value - from) / length + 0.5);
+                let [i, j] = along.map(|k| k as usize);
+                if along.iter().any(|k| *k < 0.0) || i >= level.counts[0] || j >= level.counts[1] {
                     return None;
                 }
                 let chi = p.chi.rem_euclid(TAU);
@@ -149,8 +139,10 @@ fn counts(extent: Extent, steps: Steps) -> [usize; 3] {
     [along(extent.radius), along(extent.height), steps.headings]
 }
 
+/// Whether two forces differ by rounding only.
 fn same(a: &[f64; 3], b: &[f64; 3]) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + a.abs()))
+    let size = a.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-13 * size)
 }
 
 impl Level {
@@ -188,35 +180,6 @@ impl Level {
     }
 }
 
-/// An affine function below several, each true within `half` of its own middle.
-fn below_all(
-    once: impl Iterator<Item = ([f64; 3], Affine)>,
-    again: impl Iterator<Item = ([f64; 3], Affine)>,
-    half: [f64; 3],
-) -> Affine {
-    let lowest = once.filter(|(_, e)| e.value < f32::INFINITY).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
-    let Some((_, lowest)) = lowest else { return EMPTY };
-    if lowest == ZERO {
-        return ZERO;
-    }
-    let slope = lowest.slope.map(f64::from);
-    let mut value = f64::INFINITY;
-    for (off, e) in again.filter(|(_, e)| e.value < f32::INFINITY) {
-        let mut v = f64::from(e.value);
-        for k in 0..3 {
-            v -= slope[k] * off[k] + (f64::from(e.slope[k]) - slope[k]).abs() * half[k];
-        }
-        value = value.min(v);
-    }
-    rounded(value, slope, half)
-}
-
-fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
-    let size = value.abs() + (0..3).map(|k| slope[k].abs() * half[k] * 4.0).sum::<f64>();
-    let value = value - 1e-6 * size;
-    if value <= 0.0 { ZERO } else { Affine { value: value as f32, slope: slope.map(|s| s as f32) } }
-}
-
 /// All directions of the feed, forces and classes at one radius and height.
 fn row_of(bounded: &Bounded, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) -> Vec<Affine> {
     let (arm, table, first) = (&bounded.arm, &bounded.table, bounded.first);
@@ -244,127 +207,4 @@ fn row_of(bounded: &Bounded, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) 
         }
     }
     out
-}
-
-/// Second-order parts larger than this share of the compliance are cut up, down to the finest level.
-const COARSE: f64 = 0.3;
-
-/// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
-#[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
-fn collect(
-    arm: &Arm,
-    table: &Table,
-    level: usize,
-    at: [usize; 2],
-    cell: usize,
-    node: [f64; 2],
-    class: PostureClass,
-    out: &mut Vec<State>,
-) -> bool {
-    let finest = level + 1 == table.depth();
-    match table.node(arm, level, at, cell, class) {
-        Node::Empty => return true,
-        Node::Unknown if finest => return false,
-        Node::Known(known) if finest || f64::from(known.rest[0] + known.rest[1]) <= COARSE * arm.typical() => {
-            let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
-            let place = table.place(level, at);
-            out.push(State::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
-            return true;
-        }
-        _ => {}
-    }
-    let mut known = true;
-    for (down, left) in [(true, true), (true, false), (false, true), (false, false)] {
-        let side = |k: usize, low: bool| if low { (2 * k).checked_sub(1) } else { Some(2 * k + 1) };
-        let (Some(i), Some(j)) = (side(at[0], down), side(at[1], left)) else { continue };
-        if !table.holds(level + 1, [i, j]) {
-            continue;
-        }
-        for part in [2 * cell, 2 * cell + 1] {
-            known &= collect(arm, table, level + 1, [i, j], part, node, class, out);
-        }
-    }
-    known
-}
-
-/// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
-struct State {
-    values: [[f64; 4]; FUNCTIONS],
-    rest: [f64; 3],
-    /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
-    most: [f64; 2],
-    moved: [f64; 2],
-    half: [f64; 3],
-    r: f64,
-    /// Radius and height less those of the node. m
-    off: [f64; 2],
-}
-
-impl State {
-    fn new(known: &Known, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
-        let values = known.values.map(|v| v.map(f64::from));
-        let rest = known.rest.map(f64::from);
-        // Slopes change by at most what twice the second-order sum says.
-        let of = |a: usize, b: usize, rest: f64| {
-            let moved =
-                (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest;
-            (libm::hypot(values[a][0], values[b][0]) + moved, moved)
-        };
-        let (d, v) = (of(1, 2, rest[1]), of(3, 4, rest[2]));
-        Self { values, rest, most: [d.0, v.0], moved: [d.1, v.1], half, r, off }
-    }
-}
-
-fn minorant(found: &[State], force: [f64; 3], (sine, cosine): (f64, f64), first: f64, half: [f64; 3]) -> Affine {
-    if found.is_empty() {
-        return EMPTY;
-    }
-    let [f1, f2, f3] = force;
-    let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
-    let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
-    let length = libm::hypot(f1, f2);
-    let h_chi = half[2];
-    let model = |s: &State| {
-        let (r, h_r) = (s.r, s.half[0]);
-        let far = r + h_r;
-        let joint1 = first
-            * (0.5 * ((f2 + a).abs() + 2.0 * length * h_chi) * h_r * h_r
-                + 2.0 * far * (b.abs() + 2.0 * length * h_chi) * h_r * h_chi
-                + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
-        let of = |k: usize| {
-            let v = |f: usize| s.values[f][k];
-            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
-        };
-        let value = of(0) + first * r * r * 0.5 * (f2 + a);
-        let by_r = of(1) + first * r * (f2 + a);
-        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
-            - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
-        let rest = s.rest[0] * f2.abs() + s.rest[1] * length + s.rest[2] * f3.abs()
-            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
-            + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
-            + joint1
-            // The heading is free within its cell.
-            + of(3).abs() * s.half[2];
-        let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        (value.abs() - rest, [by_r * sign, of(2) * sign, by_chi * sign])
-    };
-    let mut lowest = (f64::INFINITY, [0.0; 3]);
-    for s in found {
-        let m = model(s);
-        if m.0 < lowest.0 {
-            lowest = m;
-        }
-    }
-    if lowest.0 <= 0.0 {
-        return ZERO;
-    }
-    let slope = lowest.1;
-    let mut value = f64::INFINITY;
-    for s in found {
-        let m = model(s);
-        let spread = [s.half[0], s.half[1], h_chi];
-        let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
-        value = value.min(m.0 - shifted - (0..3).map(|k| (m.1[k] - slope[k]).abs() * spread[k]).sum::<f64>());
-    }
-    rounded(value, slope, half)
 }

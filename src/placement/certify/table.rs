@@ -119,7 +119,12 @@ impl Table {
 
     /// The finest level whose nodes answer for regions of that half size in radius and height; `None` for larger ones.
     pub fn level(&self, half: f64) -> Option<usize> {
-        (0..self.levels.len()).rev().find(|level| half <= 0.5 * self.length(*level) * (1.0 + 1e-9))
+        (0..self.levels.len()).rev().find(|level| self.answers(*level, [half, half]))
+    }
+
+    /// Whether the nodes of a level answer for everything within those distances of a radius and height.
+    pub fn answers(&self, level: usize, reach: [f64; 2]) -> bool {
+        reach[0].max(reach[1]) <= 0.5 * self.length(level) * (1.0 + 1e-9)
     }
 
     /// The node nearest to a radius and height, and how far they are from it; `None` outside the table.
@@ -173,10 +178,15 @@ impl Table {
     fn made(&self, arm: &Arm, level: usize, [r, z]: [f64; 2], cell: usize, class: PostureClass) -> [Node; WIDTH] {
         let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
         let place: [[f64; 3]; WIDTH] = std::array::from_fn(|k| [r, z, self.heading(level, cell + k)]);
-        match enclosed(arm, &place, half, class) {
-            None => [Node::Empty; WIDTH],
-            Some(y) => std::array::from_fn(|k| judged(arm, &y, k, half)),
-        }
+        nodes_over(arm, &place, half, class)
+    }
+}
+
+/// What is known of four regions (radius, height, heading) of those half widths.
+pub(super) fn nodes_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [Node; WIDTH] {
+    match enclosed(arm, place, half, class) {
+        None => [Node::Empty; WIDTH],
+        Some(y) => std::array::from_fn(|k| judged(arm, &y, k, half)),
     }
 }
 

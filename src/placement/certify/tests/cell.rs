@@ -1,0 +1,213 @@
+//! The closed form, its constraints, and the nodes of the table.
+
+use super::super::lanes::{Lanes, WIDTH};
+use super::super::number::{Number, Slope};
+use super::super::table::{Known, Node, nodes_over};
+use super::*;
+
+/// Value, gradient and constraints of the closed form at one state.
+fn closed_form(setting: &Setting, r: f64, z: f64, heading: f64, class: PostureClass) -> Option<([f64; 5], [f64; 8])> {
+    let (sine, cosine) = libm::sincos(heading);
+    let (sine, cosine) = Slope::heading(Lanes::splat(sine), Lanes::splat(cosine));
+    let (r, z) = (Slope::variable(Lanes::splat(r), 0), Slope::variable(Lanes::splat(z), 1));
+    let y = setting.bounded.arm.evaluate(r, z, sine, cosine, class)?;
+    let values = [y.m, y.d1, y.d2, y.vertical[0], y.vertical[1]].map(|f| f.value.0[0]);
+    (!y.lost.lane(0)).then_some((values, y.constraints.map(|c| c.value.0[0])))
+}
+
+#[test]
+fn the_closed_form_is_the_ordinary_evaluator_at_every_allowed_state() {
+    for (name, setting) in Setting::all() {
+        let mut random = seeded(2);
+        let (mut states, mut tightest) = (0, [f64::INFINITY; 8]);
+        let is_vertical = setting.problem.task.wrenches().iter().any(|w| w.force.z != 0.0);
+        for _ in 0..3000 {
+            let (point, at) = anywhere(&setting, &mut random);
+            let heading = TAU * random.random::<f64>();
+            for class in PostureClass::ALL {
+                let Some(truth) = setting.truth(point, at, heading, class) else { continue };
+                // Allowed, so no constraint may say that it is lost, and nothing is continued there.
+                let (values, constraints) = closed_form(&setting, at[0], at[1], heading, class).expect(name);
+                for (f, value) in values.iter().enumerate().take(if is_vertical { 5 } else { 3 }) {
+                    assert!((value - truth.values[f]).abs() < 1e-9 * truth.values[0], "{name} {f}");
+                }
+                for (c, constraint) in constraints.iter().enumerate() {
+                    tightest[c] = tightest[c].min(*constraint);
+                }
+                // What the certificate adds up is the normal part.
+                let cost = normal(&setting, point, at, &values);
+                assert!((cost - truth.normal).abs() < 1e-9 * (cost.abs() + 1e-6), "{name} {cost} {}", truth.normal);
+                states += 1;
+            }
+        }
+        assert!(states > 300, "{name} {states}");
+        for c in [0, 5, 6, 7] {
+            assert!(tightest[c] >= -1e-12, "{name}: constraint {c} {}", tightest[c]);
+        }
+    }
+}
+
+/// The normal part by the formula of the certificate.
+pub fn normal(setting: &Setting, point: usize, [r, _, chi]: [f64; 3], values: &[f64; 5]) -> f64 {
+    let [f1, f2, f3] = setting.bounded.points[point].force;
+    let ((s, c), (s2, c2)) = (libm::sincos(chi), libm::sincos(2.0 * chi));
+    let [m, d1, d2, cr, ct] = *values;
+    f2 * m - (f2 * c2 + f1 * s2) * d1
+        + (f1 * c2 - f2 * s2) * d2
+        + 0.5 * r * r * setting.bounded.first * (f2 + f1 * s2 + f2 * c2)
+        + f3 * (ct * c - cr * s)
+}
+
+#[test]
+fn a_stricter_arm_is_seen_to_lose_allowed_states() {
+    // The limits of elbow and wrist, and the conditioning, of an arm that asks for twice as much: states are lost.
+    let setting = Setting::new(five_segments());
+    let mut strict = five_segments();
+    strict.constraints.min_inverse_condition = 0.4;
+    let strict = Setting::new(strict);
+    let mut random = seeded(3);
+    let (mut by_elbow_or_wrist, mut by_conditioning) = (0, 0);
+    for _ in 0..4000 {
+        let (point, at) = anywhere(&setting, &mut random);
+        let heading = TAU * random.random::<f64>();
+        for class in PostureClass::ALL {
+            if setting.truth(point, at, heading, class).is_none() {
+                continue;
+            }
+            let Some((_, constraints)) = closed_form(&strict, at[0], at[1], heading, class) else {
+                by_conditioning += 1;
+                continue;
+            };
+            by_elbow_or_wrist += usize::from(constraints[0] < 0.0 || constraints[6] < 0.0);
+        }
+    }
+    assert!(by_conditioning > 20, "{by_conditioning} {by_elbow_or_wrist}");
+}
+
+/// What is wrong with a node: an allowed state in an empty one, or one outside its model.
+fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], is_vertical: bool) -> bool {
+    let known = match node {
+        Node::Empty => return true,
+        Node::Unknown => return false,
+        Node::Known(known) => known,
+    };
+    let errors: [f64; 5] = std::array::from_fn(|f| {
+        let [value, r, z, heading] = known.values[f].map(f64::from);
+        truth.values[f] - value - r * off[0] - z * off[1] - heading * off[2]
+    });
+    let rest = known.rest.map(f64::from);
+    errors[0].abs() > rest[0]
+        || libm::hypot(errors[1], errors[2]) > rest[1]
+        || is_vertical && libm::hypot(errors[3], errors[4]) > rest[2]
+}
+
+type Mutation = (&'static str, fn([f64; 3]) -> [f64; 3], fn(&mut Known));
+
+/// Violations over cells of heading around allowed states, at corners and in between: over regions as large as those of
+/// `level`, made for what `judged` makes of their half widths, and changed by `change`.
+fn violations(setting: &Setting, level: usize, judged: fn([f64; 3]) -> [f64; 3], change: fn(&mut Known)) -> [usize; 3] {
+    let table = &setting.bounded.table;
+    let half = [table.length(level), table.length(level), PI / table.headings(level) as f64];
+    let is_vertical = setting.problem.task.wrenches().iter().any(|w| w.force.z != 0.0);
+    let mut random = seeded(4 + level as u64);
+    let (mut wrong, mut known, mut states) = (0, 0, 0);
+    for _ in 0..150 {
+        let (point, at) = anywhere(setting, &mut random);
+        let Some((class, heading)) = setting.random_state(&mut random, point, at) else { continue };
+        // The state is at a corner of the region, so that its middle may well not be allowed.
+        let corner = shares(&mut random);
+        let place: [f64; 3] = std::array::from_fn(|k| [at[0], at[1], heading][k] - corner[k] * half[k]);
+        let [mut node, ..] = nodes_over(&setting.bounded.arm, &[place; WIDTH], judged(half), class);
+        if let Node::Known(k) = &mut node {
+            change(k);
+            known += 1;
+        }
+        for shot in 0..12 {
+            let share = if shot == 0 { corner } else { shares(&mut random) };
+            let off: [f64; 3] = std::array::from_fn(|k| share[k] * half[k]);
+            let moved = [place[0] + off[0], place[1] + off[1], at[2]];
+            let Some(truth) = setting.truth(point, moved, place[2] + off[2], class) else { continue };
+            states += 1;
+            wrong += usize::from(is_wrong(&node, &truth, off, is_vertical));
+        }
+    }
+    [wrong, known, states]
+}
+
+#[test]
+fn nodes_hold_every_allowed_state_around_them() {
+    for (name, setting) in Setting::all() {
+        for level in 0..4 {
+            let [wrong, known, states] = violations(&setting, level, |half| half, |_| {});
+            assert!(wrong == 0, "{name}: {wrong} at level {level}");
+            assert!(known > 50 && states > 500, "{name}: {known} {states} at level {level}");
+        }
+    }
+}
+
+#[test]
+fn broken_nodes_are_seen() {
+    fn none(_: &mut Known) {}
+    let mutations: [Mutation; 8] = [
+        ("remainders zero", |half| half, |known| known.rest = [0.0; 3]),
+        ("remainders times 0.3", |half| half, |known| known.rest = known.rest.map(|r| 0.3 * r)),
+        ("feasibility judged at the centre only", |half| half.map(|h| 1e-9 * h), none),
+        ("heading cell half as wide", |[r, z, heading]| [r, z, 0.5 * heading], none),
+        ("radius half as wide", |[r, z, heading]| [0.5 * r, z, heading], none),
+        ("slope by the heading left out", |half| half, |known| known.values.iter_mut().for_each(|v| v[3] = 0.0)),
+        ("sign of d2", |half| half, |known| known.values[2] = known.values[2].map(|v| -v)),
+        ("remainder of (d1, d2) left out", |half| half, |known| known.rest[1] = 0.0),
+    ];
+    let setting = Setting::new(five_segments());
+    for (name, judged, change) in mutations {
+        let wrong: usize = (0..4).map(|level| violations(&setting, level, judged, change)[0]).sum();
+        assert!(wrong > 0, "{name} is not seen");
+    }
+    // Nodes that say nothing is allowed, made from the centre alone: the very decision, without the model.
+    let mut lost = 0;
+    let table = &setting.bounded.table;
+    let half = [table.length(0), table.length(0), PI / table.headings(0) as f64];
+    let mut random = seeded(9);
+    for _ in 0..400 {
+        let (point, at) = anywhere(&setting, &mut random);
+        let Some((class, heading)) = setting.random_state(&mut random, point, at) else { continue };
+        let corner = shares(&mut random);
+        let place: [f64; 3] = std::array::from_fn(|k| [at[0], at[1], heading][k] - corner[k] * half[k]);
+        let empty = |half| nodes_over(&setting.bounded.arm, &[place; WIDTH], half, class)[0] == Node::Empty;
+        assert!(!empty(half));
+        lost += usize::from(empty([0.0; 3]));
+    }
+    assert!(lost > 0, "feasibility judged at the centre only loses nothing");
+}
+
+#[test]
+fn nodes_of_the_table_are_those_regions() {
+    let setting = Setting::new(five_segments());
+    let table = &setting.bounded.table;
+    let mut random = seeded(5);
+    let mut seen = 0;
+    for _ in 0..60 {
+        let (point, at) = anywhere(&setting, &mut random);
+        let Some((class, heading)) = setting.random_state(&mut random, point, at) else { continue };
+        for level in 0..table.depth() {
+            let (node, off) = table.nearest(level, at[0], at[1]).unwrap();
+            assert!(off.iter().all(|o| o.abs() <= 0.5 * table.length(level) * (1.0 + 1e-9)));
+            let cell = (heading / TAU * table.headings(level) as f64) as usize;
+            let turned = heading - table.heading(level, cell);
+            assert!(turned.abs() <= PI / table.headings(level) as f64 * (1.0 + 1e-9));
+            let truth = setting.truth(point, at, heading, class).unwrap();
+            let known = table.node(&setting.bounded.arm, level, node, cell, class);
+            assert!(!is_wrong(known, &truth, [off[0], off[1], turned], false));
+            // Its neighbours across the turn are another node: a cell of heading off is seen where models are close.
+            let other = table.node(&setting.bounded.arm, level, node, (cell + 7) % table.headings(level), class);
+            seen += usize::from(is_wrong(other, &truth, [off[0], off[1], turned], false));
+        }
+    }
+    assert!(seen > 20, "a wrong cell of heading is not seen: {seen}");
+}
+
+#[test]
+fn constants_are_constants() {
+    let five = <Slope as Number>::constant(5.0);
+    assert!(five.gradient.iter().all(|g| *g == Lanes::splat(0.0)));
+}
