@@ -17,8 +17,8 @@ use std::sync::Arc;
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first look.
 const STEPS: Steps = Steps { length: 0.05, headings: 64 };
 const LEVELS: usize = 5;
-/// Boxes are this much larger than those of lower bounds to begin with.
-const LARGER: f64 = 2.0;
+/// Boxes to begin with are cut to what tables can answer for, but no smaller than this, in terms of those of lower bounds.
+const SMALL: f64 = 0.25;
 
 struct Open {
     bound: f64,
@@ -114,7 +114,7 @@ fn first(bounded: &Bounded, whole: Region) -> Vec<Region> {
     while let Some(region) = open.pop() {
         match widest(&region) {
             _ if !bounded.yaws.allow(&region) => {}
-            (_, size) if size <= LARGER => out.push(region),
+            (_, size) if size <= SMALL || bounded.level(&region).is_some() => out.push(region),
             (side, _) => open.extend(region.split(side)),
         }
     }
