@@ -11,8 +11,8 @@
 //! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
 //! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
 //! 6. `search` goes through the boxes, most promising first.
-//! 7. `worst` is the same for the worst placement, by `above` from above and with the rate of beta dropped; `relaxed` what a placement is
-//!    worth then.
+//! 7. `worst` is the same for the worst placement, from above (`above`) and with the rate of beta dropped; `relaxed` what a
+//!    placement is worth then.
 
 mod above;
 mod arm;
