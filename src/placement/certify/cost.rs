@@ -1,4 +1,5 @@
-//! What one path point costs at least, over a box of placements and a cell of heading, as an affine function of the placement.
+//! What one path point costs at least or at most, over a box of placements and a cell of heading, from an affine function of the
+//! placement.
 
 use super::region::{Placed, Point, Region};
 use super::table::Known;
@@ -41,10 +42,10 @@ impl Pointwise {
         Self { placed, f2, a, b, length, vertical: [f3, f3 * sine, f3 * cosine], joint1, half: placed.reach }
     }
 
-    /// Least costs at the corners of the box, in a cell of heading of that half width (rad): `off` is where the point is
-    /// from the node, in radius and height. m
-    #[inline]
-    pub fn least(&self, known: &Known, off: [f64; 2], half_cell: f64, region: &Region) -> [f64; CORNERS] {
+    /// What a node says about the normal part of the deflection, in a cell of heading of that half width (rad): `off` is where
+    /// the point is from the node, in radius and height.
+    #[inline(always)]
+    fn model(&self, known: &Known, off: [f64; 2], half_cell: f64) -> Model {
         let p = &self.placed;
         let [h_r, h_z, h_chi] = self.half;
         let (a, b) = (self.a, self.b);
@@ -77,15 +78,54 @@ impl Pointwise {
             rest += f3.abs() * (rest_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)));
         }
         rest += by_r.abs() * p.rest_r + by_chi.abs() * p.rest_chi;
+        let slope =
+            [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
+        Model { value, by_heading, slope, rest }
+    }
+
+    /// Least costs at the corners of the box, in a cell of heading of that half width (rad): `off` is where the point is
+    /// from the node, in radius and height. m
+    #[inline]
+    pub fn least(&self, known: &Known, off: [f64; 2], half_cell: f64, region: &Region) -> [f64; CORNERS] {
+        let Model { value, by_heading, slope, rest } = self.model(known, off, half_cell);
         let least = value.abs() - rest - by_heading.abs() * half_cell;
         if least <= 0.0 {
             return [0.0; CORNERS];
         }
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        let slope =
-            [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
-        let [x, y, z] = [0, 1, 2].map(|k| sign * slope[k] * region.half[k]);
-        let (low, high) = (least - z, least + z);
-        [low - x - y, low + x - y, low - x + y, low + x + y, high - x - y, high + x - y, high - x + y, high + x + y]
+        corners(least, [0, 1, 2].map(|k| sign * slope[k] * region.half[k]))
     }
+
+    /// Values at the corners of the box of a convex function of the placement that is above the cost: above the least of the
+    /// costs in the cell (with `choice`), which takes all the cell to be allowed, or above all of them. m
+    ///
+    /// With the heading h from the middle of the cell, |c| is at most |affine(placement) + slope h| + rest; the least of that
+    /// over |h| <= `half_cell` and the greatest are both convex.
+    #[inline]
+    pub fn most(&self, known: &Known, off: [f64; 2], half_cell: f64, region: &Region, choice: bool) -> [f64; CORNERS] {
+        let Model { value, by_heading, slope, rest } = self.model(known, off, half_cell);
+        let free = by_heading.abs() * half_cell;
+        let all = corners(value, [0, 1, 2].map(|k| slope[k] * region.half[k]));
+        all.map(|c| rest + if choice { (c.abs() - free).max(0.0) } else { c.abs() + free })
+    }
+}
+
+/// An affine model of the normal part of the deflection over a box of placements and a cell of heading.
+#[derive(Debug, Clone, Copy)]
+struct Model {
+    /// At the middle of the box and of the cell. m
+    value: f64,
+    /// Slope by the heading. m/rad
+    by_heading: f64,
+    /// Slopes by radius, height and yaw of the box.
+    slope: [f64; 3],
+    /// How far the normal part is from it, at most. m
+    rest: f64,
+}
+
+/// Values at the corners of a box of an affine function: at the middle, and how much it changes to the upper sides.
+#[inline(always)]
+fn corners(middle: f64, [x, y, z]: [f64; 3]) -> [f64; CORNERS] {
+    let (low, high) = (middle - z, middle + z);
+    [low - x - y, low + x - y, low - x + y, low + x + y, high - x - y, high + x - y, high - x + y, high + x + y]
 }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// How far the search has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// No placement has a mean score below. m
+    /// No placement has a mean score below, or, of the worst, above. m
     pub bound: f64,
     /// Boxes still open.
     pub open: usize,
@@ -28,12 +28,13 @@ pub trait Watch {
     fn goes_on(&mut self, state: &State) -> bool;
 }
 
-/// A lower bound of what any placement of the cell is worth.
+/// A bound of what placements of the cell are worth: a lower one ([`best`]), or an upper one ([`super::worst()`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bound {
     /// The mean score that was compared with. m
     pub value: f64,
-    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding. m
+    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding; or, of the
+    /// worst, none with its best plan has a mean score above. m
     pub bound: f64,
     /// Whether the rate of beta was kept.
     pub with_rate: bool,
@@ -41,7 +42,8 @@ pub struct Bound {
     pub nodes: usize,
     /// Why the search ended.
     pub end: End,
-    /// Boxes that may hold placements with less than `value` less the gap asked for, each with its own bound. m
+    /// Boxes that may hold placements better (of the worst: worse) than `value` by more than the gap asked for, each with its
+    /// own bound. m
     pub open: Vec<(Region, f64)>,
 }
 
@@ -57,20 +59,20 @@ pub enum End {
 }
 
 impl Bound {
-    /// How much better than the value a placement may be, relative to the value.
+    /// How much better (of the worst: worse) than the value a placement may be, relative to the value.
     pub fn gap(&self) -> f64 {
-        1.0 - self.bound / self.value
+        (1.0 - self.bound / self.value).abs()
     }
 }
 
 /// Boxes taken at once; the result depends on it, so it is fixed.
-const BATCH: usize = 64;
+pub(super) const BATCH: usize = 64;
 /// Half widths of the boxes that tables are first asked for in detail: radius and height (m), yaw (rad).
-const START: [f64; 3] = [0.009, 0.0125, 0.0157];
+pub(super) const START: [f64; 3] = [0.009, 0.0125, 0.0157];
 /// Boxes whose half widths are this much smaller are not cut further.
-const SMALLEST: f64 = 1.0 / 256.0;
+pub(super) const SMALLEST: f64 = 1.0 / 256.0;
 /// What rounding may have taken from a bound, relative to it.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 struct Open {
     bound: f64,
@@ -191,7 +193,7 @@ fn survivors(
 }
 
 /// The side to cut a box at, and its half width in terms of the start.
-fn widest(region: &Region) -> (usize, f64) {
+pub(super) fn widest(region: &Region) -> (usize, f64) {
     let size = |k: usize| region.half[k] / START[k];
     (1..3).fold((0, size(0)), |(side, most), k| if size(k) > most { (k, size(k)) } else { (side, most) })
 }
