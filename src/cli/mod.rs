@@ -6,6 +6,7 @@
 
 mod arguments;
 mod assess;
+mod certify;
 mod circularity;
 mod compensate;
 mod explain;

@@ -1,22 +1,26 @@
-//! `stead place`: search, then files, then a table.
+//! `stead place`: search, then files, then a table, and then, where it is asked for, a certificate with its own files.
 
 use super::arguments::PlaceOptions;
+use super::certify::{certified, warn_unfit};
 use super::progress::Watcher;
 use super::score::mention_cancellation;
 use super::{Failure, on_threads, out_folder, print, say};
-use crate::config::read_run;
+use crate::config::read_run_to_certify;
 use crate::placement::control::Control;
 use crate::placement::place::place;
+use crate::report::certificate::{certificate_json, certificate_text, write_certificate};
 use crate::report::json::{self, Timing};
 use crate::report::{Context, evaluation, text, write_placement};
+use serde_json::Value;
 use std::time::Instant;
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let run = read_run(&options.config)?;
+    let run = read_run_to_certify(&options.config, options.certify)?;
     let mut search = run.search;
     search.seed = options.seed.unwrap_or(search.seed);
     let out = out_folder(options.out.as_deref(), &options.config)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    warn_unfit(&run);
 
     let watcher = Watcher::start();
     let started = Instant::now();
@@ -33,12 +37,11 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         }
     })?;
 
-    let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
+    let context =
+        Context { inputs: run.inputs.clone(), search, transfer: run.transfer, reference: run.reference.clone() };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
     // Whatever happened to the files, the result of a long search is shown.
-    if options.json {
-        print(&json::bytes(&json::place_json(&outcome, &context, &Timing { wall, threads })));
-    } else {
+    if !options.json {
         let table = text::placement_text(&run.problem, &outcome, &context);
         let where_to = match &written {
             Ok(_) => format!("; results in {}", out.folder.path().display()),
@@ -50,5 +53,22 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
+    let mut failed = written.err();
+    if let Some(settings) = run.certificate {
+        let certificate = certified(&run, settings, &outcome, options.threads, &watcher)?;
+        let written = write_certificate(&out.folder, &run.problem, &certificate);
+        failed = failed.or(written.err());
+        if let Value::Object(entries) = &mut document {
+            entries.insert("certificate".to_owned(), certificate_json(&certificate));
+        }
+        if !options.json {
+            let wall = certificate.wall;
+            print(format!("\n{}in {wall:.1} s\n", certificate_text(&certificate)).as_bytes());
+        }
+    }
+    if options.json {
+        print(&json::bytes(&document));
+    }
+    failed.map_or(Ok(()), |e| Err(Failure::Job(e.to_string())))
 }

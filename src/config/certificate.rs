@@ -21,7 +21,10 @@ pub(super) fn check_size(cell: &Field<'_>, problem: &Problem) -> Result<(), Inpu
     match certifiable(problem) {
         Err(unfit @ Unfit::TooLarge(_, allowed)) => {
             let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", allowed as f64 / 1e9);
-            Err(InputError::new(cell.source.file(), unfit.to_string()).at_line(cell.line()).in_field("cell").allowed(allowed))
+            Err(InputError::new(cell.source.file(), unfit.to_string())
+                .at_line(cell.line())
+                .in_field("cell")
+                .allowed(allowed))
         }
         _ => Ok(()),
     }
@@ -61,7 +64,11 @@ mod tests {
         for bad in ["0", "-0.5", "0.00009", "1e-9", "100", "1e300"] {
             let table = format!("[certificate]\ngap_percent = {bad}\n[cell]");
             let found = format!("found {bad};");
-            assert_refused("[cell]", &table, &["run.toml:7: certificate.gap_percent: is out of range", &found, "0.0001"]);
+            assert_refused(
+                "[cell]",
+                &table,
+                &["run.toml:7: certificate.gap_percent: is out of range", &found, "0.0001"],
+            );
         }
         let table = "[certificate]\ntime_limit_s = 3\n[cell]";
         assert_refused("[cell]", table, &["run.toml:6: certificate.gap_percent: is missing"]);
@@ -76,7 +83,8 @@ mod tests {
         let large = RUN.replace("x_mm = [-300, 300]", "x_mm = [-300000, 300000]");
         assert_eq!(read(&large).unwrap().certificate, None);
         let message = read(&format!("{large}[certificate]\ngap_percent = 1\n")).unwrap_err().to_string();
-        for part in ["run.toml:6: cell: the cell is so large that tables would take ", " GB", "; allowed: a cell whose"] {
+        for part in ["run.toml:6: cell: the cell is so large that tables would take ", " GB", "; allowed: a cell whose"]
+        {
             assert!(message.contains(part), "{part} in {message}");
         }
     }
