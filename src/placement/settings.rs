@@ -84,8 +84,8 @@ impl CertificateSettings {
     /// The gap of so many per cent, where it can be asked for: not zero or below, not finer than rounding allows, and less
     /// than everything.
     pub fn gap(percent: f64) -> Option<f64> {
-        let gap = percent / 100.0;
         // A number such as 0.0001 may come out a little low.
-        (percent.is_finite() && gap >= Self::LEAST_GAP * (1.0 - 1e-12) && gap < 1.0).then_some(gap)
+        let least = Self::LEAST_GAP * (1.0 - 1e-12);
+        Some(percent / 100.0).filter(|gap| (least..1.0).contains(gap))
     }
 }
