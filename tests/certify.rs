@@ -147,6 +147,7 @@ fn a_cell_too_large_says_how_much_it_would_take() {
 fn what_cannot_be_certified_is_said_and_placed_all_the_same() {
     let bench = bench();
     bench.replace(RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.1");
+    bench.write("out/open-region.svg", "of an earlier certificate");
     let ended = place(&bench, &["--certify", "1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!(ended.stderr.starts_with("warning: no certificate: scores cover errors of the force"), "{}", ended.stderr);

@@ -157,7 +157,7 @@ pub(crate) fn open_boxes(problem: &Problem, proof: &Proof) -> Vec<OpenBox> {
 }
 
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
-/// `open-region-worst.svg` as far as there is a proof. Returns the paths in that order.
+/// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. Returns the paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -170,10 +170,13 @@ pub fn write_certificate(
         ("certificate.json", bytes(&certificate_json(certificate))),
         ("open-region.csv", open_region(problem, certificate)?),
     ];
+    let mut outdated = Vec::new();
     for (name, proof) in [("open-region.svg", &certificate.best), ("open-region-worst.svg", &certificate.worst)] {
-        if let Ok(proof) = proof {
-            files.push((name, picture::open_region(problem, proof)?.into_bytes()));
+        match proof {
+            Ok(proof) => files.push((name, picture::open_region(problem, proof)?.into_bytes())),
+            Err(_) => outdated.push(name),
         }
     }
+    outdated.into_iter().try_for_each(|name| folder.remove(name))?;
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }
