@@ -56,11 +56,11 @@ fn relaxed_limits_are_named() {
 
 #[test]
 fn sentences_state_the_bound_and_what_falls_short() {
-    let reached = certificate(proof(Goal::Best, 0.1075099, 0.1069723, Vec::new()));
+    let reached = certificate(proof(Goal::Best, 0.1075099, 0.106_972_39, Vec::new()));
     let text = certificate_text(&reached);
     let joined = text.replace('\n', " ");
     assert!(
-        joined.contains("below 0.1069722 mm; yours has 0.1075099 mm: none is better by more than 0.5001 %."),
+        joined.contains("below 0.1069723 mm; yours has 0.1075099 mm: none is better by more than 0.5 %."),
         "{text}"
     );
     assert!(joined.contains("No certificate for the worst placement: for a reason. "), "{text}");
