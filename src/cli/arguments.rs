@@ -1,7 +1,9 @@
 //! What may be said on the command line.
 
 use crate::assessment::roundness::Sector;
+use crate::config::GAPS_ALLOWED;
 use crate::placement::problem::Placement;
+use crate::placement::settings::CertificateSettings;
 use crate::robot::angles::yaw_from_q4;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -43,6 +45,9 @@ pub(super) struct PlaceOptions {
     /// Seed of the random numbers, instead of the run file's
     #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
+    /// Bound how much better than the placement found any other can be, until it is no more than G per cent
+    #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
+    pub certify: Option<f64>,
     /// Number of threads [default: as many as processors]; it does not change the result
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -216,6 +221,11 @@ fn finite(text: &str) -> Result<f64, String> {
 
 fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
+}
+
+/// Per cent in, a share out.
+fn gap(text: &str) -> Result<f64, String> {
+    finite(text).ok().and_then(CertificateSettings::gap).ok_or_else(|| format!("allowed: {GAPS_ALLOWED}"))
 }
 
 /// Angles count from the x axis counter-clockwise; from the first to the second the sector may pass through zero.

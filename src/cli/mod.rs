@@ -6,6 +6,7 @@
 
 mod arguments;
 mod assess;
+mod certify;
 mod circularity;
 mod compensate;
 mod explain;
@@ -129,12 +130,22 @@ impl OutFolder {
         where_to: impl FnOnce(Display<'a>) -> String,
         text: impl FnOnce(String) -> String,
     ) -> Result<(), Failure> {
-        if is_json {
-            print(&json::bytes(&document()));
-        } else {
-            let where_to = written.as_ref().map_or_else(|_| String::new(), |_| where_to(self.folder.path().display()));
-            print(text(where_to).as_bytes());
+        if !is_json {
+            return self.tell(written, where_to, text);
         }
+        print(&json::bytes(&document()));
+        written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    }
+
+    /// Shows a result as text, as [`OutFolder::show`] does.
+    fn tell<'a, T>(
+        &'a self,
+        written: Result<T, ReportError>,
+        where_to: impl FnOnce(Display<'a>) -> String,
+        text: impl FnOnce(String) -> String,
+    ) -> Result<(), Failure> {
+        let where_to = written.as_ref().map_or_else(|_| String::new(), |_| where_to(self.folder.path().display()));
+        print(text(where_to).as_bytes());
         written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
     }
 }

@@ -1,22 +1,26 @@
-//! `stead place`: search, then files, then a table.
+//! `stead place`: search, then files, then a table, and then, where it is asked for, a certificate with its own files.
 
 use super::arguments::PlaceOptions;
+use super::certify::{certified, warn_unfit};
 use super::progress::Watcher;
 use super::score::mention_cancellation;
 use super::{Failure, on_threads, out_folder, print, say};
-use crate::config::read_run;
+use crate::config::read_run_to_certify;
 use crate::placement::control::Control;
 use crate::placement::place::place;
+use crate::report::certificate::{certificate_json, certificate_text, write_certificate};
 use crate::report::json::{self, Timing};
 use crate::report::{Context, evaluation, text, write_placement};
+use serde_json::Value;
 use std::time::Instant;
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let run = read_run(&options.config)?;
+    let run = read_run_to_certify(&options.config, options.certify)?;
     let mut search = run.search;
     search.seed = options.seed.unwrap_or(search.seed);
     let out = out_folder(options.out.as_deref(), &options.config)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    warn_unfit(&run);
 
     let watcher = Watcher::start();
     let started = Instant::now();
@@ -33,17 +37,40 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         }
     })?;
 
-    let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
+    let context =
+        Context { inputs: run.inputs.clone(), search, transfer: run.transfer, reference: run.reference.clone() };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
-    let document = || json::place_json(&outcome, &context, &Timing { wall, threads });
-    let where_to = |folder| format!("; results in {folder}");
-    let shown = out.show(written, options.json, document, where_to, |where_to| {
-        let table = text::placement_text(&run.problem, &outcome, &context);
-        format!("{table}in {wall:.1} s on {threads} threads{where_to}\n")
-    });
+    let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
+    // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
+    let mut shown = match options.json {
+        true => written.map(|_| ()).map_err(|e| Failure::Job(e.to_string())),
+        false => out.tell(
+            written,
+            |folder| format!("; results in {folder}"),
+            |where_to| {
+                let table = text::placement_text(&run.problem, &outcome, &context);
+                format!("{table}in {wall:.1} s on {threads} threads{where_to}\n")
+            },
+        ),
+    };
     mention_cancellation(&run.problem, outcome.cases[0].plan.mean);
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
+    }
+    if let Some(settings) = run.certificate {
+        let certificate = certified(&run, settings, &outcome, options.threads, &watcher)?;
+        let written = write_certificate(&out.folder, &run.problem, &certificate);
+        shown = shown.and(written.map(|_| ()).map_err(|e| Failure::Job(e.to_string())));
+        if let Value::Object(entries) = &mut document {
+            entries.insert("certificate".to_owned(), certificate_json(&certificate));
+        }
+        if !options.json {
+            let wall = certificate.wall;
+            print(format!("\n{}in {wall:.1} s\n", certificate_text(&certificate)).as_bytes());
+        }
+    }
+    if options.json {
+        print(&json::bytes(&document));
     }
     shown
 }

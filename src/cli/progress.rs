@@ -1,10 +1,14 @@
 //! Progress bars on a terminal, and Ctrl-C.
 
+use crate::placement::certify;
 use crate::placement::control::{Control, Progress};
 use crate::placement::outcome::Goal;
+use crate::report::certificate::Ended;
+use crate::report::number::figures;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Watches a placement job: draws its progress if standard error is a terminal, and stops it at Ctrl-C.
 pub(super) struct Watcher {
@@ -21,6 +25,22 @@ impl Watcher {
     /// Clears the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// Draws how a certificate closes, and stops it at the same Ctrl-C, or at a deadline.
+    pub fn closing(&self, goal: Goal, value: f64, gap: f64, deadline: Option<Instant>) -> Closing {
+        let name = match goal {
+            Goal::Best => "certifying best",
+            Goal::Worst => "certifying worst",
+        };
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{prefix:>16} {spinner} {msg}  {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_prefix(name);
+        bar.set_message("tables are being made");
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Closing { bar, stop: Arc::clone(&self.stop), deadline, value, gap, ended_by: None }
     }
 
     fn show(&self, prefix: &'static str, done: usize, of: usize, message: String) {
@@ -79,6 +99,48 @@ impl Steps {
     /// Clears the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// Draws how a certificate closes, and stops it.
+pub(super) struct Closing {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+    deadline: Option<Instant>,
+    /// What is compared with. m
+    value: f64,
+    /// The gap asked for, relative.
+    gap: f64,
+    ended_by: Option<Ended>,
+}
+
+impl Closing {
+    /// Clears the bar, and says why the search ended.
+    pub fn finish(self, end: certify::End) -> Ended {
+        self.bar.finish_and_clear();
+        match end {
+            certify::End::Reached => Ended::Reached,
+            certify::End::Exhausted => Ended::Exhausted,
+            certify::End::Stopped => self.ended_by.unwrap_or(Ended::Interrupted),
+        }
+    }
+}
+
+impl certify::Watch for Closing {
+    fn goes_on(&mut self, state: &certify::State) -> bool {
+        let certify::State { bound, open, nodes, .. } = *state;
+        let asked = figures(100.0 * self.gap);
+        let gap = 100.0 * (1.0 - bound / self.value).abs();
+        let gap = if gap.is_finite() { format!("gap {} %", figures(gap)) } else { "no gap yet".to_owned() };
+        self.bar.set_message(format!("{gap} (asked {asked} %), {open} boxes open, {nodes} looked at"));
+        self.ended_by = if self.stop.load(Ordering::SeqCst) {
+            Some(Ended::Interrupted)
+        } else if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            Some(Ended::TimeLimit)
+        } else {
+            None
+        };
+        self.ended_by.is_none()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Run files.
 
+use super::certificate::{certificate_from, check_size};
 use super::cutting::cutting_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
@@ -10,7 +11,7 @@ use super::tables::{
 };
 use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
-use crate::placement::settings::{SearchSettings, TransferSettings};
+use crate::placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use crate::robot::Robot;
 use crate::task::{Imported, Task, ToolPath, parse_csv};
 use std::path::Path;
@@ -24,6 +25,8 @@ pub struct Run {
     pub search: SearchSettings,
     /// Limits of the moves between segments.
     pub transfer: TransferSettings,
+    /// The certificate, where one is asked for.
+    pub certificate: Option<CertificateSettings>,
     /// The files that were read, in the order config, robot, task.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
@@ -34,30 +37,52 @@ pub struct Run {
 
 /// Reads a run file and the robot and task files that it names. Top-level keys: `robot` and `task` (paths relative to
 /// the folder of the run file), `[spindle]`, `[cell]`, `[constraints]` and `[redundancy]`; optionally `[criterion]`,
-/// `[search]`, `[transfer]` and `[reference]`; and `[cutting]` if, and only if, the task has no force columns.
+/// `[search]`, `[transfer]`, `[certificate]` and `[reference]`; and `[cutting]` if, and only if, the task has no force columns.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
-/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none.
+/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none, a cell too
+/// large for the certificate that is asked for.
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
+    read_run_to_certify(file, None)
+}
+
+/// Reads a run file as [`read_run`] does, for a certificate with this gap (relative), whatever its own table says.
+///
+/// # Errors
+/// Those of [`read_run`].
+pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputError> {
     let source = Source::read(file)?;
     let document = source.parse()?;
-    let [robot, task, spindle, cell, constraints, criterion, redundancy, search, transfer, cutting, reference] =
-        Table::root(&document).fields([
-            "robot",
-            "task",
-            "spindle",
-            "cell",
-            "constraints",
-            "criterion",
-            "redundancy",
-            "search",
-            "transfer",
-            "cutting",
-            "reference",
-        ])?;
+    let [
+        robot,
+        task,
+        spindle,
+        cell_field,
+        constraints,
+        criterion,
+        redundancy,
+        search,
+        transfer,
+        certificate,
+        cutting,
+        reference,
+    ] = Table::root(&document).fields([
+        "robot",
+        "task",
+        "spindle",
+        "cell",
+        "constraints",
+        "criterion",
+        "redundancy",
+        "search",
+        "transfer",
+        "certificate",
+        "cutting",
+        "reference",
+    ])?;
     let spindle = spindle_from(&spindle.table()?)?;
-    let cell = cell_from(&cell.table()?)?;
+    let cell = cell_from(&cell_field.table()?)?;
     let constraints = constraints_from(&constraints.table()?)?;
     let scoring = criterion.optional(Field::table)?;
     let criterion = scoring.as_ref().map(criterion_from).transpose()?.unwrap_or_default();
@@ -65,6 +90,9 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let searching = search.optional(Field::table)?;
     let search = searching.as_ref().map(search_from).transpose()?.unwrap_or_default();
     let transfer = transfer.optional(|field| transfer_from(&field.table()?))?.unwrap_or_default();
+    let certificate = certificate.optional(|field| certificate_from(&field.table()?))?;
+    let limit = certificate.and_then(|settings| settings.time_limit);
+    let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
     let reference = reference.optional(|field| reference_from(&field.table()?))?;
 
     let robot_file = robot.named_file()?;
@@ -87,9 +115,12 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     if let Some(table) = &searching {
         check_tables(table, &search, &problem)?;
     }
+    if certificate.is_some() {
+        check_size(&cell_field, &problem)?;
+    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
-    Ok(Run { problem, search, transfer, inputs, reference, notes })
+    Ok(Run { problem, search, transfer, certificate, inputs, reference, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the `[cutting]` table.

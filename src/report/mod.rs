@@ -3,6 +3,7 @@
 //! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
 
 pub mod assessment;
+pub mod certificate;
 pub mod circularity;
 pub mod compensation;
 pub mod cutting;

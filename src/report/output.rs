@@ -74,6 +74,18 @@ impl Folder {
         }
     }
 
+    /// Removes a file of an earlier run that would contradict this one, if it is there.
+    ///
+    /// # Errors
+    /// [`ReportError::File`] with the path of the file.
+    pub fn remove(&self, name: &str) -> Result<(), ReportError> {
+        let path = self.path.join(name);
+        match std::fs::remove_file(&path) {
+            Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => Err(ReportError::File { path, cause }),
+            _ => Ok(()),
+        }
+    }
+
     fn write_whole(&self, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         let mut builder = temporary();
         readable(&mut builder);

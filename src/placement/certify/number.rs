@@ -100,6 +100,7 @@ impl Sub for Slope {
 
 impl Mul for Slope {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule adds")]
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self {

@@ -108,7 +108,7 @@ pub fn certifiable(problem: &Problem) -> Result<(), Unfit> {
     if let Some(least) = Arm::least_condition(problem, place.radius.0) {
         return Err(Unfit::Conditioning(least));
     }
-    let bytes = Table::bytes(place, STEPS, LEVELS) + Reduced::bytes(place, STEPS, &points_of(problem));
+    let bytes = Table::bytes(place, STEPS, LEVELS).saturating_add(Reduced::bytes(place, STEPS, &points_of(problem)));
     if bytes > MEMORY { Err(Unfit::TooLarge(bytes, MEMORY)) } else { Ok(()) }
 }
 

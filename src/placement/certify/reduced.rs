@@ -52,8 +52,10 @@ impl Reduced {
 
     /// What they take. bytes
     pub fn bytes(extent: Extent, steps: Steps, points: &[Point]) -> u64 {
-        let [a, b, c] = counts(extent, steps).map(|n| n as u64);
-        a * b * c * 4 * kinds(points).len() as u64 * size_of::<Affine>() as u64 * 8 / 7
+        // In f64: a cell may be so large that whole numbers overflow.
+        let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() + 1.0;
+        let nodes = along(extent.radius) * along(extent.height) * steps.headings as f64;
+        (nodes * (4 * kinds(points).len() * size_of::<Affine>()) as f64 * 8.0 / 7.0) as u64
     }
 
     /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`

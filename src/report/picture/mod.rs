@@ -16,6 +16,7 @@ mod hatch;
 mod indicators;
 mod lettering;
 mod measurement_plan;
+mod open_region;
 mod patches;
 mod plane_view;
 mod polar;
@@ -30,6 +31,7 @@ pub use deflection_map::deflection_map;
 pub use deflections::deflections;
 pub use indicators::indicators;
 pub use measurement_plan::measurement_plan;
+pub use open_region::open_region;
 pub use polar::polar;
 
 #[cfg(test)]

@@ -1,0 +1,101 @@
+//! The certificate that `stead place` adds where it is asked for.
+
+use super::progress::Watcher;
+use super::{Failure, on_threads, say};
+use crate::config::Run;
+use crate::placement::certify::{self, Bound, Unfit, Watch};
+use crate::placement::control::Control;
+use crate::placement::outcome::{CANCELLED, Case, Goal, Outcome};
+use crate::placement::settings::CertificateSettings;
+use crate::report::certificate::{Certificate, Proof, ending};
+use std::time::{Duration, Instant};
+
+/// What goes into every bound.
+struct Job<'a> {
+    run: &'a Run,
+    settings: CertificateSettings,
+    threads: Option<usize>,
+    watcher: &'a Watcher,
+    deadline: Option<Instant>,
+}
+
+/// Says before any work is done why a run cannot be certified, where that is so.
+pub(super) fn warn_unfit(run: &Run) {
+    if run.certificate.is_some()
+        && let Err(unfit) = certify::certifiable(&run.problem)
+    {
+        say(&format!("warning: no certificate: {unfit}; the workpiece is placed without one"));
+    }
+}
+
+/// Bounds how far the placements found are from the best and the worst there are, and says where that falls short of what was
+/// asked for.
+pub(super) fn certified(
+    run: &Run,
+    settings: CertificateSettings,
+    outcome: &Outcome,
+    threads: Option<usize>,
+    watcher: &Watcher,
+) -> Result<Certificate, Failure> {
+    let started = Instant::now();
+    // A limit beyond what a clock holds is none.
+    let limit = settings.time_limit.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
+    let deadline = limit.and_then(|limit| started.checked_add(limit));
+    let job = Job { run, settings, threads, watcher, deadline };
+    let [best, _, worst, _] = &outcome.cases;
+    let (best, worst) = match certify::certifiable(&run.problem) {
+        Err(unfit) => (Err(unfit.to_string()), Err(unfit.to_string())),
+        Ok(()) => (job.best(best)?, job.worst(worst)?),
+    };
+    let inputs = run.inputs.clone();
+    let certificate = Certificate { settings, best, worst, inputs, wall: started.elapsed().as_secs_f64() };
+    for proof in [&certificate.best, &certificate.worst].into_iter().flatten() {
+        ending(&certificate, proof).iter().for_each(|short| say(short));
+    }
+    Ok(certificate)
+}
+
+impl Job<'_> {
+    /// A lower bound of all placements, with the rate of beta.
+    fn best(&self, case: &Case) -> Result<Result<Proof, String>, Failure> {
+        let (problem, value) = (&self.run.problem, case.plan.mean);
+        self.proof(Goal::Best, case, value, |watch| certify::best(problem, value, self.settings.gap, true, watch))
+    }
+
+    /// An upper bound of all placements, with the rate of beta dropped.
+    fn worst(&self, case: &Case) -> Result<Result<Proof, String>, Failure> {
+        let problem = &self.run.problem;
+        let Some(value) = certify::relaxed_value(problem, &case.placement) else {
+            return Ok(Err("the worst placement has no value with these limits relaxed".to_owned()));
+        };
+        self.proof(Goal::Worst, case, value, |watch| certify::worst(problem, value, self.settings.gap, watch))
+    }
+
+    /// Runs a search for a bound on the threads asked for.
+    fn proof(
+        &self,
+        goal: Goal,
+        case: &Case,
+        value: f64,
+        search: impl FnOnce(&mut dyn Watch) -> Result<Bound, Unfit> + Send,
+    ) -> Result<Result<Proof, String>, Failure> {
+        if self.watcher.should_stop() {
+            return Ok(Err("interrupted before it began".to_owned()));
+        }
+        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            return Ok(Err("the time limit was over before it began".to_owned()));
+        }
+        if value <= CANCELLED {
+            return Ok(Err(
+                "the plan balances the deflection to nothing, which no bound can be compared with".to_owned()
+            ));
+        }
+        let mut closing = self.watcher.closing(goal, value, self.settings.gap, self.deadline);
+        let (bound, _) = on_threads(self.threads, || search(&mut closing))?;
+        let proof = bound.map_err(|unfit| unfit.to_string()).map(|bound| {
+            let end = closing.finish(bound.end);
+            Proof::new(&self.run.problem, goal, case.placement, bound, end)
+        });
+        Ok(proof)
+    }
+}

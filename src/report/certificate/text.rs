@@ -1,0 +1,87 @@
+//! The certificate in sentences.
+
+use super::{Certificate, Ended, Proof};
+use crate::placement::outcome::Goal;
+use crate::report::number::{Unit, figures, fixed};
+
+/// Widest line.
+const WIDTH: usize = 110;
+
+/// What is known of both placements, what that assumes, and what is not known and why. Lines are at most 110 characters wide
+/// and end with a line break.
+pub fn certificate_text(certificate: &Certificate) -> String {
+    let mut text = String::new();
+    for (side, name) in [(&certificate.best, "best"), (&certificate.worst, "worst")] {
+        let paragraph = match side {
+            Ok(proof) => stated(proof),
+            Err(reason) => format!("No certificate for the {name} placement: {reason}."),
+        };
+        wrapped(&mut text, &paragraph);
+    }
+    text
+}
+
+fn stated(proof: &Proof) -> String {
+    let bound = fixed(proof.bound_mm(), Unit::DEFLECTION_MM.decimals);
+    let value = Unit::DEFLECTION_MM.text(proof.bound.value);
+    let gap = percent(proof);
+    let claim = match proof.goal {
+        Goal::Best if proof.bound_mm() <= 0.0 => {
+            "Certificate, best placement: it ended before there was any bound; nothing is known.".to_owned()
+        }
+        Goal::Best => format!(
+            "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
+             normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
+        ),
+        Goal::Worst if !proof.bound.bound.is_finite() => {
+            "Certificate, worst placement: it ended before there was any bound; nothing is known.".to_owned()
+        }
+        Goal::Worst => format!(
+            "Certificate, worst placement, with the rate of beta dropped: no feasible placement in this cell has under its best \
+             redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
+             {gap} %. With the rate of beta kept this is no bound: worse ones are possible then."
+        ),
+    };
+    format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed.join("; "))
+}
+
+/// The gap in per cent as sentences have it.
+fn percent(proof: &Proof) -> String {
+    let text = fixed(proof.gap_percent(), 4);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Why a proof falls short of what was asked for, where it does.
+pub fn ending(certificate: &Certificate, proof: &Proof) -> Option<String> {
+    let asked = figures(certificate.settings.gap * 100.0);
+    let why = match proof.end {
+        Ended::Reached => return None,
+        Ended::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
+        Ended::Interrupted => "interrupted".to_owned(),
+        Ended::TimeLimit => {
+            let limit = certificate.settings.time_limit.map(figures).unwrap_or_default();
+            format!("the time limit of {limit} s is over")
+        }
+    };
+    let open = proof.bound.open.len();
+    Some(format!("{why}: a gap of {} % is reached, {asked} % was asked for; {open} boxes are open", percent(proof)))
+}
+
+/// A paragraph in lines.
+fn wrapped(text: &mut String, paragraph: &str) {
+    let mut width = 0;
+    for word in paragraph.split(' ') {
+        let length = word.chars().count();
+        if width > 0 && width + 1 + length > WIDTH {
+            text.push('\n');
+            width = 0;
+        }
+        if width > 0 {
+            text.push(' ');
+            width += 1;
+        }
+        text.push_str(word);
+        width += length;
+    }
+    text.push('\n');
+}

@@ -1,0 +1,206 @@
+//! `stead place --certify` from outside: a short path in a small cell, so that it takes seconds.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
+mod common;
+
+use common::{Bench, Ended, RUN};
+use serde_json::Value;
+
+/// What a certificate adds to the files of a placement.
+const ADDED: [&str; 3] = ["certificate.json", "open-region.csv", "open-region.svg"];
+/// The path: two segments at a right angle.
+const PATH: &str = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n
+1,0,0,0,1,0,0,0,0,1,-150,280,50
+1,10,0,0,1,0,0,0,0,1,-150,280,50
+1,20,0,0,1,0,0,0,0,1,-150,280,50
+2,30,10,0,0,1,0,0,0,1,-280,-150,50
+2,30,20,0,0,1,0,0,0,1,-280,-150,50
+";
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.write("tasks/five-segments.csv", PATH);
+    bench.replace(RUN, "x_mm = [-300.0, 300.0]", "x_mm = [-60.0, 60.0]");
+    bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-1720.0, -1640.0]");
+    bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [-300.0, -250.0]");
+    bench
+}
+
+fn certificate(bench: &Bench) -> Value {
+    serde_json::from_str(&bench.read("out/certificate.json")).unwrap()
+}
+
+/// The same without what may differ from run to run.
+fn lasting(mut certificate: Value) -> Value {
+    assert!(certificate.as_object_mut().unwrap().remove("wall_s").unwrap().as_f64().unwrap() > 0.0);
+    certificate
+}
+
+fn place(bench: &Bench, more: &[&str]) -> Ended {
+    bench.stead(&[&["place", RUN, "--out", "out"], more].concat())
+}
+
+/// Value and bound of the best placement in mm.
+#[track_caller]
+fn assert_holds(certificate: &Value, gap: std::ops::RangeInclusive<f64>) {
+    let best = &certificate["best"];
+    let number = |key: &str| best[key].as_f64().unwrap_or_else(|| panic!("{key} in {certificate:#}"));
+    let (value, bound) = (number("value_mm"), number("bound_mm"));
+    assert!(0.0 < value && bound < value, "{value} and {bound}");
+    assert!(gap.contains(&number("gap_percent")), "{certificate:#}");
+    // The gap is that between the two, to their digits.
+    assert!((number("gap_percent") - 100.0 * (1.0 - bound / value)).abs() < 2e-7 * 100.0 / value + 1e-4);
+}
+
+#[test]
+fn a_certificate_is_stated_and_leaves_the_placement_as_it_is() {
+    let bench = bench();
+    assert_eq!(place(&bench, &[]).code, Some(0));
+    let plain = bench.tree("out");
+    let ended = place(&bench, &["--certify", "1", "--threads", "2"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let certified = lasting(certificate(&bench));
+    assert_holds(&certified, 0.0..=1.0);
+    assert_eq!(certified["best"]["status"], "reached");
+    assert_eq!(certified["gap_percent_asked"], 1.0);
+    let relaxed = &certified["best"]["limits_relaxed"];
+    assert_eq!(relaxed[1], "limits of joints 1, 4 and 6", "{relaxed}");
+    let best = bench.read("out/placements.csv").lines().nth(1).unwrap().to_owned();
+    assert!(best.contains(&format!(",{:.7},", certified["best"]["value_mm"].as_f64().unwrap())), "{best}");
+    let words = ended.stdout.replace('\n', " ");
+    let claim =
+        format!("has a mean normal deflection below {:.7} mm; ", certified["best"]["bound_mm"].as_f64().unwrap());
+    for part in [claim.as_str(), "none is better by more than 1 %.", "Certified up to rounding."] {
+        assert!(words.contains(part), "{part} in {words}");
+    }
+
+    let mut tree = bench.tree("out");
+    for added in ADDED {
+        assert!(tree.remove(added).flatten().is_some_and(|bytes| bytes.len() > 50), "{added}");
+    }
+    tree.remove("open-region-worst.svg");
+    assert_eq!(tree, plain);
+
+    // From the run file, on one thread, and as JSON: the same.
+    let files = ADDED.map(|name| (name, bench.read(&format!("out/{name}"))));
+    let text = bench.read(RUN);
+    bench.write(RUN, &format!("{text}\n[certificate]\ngap_percent = 1\n"));
+    let ended = place(&bench, &["--threads", "1", "--json"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let mut again = lasting(ended.json()["certificate"].clone());
+    assert_eq!(again, lasting(certificate(&bench)));
+    // The run file is another one.
+    again["inputs"] = certified["inputs"].clone();
+    assert_eq!(again, certified);
+    for (name, before) in &files[1..] {
+        assert_eq!(&bench.read(&format!("out/{name}")), before, "{name}");
+    }
+}
+
+#[test]
+fn gaps_that_mean_nothing_are_refused_on_the_command_line() {
+    let bench = bench();
+    for bad in ["0", "-0.5", "0.00001", "100", "nan", "inf", "much"] {
+        let ended = place(&bench, &["--certify", bad]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{bad}: {}", ended.stderr);
+        ended.assert_says(&["--certify", bad, "allowed: a number of per cent from 0.0001"]);
+    }
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn gaps_and_limits_of_the_run_file_are_refused_at_their_line() {
+    for (table, field, line) in [
+        ("gap_percent = 0", "gap_percent", 1),
+        ("gap_percent = 1e-5", "gap_percent", 1),
+        ("time_limit_s = 5", "gap_percent", 0),
+        ("gap_percent = 1\ntime_limit_s = -5", "time_limit_s", 2),
+        ("gap = 1", "gap", 1),
+    ] {
+        let bench = bench();
+        let line = line + bench.replace(RUN, "[constraints]", &format!("[certificate]\n{table}\n[constraints]"));
+        let ended = place(&bench, &[]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{table}");
+        let place = format!("error: {RUN}:{line}: certificate.{field}: ");
+        assert!(ended.stderr.starts_with(&place) && ended.stderr.contains("; allowed: "), "{place}: {}", ended.stderr);
+        assert!(!bench.path("out").exists());
+    }
+}
+
+#[test]
+fn a_cell_too_large_says_how_much_it_would_take() {
+    let bench = bench();
+    let line = bench.replace(RUN, "x_mm = [-60.0, 60.0]", "x_mm = [-900000.0, 900000.0]") - 1;
+    let ended = place(&bench, &["--certify", "1"]);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+    ended.assert_says(&[
+        &format!("error: {RUN}:{line}: cell: "),
+        "tables would take ",
+        " GB",
+        "; allowed: a cell whose",
+    ]);
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn what_cannot_be_certified_is_said_and_placed_all_the_same() {
+    let bench = bench();
+    bench.replace(RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.1");
+    bench.write("out/open-region.svg", "of an earlier certificate");
+    let ended = place(&bench, &["--certify", "1"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.starts_with("warning: no certificate: scores cover errors of the force"), "{}", ended.stderr);
+    assert_eq!(ended.stderr.lines().count(), 1);
+    let found = certificate(&bench);
+    assert_eq!((&found["best"], &found["worst"]), (&Value::Null, &Value::Null));
+    assert!(found["best_reason"].as_str().unwrap().starts_with("scores cover errors of the force"));
+    assert!(!bench.path("out/open-region.svg").exists() && bench.path("out/best.csv").exists());
+    assert!(ended.stdout.contains("No certificate for the best placement: scores cover"), "{}", ended.stdout);
+}
+
+#[test]
+fn a_time_limit_leaves_what_is_reached_and_says_so() {
+    let bench = bench();
+    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.0001\ntime_limit_s = 3\n[constraints]");
+    let ended = place(&bench, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["the time limit of 3.00 s is over: a gap of ", " % is reached, 0.000100 % was asked for; "]);
+    let found = certificate(&bench);
+    assert_holds(&found, 0.0001..=100.0);
+    assert_eq!(found["best"]["status"], "time_limit");
+    let open = found["best"]["open_boxes"].as_u64().unwrap();
+    let rows = bench.read("out/open-region.csv").lines().filter(|line| line.starts_with("best,")).count();
+    assert!(open > 0 && rows as u64 == open, "{open} and {rows}");
+    // The bound is that of the most promising box.
+    let first = bench.read("out/open-region.csv").lines().nth(1).unwrap().rsplit(',').next().unwrap().to_owned();
+    let (first, bound): (f64, f64) = (first.parse().unwrap(), found["best"]["bound_mm"].as_f64().unwrap());
+    assert!((first - bound).abs() < 1.5e-7, "{first} and {bound}");
+    assert!(bench.read("out/open-region.svg").contains("<polygon"));
+}
+
+/// Ctrl-C while the certificate is made.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_gap_reached_so_far() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let bench = bench();
+    let mut command = bench.command(&["place", RUN, "--out", "out", "--certify", "0.0001", "--json"]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // The last file of the placement is written before the certificate begins.
+    let begun = Instant::now();
+    while !bench.path("out/cell.svg").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the certificate does not begin");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let ended = Ended::from(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["interrupted: a gap of "]);
+    let found = certificate(&bench);
+    assert_eq!(found["best"]["status"], "interrupted", "{found:#}");
+    assert_holds(&found, 0.0001..=100.0);
+    assert_eq!(ended.json()["interrupted"], false);
+}
