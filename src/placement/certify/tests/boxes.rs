@@ -62,7 +62,7 @@ fn points_are_where_boxes_put_them_and_broken_rests_are_seen() {
         assert_eq!(misplaced(&setting, |_| {}), 0, "{name}");
     }
     let setting = Setting::new(five_segments());
-    let mutations: [Mutation<Placed>; 8] = [
+    let mutations: [Breaking<Placed>; 8] = [
         ("radius's rest left out", |p| p.rest_r = 0.0),
         ("azimuth's rest left out", |p| p.rest_chi = 0.0),
         ("radius's rest times 0.3", |p| p.rest_r *= 0.3),

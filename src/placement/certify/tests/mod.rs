@@ -25,7 +25,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
 
 /// What is broken on purpose, and how.
-type Mutation<T> = (&'static str, fn(&mut T));
+type Breaking<T> = (&'static str, fn(&mut T));
 
 /// A problem, what its bounds are made of, and the ordinary evaluator in the terms of the certificate.
 pub struct Setting {

@@ -148,7 +148,7 @@ fn sums_along_the_path_are_below_plans_and_close() {
 #[test]
 fn a_broken_sum_is_seen() {
     let half = [1e-4; 3];
-    let mutations: [Mutation<Setting>; 3] = [
+    let mutations: [Breaking<Setting>; 3] = [
         ("joint 1 twice", |setting| setting.bounded.first *= 2.0),
         ("a segment counted twice", |setting| {
             let again = setting.bounded.segments[2].clone();
