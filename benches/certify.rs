@@ -29,8 +29,10 @@ struct Clock {
 }
 
 impl Watch for Clock {
-    fn goes_on(&mut self, _: &State) -> bool {
-        self.tables.get_or_insert(self.started.elapsed().as_secs_f64());
+    fn goes_on(&mut self, state: &State) -> bool {
+        if state.nodes > 0 {
+            self.tables.get_or_insert(self.started.elapsed().as_secs_f64());
+        }
         true
     }
 }

@@ -3,7 +3,7 @@
 use crate::placement::certify;
 use crate::placement::control::{Control, Progress};
 use crate::placement::outcome::Goal;
-use crate::report::certificate::Ended;
+use crate::report::certificate::{Ended, MOST_GAP_PERCENT};
 use crate::report::number::figures;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
@@ -131,7 +131,11 @@ impl certify::Watch for Closing {
         let certify::State { bound, open, nodes, .. } = *state;
         let asked = figures(100.0 * self.gap);
         let gap = 100.0 * (1.0 - bound / self.value).abs();
-        let gap = if gap.is_finite() { format!("gap {} %", figures(gap)) } else { "no gap yet".to_owned() };
+        let gap = if bound > 0.0 && gap <= MOST_GAP_PERCENT {
+            format!("gap {} %", figures(gap))
+        } else {
+            "no gap yet".to_owned()
+        };
         self.bar.set_message(format!("{gap} (asked {asked} %), {open} boxes open, {nodes} looked at"));
         self.ended_by = if self.stop.load(Ordering::SeqCst) {
             Some(Ended::Interrupted)

@@ -27,27 +27,36 @@ pub(super) struct Level {
 
 /// Kinds of force looked at: the most frequent ones.
 const MOST_FORCES: usize = 12;
+/// Rows made between two questions whether to go on.
+const ROWS: usize = 64;
 /// Kinds of force counted: a task may have as many as points.
 const MOST_LOOKED_AT: usize = 1000;
 
 impl Reduced {
-    pub fn new(bounded: &Bounded) -> Self {
+    /// `None` where `goes_on`, asked again and again, says no before they are made.
+    pub fn new(bounded: &Bounded, mut goes_on: impl FnMut() -> bool) -> Option<Self> {
         let (extent, steps) = bounded.table.grid();
         let kinds = kinds(&bounded.points);
         let force_of = bounded.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
         let counts = counts(extent, steps);
-        let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
-            .into_par_iter()
-            .map(|row| row_of(bounded, &kinds, [row / counts[1], row % counts[1]], steps))
-            .collect();
-        let mut levels = vec![Level { counts, entries: rows.into_iter().flatten().collect() }];
+        let mut entries = Vec::new();
+        let numbers: Vec<usize> = (0..counts[0] * counts[1]).collect();
+        for some in numbers.chunks(ROWS) {
+            if !goes_on() {
+                return None;
+            }
+            let rows: Vec<Vec<Affine>> =
+                some.par_iter().map(|row| row_of(bounded, &kinds, [row / counts[1], row % counts[1]], steps)).collect();
+            entries.extend(rows.into_iter().flatten());
+        }
+        let mut levels = vec![Level { counts, entries }];
         let mut half = [steps.length, steps.length, TAU / steps.headings as f64];
         for _ in 0..2 {
             let next = levels.last().map(|level| level.coarser(half, kinds.len()));
             levels.extend(next);
             half = half.map(|h| 2.0 * h);
         }
-        Self { levels, extent, steps, force_of, forces: kinds.len() }
+        Some(Self { levels, extent, steps, force_of, forces: kinds.len() })
     }
 
     /// What they take. bytes

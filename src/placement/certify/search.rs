@@ -114,7 +114,11 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
     let (bounded, whole) = prepared(problem, &compliances, with_rate);
-    let reduced = Reduced::new(&bounded);
+    // Of no placement anything is known until the tables are made.
+    let unknown = State { bound: 0.0, open: 1, nodes: 0 };
+    let Some(reduced) = Reduced::new(&bounded, || watch.goes_on(&unknown)) else {
+        return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped, open: vec![(whole, 0.0)] });
+    };
     let count = bounded.points.len() as f64;
     let ceiling = value * count * (1.0 - gap) * (1.0 + ROUNDING);
     let mut heap = BinaryHeap::new();

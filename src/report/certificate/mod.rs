@@ -70,7 +70,15 @@ const GAP_DECIMALS: i32 = 4;
 /// Decimals of a bound in mm, as of any deflection.
 const BOUND_DECIMALS: i32 = super::number::Unit::DEFLECTION_MM.decimals as i32;
 
+/// Wider gaps are none to speak of in sentences.
+pub const MOST_GAP_PERCENT: f64 = 1000.0;
+
 impl Proof {
+    /// Whether the bound is worth a sentence.
+    pub fn is_of_use(&self) -> bool {
+        self.bound_mm() > 0.0 && self.gap_percent() <= MOST_GAP_PERCENT
+    }
+
     /// What was proven of a placement; which limits are relaxed follows from the problem and the bound.
     pub fn new(problem: &Problem, goal: Goal, placement: Placement, bound: Bound, end: Ended) -> Self {
         let relaxed = relaxed(problem, &bound);

@@ -25,17 +25,18 @@ fn stated(proof: &Proof) -> String {
     let bound = fixed(proof.bound_mm(), Unit::DEFLECTION_MM.decimals);
     let value = Unit::DEFLECTION_MM.text(proof.bound.value);
     let gap = percent(proof);
+    if !proof.is_of_use() {
+        let name = match proof.goal {
+            Goal::Best => "best",
+            Goal::Worst => "worst",
+        };
+        return format!("Certificate, {name} placement: it ended before there was any bound of use; nothing is known.");
+    }
     let claim = match proof.goal {
-        Goal::Best if proof.bound_mm() <= 0.0 => {
-            "Certificate, best placement: it ended before there was any bound; nothing is known.".to_owned()
-        }
         Goal::Best => format!(
             "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
              normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
         ),
-        Goal::Worst if !proof.bound.bound.is_finite() => {
-            "Certificate, worst placement: it ended before there was any bound; nothing is known.".to_owned()
-        }
         Goal::Worst => format!(
             "Certificate, worst placement, with the rate of beta dropped: no feasible placement in this cell has under its best \
              redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
@@ -64,7 +65,9 @@ pub fn ending(certificate: &Certificate, proof: &Proof) -> Option<String> {
         }
     };
     let open = proof.bound.open.len();
-    Some(format!("{why}: a gap of {} % is reached, {asked} % was asked for; {open} boxes are open", percent(proof)))
+    let gap = if proof.is_of_use() { format!("a gap of {} %", percent(proof)) } else { "no gap".to_owned() };
+    let boxes = if open == 1 { "box is" } else { "boxes are" };
+    Some(format!("{why}: {gap} is reached, {asked} % was asked for; {open} {boxes} open"))
 }
 
 /// A paragraph in lines.
