@@ -13,7 +13,7 @@
 
 use super::bound::Bounded;
 use super::cost::{CORNERS, Pointwise};
-use super::region::{Point, Region};
+use super::region::Region;
 use super::table::Node;
 use super::window::plus;
 use crate::robot::PostureClass;
@@ -64,7 +64,8 @@ struct Way {
 pub(super) struct Over<'a> {
     bounded: &'a Bounded,
     region: &'a Region,
-    pub points: Vec<Pointwise>,
+    /// `None` for a point that may be near axis 1, so that nothing is known of it.
+    pub points: Vec<Option<Pointwise>>,
     pub level: usize,
 }
 
@@ -72,18 +73,17 @@ impl<'a> Over<'a> {
     /// `None` for one too large for the tables.
     pub fn new(bounded: &'a Bounded, region: &'a Region) -> Option<Self> {
         let level = bounded.level(region)?;
-        let of = |p: &Point| Some(Pointwise::new(p, p.over(region)?, bounded.first));
-        let points = bounded.points.iter().map(of).collect::<Option<Vec<_>>>()?;
-        Some(Self { bounded, region, points, level })
+        Some(Self { bounded, region, points: bounded.pointwise(region), level })
     }
 
     /// Looks at cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
     fn look(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> Look {
         let Bounded { table, arm, .. } = self.bounded;
         let mut look = Look { best: None, most: NOTHING };
-        let pointwise = &self.points[point];
         let half_cell = 0.5 * TAU / table.headings(self.level) as f64;
-        let Some((at, off)) = table.nearest(self.level, pointwise.placed.r, pointwise.placed.z) else {
+        let placed = self.points[point].as_ref();
+        let found = placed.and_then(|p| Some((p, table.nearest(self.level, p.placed.r, p.placed.z)?)));
+        let Some((pointwise, (at, off))) = found else {
             look.most = ANYTHING;
             return look;
         };

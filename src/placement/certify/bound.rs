@@ -16,6 +16,9 @@ use crate::robot::PostureClass;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+/// Steps over more cells than there are.
+const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
+
 /// What is to be bounded, prepared.
 #[derive(Debug)]
 pub(super) struct Bounded {
@@ -38,10 +41,12 @@ pub(super) struct Evaluated {
 }
 
 impl Bounded {
-    /// The finest level whose nodes answer for every point of a box; `None` for a box that is too large.
+    /// The finest level whose nodes answer for every point of a box that is surely off axis 1; `None` for a box that is too
+    /// large, or where there is no such point.
     pub fn level(&self, region: &Region) -> Option<usize> {
-        self.points.iter().try_fold(usize::MAX, |level, p| {
-            let placed = p.over(region)?;
+        let mut placed = self.points.iter().filter_map(|p| p.over(region)).peekable();
+        placed.peek()?;
+        placed.try_fold(usize::MAX, |level, placed| {
             Some(level.min(self.table.level(placed.reach[0].max(placed.reach[1]))?))
         })
     }
@@ -57,19 +62,22 @@ impl Bounded {
         if least < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
     }
 
+    /// Every point over a box, where something is known of it.
+    pub fn pointwise(&self, region: &Region) -> Vec<Option<Pointwise>> {
+        let placed = (0..self.points.len()).map(|point| self.placed(point, region));
+        placed.zip(&self.points).map(|(placed, p)| Some(Pointwise::new(p, placed?, self.first))).collect()
+    }
+
     /// Bounds a box from below, on the level of the tube; cells through which every way costs `ceiling` (m, sum) or more
     /// leave the tube.
     ///
-    /// A point that tables do not answer for, whether its box is too large for the level or may leave the table, costs
-    /// nothing and loses no cell: such a box is never infeasible, and stays open until it is cut.
+    /// A point that tables do not answer for, whether the box is too large for the level, or may have it near axis 1, costs
+    /// nothing and loses no cell, and beta may step anywhere from it and to it. What the box is worth is up to the others.
     pub fn below(&self, region: &Region, tube: &Tube, ceiling: f64) -> Evaluated {
         let mut tube = tube.clone();
         let count = tube.count();
         let width = TAU / count as f64;
-        let all_placed = (0..self.points.len()).map(|point| self.placed(point, region));
-        let points: Option<Vec<Pointwise>> =
-            all_placed.zip(&self.points).map(|(placed, p)| Some(Pointwise::new(p, placed?, self.first))).collect();
-        let Some(points) = points else { return Evaluated { sum: 0.0, tube } };
+        let points = self.pointwise(region);
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<Ways> = Vec::new();
         let mut bests = Vec::new();
@@ -86,9 +94,12 @@ impl Bounded {
                     }
                     let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums: vec![NOTHING; count] };
                     end = NOTHING;
-                    let placed = &points[point].placed;
-                    let answers = self.table.answers(tube.level, [placed.reach[0], placed.reach[1]]);
-                    let found = self.table.nearest(tube.level, placed.r, placed.z).filter(|_| answers);
+                    let found = points[point].as_ref().and_then(|p| {
+                        let placed = &p.placed;
+                        let answers = self.table.answers(tube.level, [placed.reach[0], placed.reach[1]]);
+                        let (at, off) = self.table.nearest(tube.level, placed.r, placed.z).filter(|_| answers)?;
+                        Some((p, at, off))
+                    });
                     let cells: Vec<usize> = tube.cells(point, class.index()).collect();
                     for cell in cells {
                         if place > 0 && window.out[cell][0] == f64::INFINITY {
@@ -97,13 +108,13 @@ impl Bounded {
                         }
                         let cost = match found {
                             None => [0.0; CORNERS],
-                            Some((at, off)) => match self.table.node(&self.arm, tube.level, at, cell, class) {
+                            Some((p, at, off)) => match self.table.node(&self.arm, tube.level, at, cell, class) {
                                 Node::Empty => {
                                     tube.clear(point, class.index(), cell);
                                     continue;
                                 }
                                 Node::Unknown => [0.0; CORNERS],
-                                Node::Known(known) => points[point].least(known, off, 0.5 * width, region),
+                                Node::Known(known) => p.least(known, off, 0.5 * width, region),
                             },
                         };
                         let sum = if place == 0 { cost } else { plus(&window.out[cell], &cost) };
@@ -165,8 +176,9 @@ impl Bounded {
     /// From which to which number of cells a way may step up, to `point` from the one before.
     ///
     /// Beta is the heading less the direction of the feed (or the other way round), both against the azimuth of the point.
-    pub fn steps(&self, region: &Region, points: &[Pointwise], point: usize, width: f64) -> (isize, isize) {
-        let (before, here) = (&points[point - 1].placed, &points[point].placed);
+    pub fn steps(&self, region: &Region, points: &[Option<Pointwise>], point: usize, width: f64) -> (isize, isize) {
+        let (Some(before), Some(here)) = (&points[point - 1], &points[point]) else { return ANYWHERE };
+        let (before, here) = (&before.placed, &here.placed);
         let [a, _, g] = region.half;
         let unsure = (here.slope_chi[0] - before.slope_chi[0]).abs() * a
             + (here.slope_chi[1] - before.slope_chi[1]).abs() * g
@@ -176,7 +188,7 @@ impl Bounded {
         let turned = turned - TAU * (turned / TAU).round();
         let most = (self.rates[point] + unsure) / width + 1.0 + 1e-6;
         if most >= 1e6 {
-            return (-1_000_000, 1_000_000);
+            return ANYWHERE;
         }
         let shift = turned / width;
         ((shift - most).ceil() as isize, (shift + most).floor() as isize)

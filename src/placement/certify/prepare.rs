@@ -194,7 +194,7 @@ const NEAREST: f64 = 0.05;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Yaws {
     /// Middle and half width of the range, where it is not the whole turn. rad
-    range: Option<(f64, f64)>,
+    pub(super) range: Option<(f64, f64)>,
 }
 
 impl Yaws {

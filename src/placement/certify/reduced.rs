@@ -68,7 +68,7 @@ impl Reduced {
     }
 
     /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`
-    /// for a box too large for the tables, or one that may leave them.
+    /// for a box too large for the tables. A point that may be near axis 1 costs nothing.
     pub fn below(&self, bounded: &Bounded, region: &Region) -> Option<f64> {
         let mut totals = [0.0; 8];
         let [a, b, g] = region.half;
@@ -77,7 +77,7 @@ impl Reduced {
             let mut sums = [[0.0f64; 4]; 4];
             for point in span.clone() {
                 let Some(force) = self.force_of[point] else { continue };
-                let p = bounded.placed(point, region)?;
+                let Some(p) = bounded.placed(point, region) else { continue };
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;

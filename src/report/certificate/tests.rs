@@ -52,6 +52,11 @@ fn relaxed_limits_are_named() {
     problem.constraints.max_deflection = None;
     problem.cell.yaw.max = 1.0;
     assert_eq!(words(&problem, Goal::Best), format!("{common}, which yaw goes with which x and y"));
+    // A joint 5 that cannot be straight: the flips of the wrist do not reach equally far.
+    let mut joints = problem.robot.joints().clone();
+    joints[4].min = 0.1;
+    problem.robot = crate::robot::Robot::new("bent", joints).unwrap();
+    assert!(words(&problem, Goal::Best).contains("joints 1, 4 and 6, limits of joint 5, "));
 }
 
 #[test]
@@ -70,6 +75,16 @@ fn sentences_state_the_bound_and_what_falls_short() {
     let open = certificate(proof(Goal::Best, 0.1, 0.09, boxes()));
     let said = "the time limit of 20.0 s is over: a gap of 10 % is reached, 0.500 % was asked for; 2 boxes are open";
     assert_eq!(ending(&open, open.best.as_ref().unwrap()).as_deref(), Some(said));
+
+    // Dropping a limit makes the worst placement better, so each one dropped is no bound of what it is with it.
+    let worst = Certificate { worst: Ok(proof(Goal::Worst, 1.0, 1.001, Vec::new())), ..reached.clone() };
+    let joined = certificate_text(&worst).replace('\n', " ");
+    let parts = [
+        "with the limits named below dropped: no feasible",
+        "With these limits kept this is no bound",
+        "rate of beta;",
+    ];
+    assert!(parts.iter().all(|part| joined.contains(part)), "{joined}");
 
     // Where there is no bound yet, none is stated.
     let nothing = certificate_text(&certificate(proof(Goal::Best, 0.1, 0.0, boxes())));

@@ -38,9 +38,9 @@ fn stated(proof: &Proof) -> String {
              normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
         ),
         Goal::Worst => format!(
-            "Certificate, worst placement, with the rate of beta dropped: no feasible placement in this cell has under its best \
-             redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
-             {gap} %. With the rate of beta kept this is no bound: worse ones are possible then."
+            "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has under its \
+             best redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
+             {gap} %. With these limits kept this is no bound: worse ones are possible then."
         ),
     };
     format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed.join("; "))

@@ -79,7 +79,7 @@ fn points_are_where_boxes_put_them_and_broken_rests_are_seen() {
 
 /// What is done to a cost before it is held against the truth.
 #[derive(Clone, Copy)]
-struct Mutation {
+pub struct Mutation {
     name: &'static str,
     known: fn(&mut Known),
     placed: fn(&mut Placed),
@@ -87,14 +87,14 @@ struct Mutation {
     cell: f64,
 }
 
-const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
+pub const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
 
 /// Size of a box, half width of the node in radius and height, half width of its cell of heading.
 const SIZES: [[f64; 3]; 5] =
     [[1e-7, 0.02, 0.02], [1e-7, 1e-6, 0.02], [0.01, 0.03, 1e-4], [0.01, 0.012, 0.01], [0.001, 0.002, 1e-3]];
 
 /// Placements and headings at which a point costs less than it is said to cost at least; and how many were compared.
-fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
+pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
     let mut random = seeded(32);
     let (mut wrong, mut compared) = (0, 0);
     for k in 0..2500 {

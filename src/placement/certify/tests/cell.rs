@@ -105,7 +105,12 @@ type Mutation = (&'static str, fn([f64; 3]) -> [f64; 3], fn(&mut Known));
 
 /// Violations over cells of heading around allowed states, at corners and in between: over regions as large as those of
 /// `level`, made for what `judged` makes of their half widths, and changed by `change`.
-fn violations(setting: &Setting, level: usize, judged: fn([f64; 3]) -> [f64; 3], change: fn(&mut Known)) -> [usize; 3] {
+pub fn violations(
+    setting: &Setting,
+    level: usize,
+    judged: fn([f64; 3]) -> [f64; 3],
+    change: fn(&mut Known),
+) -> [usize; 3] {
     let table = &setting.bounded.table;
     let half = [table.length(level), table.length(level), PI / table.headings(level) as f64];
     let is_vertical = setting.problem.task.wrenches().iter().any(|w| w.force.z != 0.0);

@@ -25,7 +25,7 @@ fn at(e: &Affine, off: [f64; 3]) -> f64 {
 }
 
 /// What is done to the minorant of a node before it is held against the truth.
-struct Mutation {
+pub struct Mutation {
     name: &'static str,
     known: fn(&mut Known),
     states: fn(&mut Vec<State>),
@@ -33,7 +33,7 @@ struct Mutation {
     chi: f64,
 }
 
-const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, states: |_| {}, joint1: 1.0, chi: 1.0 };
+pub const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, states: |_| {}, joint1: 1.0, chi: 1.0 };
 
 /// The states about the only node of a table, with their models changed.
 fn states(bounded: &Bounded, class: PostureClass, mutation: &Mutation) -> Option<Vec<State>> {
@@ -57,7 +57,7 @@ fn states(bounded: &Bounded, class: PostureClass, mutation: &Mutation) -> Option
 }
 
 /// Violations of minorants about random nodes, at corners and in between, over all headings; and how many were compared.
-fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usize; 2] {
+pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usize; 2] {
     let mut random = seeded(21);
     let (mut wrong, mut compared) = (0, 0);
     let turn = TAU / steps.headings as f64;
@@ -90,7 +90,7 @@ fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usize; 2
 }
 
 const COARSE: Steps = Steps { length: 0.025, headings: 128 };
-const FINE: Steps = Steps { length: 0.002, headings: 512 };
+pub const FINE: Steps = Steps { length: 0.002, headings: 512 };
 
 #[test]
 fn minorants_are_below_the_cost_at_every_heading() {
@@ -252,7 +252,9 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
     // Every level reaches so far and no farther: never infeasible, but nothing to say.
     let wide = Region { middle: placement, half: [0.2, 0.0, 0.0] };
     assert_eq!(reduced.below(&bounded, &wide), None);
-    let far = Region { middle: [1.2, -0.5564, 2.2], half: [0.001; 3] };
+    let near = Region { middle: [0.3, -0.5564, 2.2], half: [0.001; 3] };
+    assert_eq!(reduced.below(&bounded, &near), Some(0.0));
+    let far = Region { middle: [2.4, -0.5564, 2.2], half: [0.001; 3] };
     assert_eq!(reduced.below(&bounded, &far), None);
     let high = Region { middle: [1.64, 0.5, 2.2], half: [0.001; 3] };
     assert_eq!(reduced.below(&bounded, &high), None);

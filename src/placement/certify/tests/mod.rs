@@ -4,8 +4,10 @@
 //! against the truth by itself, over regions as small as that layer's slack asks for, at their corners and ends, and each must
 //! see the mutations named in its test.
 
+mod arms;
 mod boxes;
 mod cell;
+mod cells;
 mod minorants;
 mod planner;
 

@@ -44,14 +44,14 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
         let region = Region { middle, half: [size; 3] };
         let span = &setting.bounded.segments[random.random_range(0..setting.bounded.segments.len())];
         let point = random.random_range(span.start + 1..span.end);
-        let pair: Option<Vec<Pointwise>> = [point - 1, point]
+        let pair: Option<Vec<Option<Pointwise>>> = [point - 1, point]
             .iter()
             .map(|p| {
                 let mut placed = setting.bounded.points[*p].over(&region)?;
                 if !is_unsure {
                     (placed.slope_chi, placed.rest_chi) = ([0.0; 2], 0.0);
                 }
-                Some(Pointwise::new(&setting.bounded.points[*p], placed, 1e-6))
+                Some(Some(Pointwise::new(&setting.bounded.points[*p], placed, 1e-6)))
             })
             .collect();
         let Some(pair) = pair else { continue };

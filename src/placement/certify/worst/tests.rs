@@ -52,7 +52,7 @@ fn violations(tamper: impl Fn(&mut Known)) -> (usize, usize) {
         let point = random.random_range(0..over.points.len());
         let cell = random.random_range(0..bounded.table.headings(over.level));
         let class = PostureClass::ALL[random.random_range(0..4)];
-        let pointwise = &over.points[point];
+        let pointwise = over.points[point].as_ref().unwrap();
         let (at, off) = bounded.table.nearest(over.level, pointwise.placed.r, pointwise.placed.z).unwrap();
         let Node::Known(mut known) = *bounded.table.node(&bounded.arm, over.level, at, cell, class) else { continue };
         tamper(&mut known);
