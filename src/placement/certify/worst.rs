@@ -50,10 +50,10 @@ impl Ord for Open {
 }
 
 /// Bounds from above what placements of a problem are worth with the limits between neighbouring points dropped, until none can
-/// be worse than `value` ([`relaxed_value`] of the worst placement known, m) by more than `gap` (relative).
+/// be worse than `value` ([`super::relaxed_value`] of the worst placement known, m) by more than `gap` (relative).
 ///
 /// The rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest deflection of a point are relaxed, both in
-/// which placements count and in what they are worth: see [`relaxed_value`]. The result does not depend on the number of
+/// which placements count and in what they are worth: see [`super::relaxed_value`]. The result does not depend on the number of
 /// threads.
 ///
 /// # Errors
