@@ -96,9 +96,9 @@ impl PartialOrd for Open {
 }
 
 impl Ord for Open {
-    /// The least bound first, of equal ones the older.
+    /// The least bound first, of equal ones the younger: what cannot be told apart is found by going down, not by cutting all of it.
     fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound).then(other.number.cmp(&self.number))
+        other.bound.total_cmp(&self.bound).then(self.number.cmp(&other.number))
     }
 }
 
@@ -133,7 +133,12 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
     let mut stuck: Vec<Open> = Vec::new();
     let mut end = End::Reached;
     while let Some(first) = heap.peek() {
-        let lowest = stuck.iter().map(|o| o.bound).fold(first.bound, f64::min);
+        let least_stuck = stuck.iter().map(|o| o.bound).fold(f64::INFINITY, f64::min);
+        // Whatever becomes of the others, the bound stays there.
+        if least_stuck <= first.bound {
+            break;
+        }
+        let lowest = first.bound;
         let state = State { bound: lowest / count, open: heap.len() + stuck.len(), nodes };
         if !watch.goes_on(&state) {
             end = End::Stopped;

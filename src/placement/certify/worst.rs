@@ -43,9 +43,16 @@ impl PartialOrd for Open {
 }
 
 impl Ord for Open {
-    /// The greatest bound first, of equal ones the older.
+    /// The greatest bound first; of equal ones those not looked at yet, and of these the older, but else the younger: what cannot
+    /// be told apart is found by going down, not by cutting all of it.
     fn cmp(&self, other: &Self) -> Ordering {
-        self.bound.total_cmp(&other.bound).then(other.number.cmp(&self.number))
+        let by_age = |a: &Self, b: &Self| match (&a.seen, &b.seen) {
+            (Some(_), Some(_)) => a.number.cmp(&b.number),
+            (None, None) => b.number.cmp(&a.number),
+            (None, Some(_)) => Ordering::Greater,
+            (Some(_), None) => Ordering::Less,
+        };
+        self.bound.total_cmp(&other.bound).then_with(|| by_age(self, other))
     }
 }
 
@@ -76,8 +83,12 @@ pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> 
     let mut stuck: Vec<Open> = Vec::new();
     let mut end = End::Reached;
     while let Some(first) = heap.peek() {
-        let highest = stuck.iter().map(|o| o.bound).fold(first.bound, f64::max);
-        if !watch.goes_on(&State { bound: highest / count, open: heap.len() + stuck.len(), nodes }) {
+        let most_stuck = stuck.iter().map(|o| o.bound).fold(f64::NEG_INFINITY, f64::max);
+        // Whatever becomes of the others, the bound stays there.
+        if most_stuck >= first.bound {
+            break;
+        }
+        if !watch.goes_on(&State { bound: first.bound / count, open: heap.len() + stuck.len(), nodes }) {
             end = End::Stopped;
             break;
         }
