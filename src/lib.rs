@@ -52,5 +52,6 @@ pub mod input;
 pub mod placement;
 pub mod report;
 pub mod robot;
+pub mod simulation;
 pub mod stiffness;
 pub mod task;

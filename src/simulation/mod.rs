@@ -1,0 +1,12 @@
+//! How the arm moves while it mills: dynamics of the arm, its drives, and their integration in time.
+//!
+//! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
+//! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
+//! [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
+
+pub mod arm;
+pub mod drive;
+pub mod integrator;
+pub mod modes;
+pub mod motion;
+pub mod multibody;
