@@ -2,7 +2,7 @@
 //!
 //! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
 //! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
-//! [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
+//! [`setup`] what a job needs of both, [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
 
 pub mod arm;
 pub mod drive;
@@ -10,3 +10,4 @@ pub mod integrator;
 pub mod modes;
 pub mod motion;
 pub mod multibody;
+pub mod setup;
