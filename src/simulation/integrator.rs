@@ -172,12 +172,11 @@ impl<const N: usize> Newmark<N> {
         state: &State<N>,
         evaluations: &mut usize,
     ) -> Result<State<N>, StepError> {
-        if self.inverse.as_ref().is_some_and(|(made_for, _)| *made_for == step) {
-            if let Some(next) = self.solved(system, time, step, state, evaluations)
-                && self.contraction <= SLOW
-            {
-                return Ok(next);
-            }
+        if self.inverse.as_ref().is_some_and(|(made_for, _)| *made_for == step)
+            && let Some(next) = self.solved(system, time, step, state, evaluations)
+            && self.contraction <= SLOW
+        {
+            return Ok(next);
         }
         self.factor(system, time, step, state)?;
         self.solved(system, time, step, state, evaluations).ok_or(StepError::NotConverged { time, step })
