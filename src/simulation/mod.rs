@@ -11,3 +11,4 @@ pub mod modes;
 pub mod motion;
 pub mod multibody;
 pub mod setup;
+pub mod survey;
