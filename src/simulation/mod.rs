@@ -1,0 +1,5 @@
+//! How a robot mills.
+
+pub mod milling;
+pub mod roughness;
+pub mod surface;
