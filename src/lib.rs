@@ -53,5 +53,6 @@ pub mod lanes;
 pub mod placement;
 pub mod report;
 pub mod robot;
+pub mod simulation;
 pub mod stiffness;
 pub mod task;
