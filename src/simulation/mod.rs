@@ -1,14 +1,18 @@
-//! How the arm moves while it mills: dynamics of the arm, its drives, and their integration in time.
+//! How the arm moves while it mills, and whether that stays calm.
 //!
 //! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
 //! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
 //! [`setup`] what a job needs of both, [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
+//! [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it, [`roughness`] the wall that stays.
 
 pub mod arm;
 pub mod drive;
 pub mod integrator;
+pub mod milling;
 pub mod modes;
 pub mod motion;
 pub mod multibody;
+pub mod roughness;
 pub mod setup;
+pub mod surface;
 pub mod survey;
