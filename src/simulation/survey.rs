@@ -5,6 +5,21 @@ use super::modes::{Linear, Mode};
 use super::setup::Setup;
 use nalgebra::{Complex, Matrix3, SVector, Vector3};
 
+/// What is to be found out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Where on the pass the arm stands. m
+    pub way: f64,
+    /// Spindle speeds of the lobes, from and to. rad/s
+    pub speeds: [f64; 2],
+    /// Spindle speeds between and at both.
+    pub points: usize,
+    /// Depths of cut beyond this are not looked at. m
+    pub deepest: f64,
+    /// Frequencies of the answer at the tip, from and to. Hz
+    pub frequencies: [f64; 2],
+}
+
 /// How the tip answers to a swinging force, in the plane of the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
