@@ -88,7 +88,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         ("-11.71", "400", [": pass.start_joints_deg: ", "joint 1 would stand at 400", "posture of its start"]),
         ("[1.0, 0.0, 0.0]", "[0, 0, 0]", [": pass.feed_direction: ", "no direction", "found [0, 0, 0]"]),
         ("[1.0, 0.0, 0.0]", "[1, 0, 0.1]", [": pass.feed_direction: ", "5.7", "found [1, 0, 0.1]"]),
-        ("length_mm = 107.9167", "length_mm = 3000", [": pass.length_mm: ", "beyond the stretched", "found 3000"]),
+        ("length_mm = 107.9167", "length_mm = 3000", [": pass.length_mm: ", "joint 3 would stand", "found 3000"]),
         ("ramp_s = 0.2", "ramp_s = -0.2", [": pass.ramp_s: ", "found -0.2", "from 0 to 10"]),
         ("3700.0", "0", [": pass.feed_mm_per_min: ", "found 0", "above 0"]),
         ("gap_mm = 0.5", "gap_mm = -0.5", [": work.gap_mm: ", "found -0.5", "not below 0"]),
