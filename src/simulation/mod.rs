@@ -14,5 +14,6 @@ pub mod motion;
 pub mod multibody;
 pub mod roughness;
 pub mod setup;
+pub mod stability;
 pub mod surface;
 pub mod survey;
