@@ -2,7 +2,7 @@
 //!
 //! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
 //! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
-//! [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
+//! [`setup`] what a job needs of both, [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
 //! [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it, [`roughness`] the wall that stays.
 
 pub mod arm;
@@ -13,4 +13,5 @@ pub mod modes;
 pub mod motion;
 pub mod multibody;
 pub mod roughness;
+pub mod setup;
 pub mod surface;
