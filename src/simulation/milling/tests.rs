@@ -187,7 +187,8 @@ fn what_is_cut_is_what_is_fed() {
             let angle = TAU / turn as f64;
             let in_front = |offset: f64| libm::sincos(offset - index as f64 * angle);
             let offsets = [0.0, 190_f64.to_radians()].map(in_front);
-            let cosine = offsets.iter().find(|(sine, cosine)| *sine > -0.1 && *cosine > 0.0).map_or(0.0, |tooth| tooth.1);
+            let cosine =
+                offsets.iter().find(|(sine, cosine)| *sine > -0.1 && *cosine > 0.0).map_or(0.0, |tooth| tooth.1);
             area += chip * ((RADIUS - chip / 2.0) * angle - step * cosine);
         }
     }

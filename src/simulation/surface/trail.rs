@@ -40,11 +40,7 @@ pub struct Trail {
 impl Trail {
     /// An empty trail with room for a number of steps.
     pub fn with_room(steps: usize) -> Self {
-        Self {
-            nodes: Vec::with_capacity(steps),
-            legs: Vec::with_capacity(steps),
-            extents: Vec::with_capacity(steps),
-        }
+        Self { nodes: Vec::with_capacity(steps), legs: Vec::with_capacity(steps), extents: Vec::with_capacity(steps) }
     }
 
     /// The end of the next step; the first node is that of step 0.
