@@ -17,3 +17,4 @@ pub mod roughness;
 pub mod setup;
 pub mod stability;
 pub mod surface;
+pub mod survey;

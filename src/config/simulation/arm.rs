@@ -17,6 +17,8 @@ pub struct Overrides {
     pub variant: Option<Variant>,
     /// What all damping is multiplied with.
     pub damping_scale: Option<f64>,
+    /// The spindle speed. rad/s
+    pub spindle_speed: Option<f64>,
 }
 
 /// The fields of a simulation file that make a [`Setup`].
