@@ -3,7 +3,8 @@
 //! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
 //! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
 //! [`setup`] what a job needs of both, [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
-//! [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it, [`roughness`] the wall that stays.
+//! [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it, [`roughness`] the wall that stays,
+//! [`stability`] whether small motions die out.
 
 pub mod arm;
 pub mod drive;
