@@ -19,6 +19,7 @@
 
 mod arrays;
 mod assess;
+mod chatter;
 mod compensate;
 mod cutting;
 mod identify;

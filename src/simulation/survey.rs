@@ -1,12 +1,13 @@
 //! Whether a cut chatters: modes of the arm, its answer at the tip, and how deep it may cut at which spindle speed.
 
-use super::arm::{AnyArm, Arm, Missing};
+use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::milling::{Cut, Cutter};
 use super::modes::{Linear, Mode};
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use crate::cutting::{EngagementError, Milling};
-use nalgebra::{Complex, Matrix3, SVector, Vector3};
+use crate::robot::{Robot, Spindle};
+use nalgebra::{Complex, Matrix3, Vector3};
 
 /// What is to be found out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,10 +48,11 @@ pub struct CutFrame {
 
 impl CutFrame {
     /// For a cutter that turns clockwise as seen from its spindle: `axis` points from the work to the spindle. In climb milling
-    /// the wall is to the right of the feed.
+    /// the wall is to the right of the feed. What the feed has along the axis is left out.
     pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: Milling) -> Self {
         let left = axis.cross(&feed).normalize();
-        Self { feed, normal: if milling == Milling::Climb { left } else { -left } }
+        let normal = if milling == Milling::Climb { left } else { -left };
+        Self { feed: left.cross(&axis), normal }
     }
 }
 
@@ -132,17 +134,32 @@ pub enum SurveyError {
 }
 
 /// The arm of a setup, for small motions about where it stands after a way (m) of its pass.
+///
+/// # Errors
+/// [`SurveyError::Missing`] when the robot says too little for the variant.
 pub fn linear_at(setup: &Setup, way: f64) -> Result<AnyLinear, SurveyError> {
     let motors = setup.motion.motors_after(way, 0.0).0;
-    Ok(match setup.arm()? {
-        AnyArm::Six(arm) => AnyLinear::Six(Box::new(about(&arm, &motors))),
-        AnyArm::Eighteen(arm) => AnyLinear::Eighteen(Box::new(about(&arm, &motors))),
-    })
+    linear_of(&setup.robot, &setup.spindle, setup.variant, setup.damping_scale, &motors)
 }
 
-fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6]) -> Linear<N> {
-    let rest: SVector<f64, N> = arm.at_rest(&Arm::<N>::spread(motors));
-    Linear::of(arm, &rest, 1.0)
+/// The arm with its drives at joint angles `theta` (rad), for small motions about its rest.
+///
+/// # Errors
+/// [`SurveyError::Missing`] when the robot says too little for the variant.
+pub fn linear_of(
+    robot: &Robot,
+    spindle: &Spindle,
+    variant: Variant,
+    damping_scale: f64,
+    theta: &[f64; 6],
+) -> Result<AnyLinear, SurveyError> {
+    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> Box<Linear<N>> {
+        Box::new(Linear::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale))
+    }
+    Ok(match AnyArm::new(robot, spindle, variant, theta)? {
+        AnyArm::Six(arm) => AnyLinear::Six(about(&arm, theta, damping_scale)),
+        AnyArm::Eighteen(arm) => AnyLinear::Eighteen(about(&arm, theta, damping_scale)),
+    })
 }
 
 /// A [`Linear`] of as many joints as its arm has.

@@ -19,6 +19,7 @@ mod lettering;
 mod lobes;
 mod measurement_plan;
 mod patches;
+mod path_stability;
 mod plane_view;
 mod polar;
 mod scene;
@@ -34,6 +35,7 @@ pub use frequency_response::frequency_response;
 pub use indicators::indicators;
 pub use lobes::lobes;
 pub use measurement_plan::measurement_plan;
+pub use path_stability::path_stability;
 pub use polar::polar;
 
 #[cfg(test)]
