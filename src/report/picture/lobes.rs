@@ -8,6 +8,7 @@ use crate::report::output::ReportError;
 use crate::simulation::milling::Cut;
 use crate::simulation::stability::Lobe;
 use crate::simulation::survey::Survey;
+use plotters::style::WHITE;
 use std::f64::consts::PI;
 
 /// Critical depth of cut over spindle speed by both methods, and the cut at hand: green if it is stable, red if it is not. Where
@@ -49,6 +50,9 @@ pub fn lobes(survey: &Survey, cut: &Cut, deepest: f64) -> Result<String, ReportE
             let lettering = Lettering::new(12.0).coloured(INK);
             let to_left = at.0 > 800.0;
             let place = (at.0 as i32 + if to_left { -12 } else { 12 }, at.1 as i32 - 12);
+            let width = lettering.width(&label) * 4 / 5;
+            let left = if to_left { place.0 - width } else { place.0 };
+            canvas.fill((left - 3, place.1 - 9), (left + width + 3, place.1 + 8), WHITE)?;
             canvas.text(&label, place, if to_left { lettering.ending() } else { lettering })?;
         }
         panel.draw_frame(canvas)?;
