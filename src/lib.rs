@@ -14,10 +14,10 @@
 //! | 6 | the binary | starts the command line, returns its exit code |
 //! | 5 | [`cli`] | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
-//! | 3 | [`placement`], [`assessment`], [`identification`], [`compensation`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; how much its joints yield; what to command so that the loaded tool follows the path |
+//! | 3 | [`placement`], [`assessment`], [`identification`], [`compensation`], [`simulation`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; how much its joints yield; what to command so that the loaded tool follows the path; how the arm moves while it mills, and whether that stays calm |
 //! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |
 //! | 1 | [`robot`], [`task`] | what the arm is, what is to be cut |
-//! | 0 | [`input`] | the one error for anything that a file can get wrong |
+//! | 0 | [`input`], [`lanes`] | the one error for anything that a file can get wrong; several numbers worked on at once |
 //!
 //! # From a file to a result
 //!
@@ -39,7 +39,7 @@
 //! SI units and radians everywhere inside; files carry the unit in the name of the field. A transform `a_from_b` takes
 //! coordinates in b to coordinates in a. Library code returns typed errors: it does not print, exit or panic. The same
 //! input and seed give the same bytes for any number of threads: random numbers are counter-based, reductions run in a
-//! fixed order, and transcendental functions come from `libm` or from [`placement::kernel::lanes`], not from the
+//! fixed order, and transcendental functions come from `libm` or from [`lanes`], not from the
 //! C library of the machine.
 
 pub mod assessment;
@@ -49,8 +49,10 @@ pub mod config;
 pub mod cutting;
 pub mod identification;
 pub mod input;
+pub mod lanes;
 pub mod placement;
 pub mod report;
 pub mod robot;
+pub mod simulation;
 pub mod stiffness;
 pub mod task;

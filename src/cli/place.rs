@@ -3,7 +3,7 @@
 use super::arguments::PlaceOptions;
 use super::certify::{certified, warn_unfit};
 use super::progress::Watcher;
-use super::score::mention_cancellation;
+use super::score::{mention_cancellation, path_stability};
 use super::{Failure, on_threads, out_folder, print, say};
 use crate::config::read_run_to_certify;
 use crate::placement::control::Control;
@@ -37,8 +37,14 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         }
     })?;
 
-    let context =
-        Context { inputs: run.inputs.clone(), search, transfer: run.transfer, reference: run.reference.clone() };
+    let [best, _, worst, _] = &outcome.cases;
+    let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
+    let stability = match &run.chatter {
+        Some(chatter) => Some(on_threads(options.threads, || path_stability(&run.problem, chatter, plans))?.0?),
+        None => None,
+    };
+    let (inputs, reference) = (run.inputs.clone(), run.reference.clone());
+    let context = Context { inputs, search, transfer: run.transfer, reference, stability };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
     let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.

@@ -20,9 +20,11 @@
 mod arrays;
 mod assess;
 mod certificate;
+mod chatter;
 mod compensate;
 mod cutting;
 mod identify;
+mod inertial;
 mod milling;
 mod points;
 mod printed;
@@ -30,6 +32,7 @@ pub mod reader;
 mod robot;
 mod run;
 mod sheet;
+mod simulation;
 pub mod source;
 mod tables;
 #[cfg(test)]
@@ -42,3 +45,4 @@ pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run, read_run_to_certify};
+pub use simulation::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation};

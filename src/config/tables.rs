@@ -1,5 +1,6 @@
 //! The tables of a run file, each into its domain object.
 
+use super::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use super::reader::{Field, Table};
 use crate::input::{InputError, Reference};
 use crate::placement::problem::{Cell, Constraints, Criterion, Interval, Problem, Redundancy};
@@ -7,12 +8,18 @@ use crate::placement::settings::{PostureSearch, SearchSettings, Tables, Transfer
 use crate::placement::table::Table as StateTable;
 use crate::robot::{Robot, Spindle, angles::yaw_from_q4};
 
+/// Reads `[spindle]`: `xyz_mm` and `rotation`, from flange to tool, and where its motion matters `mass_kg`,
+/// `centre_of_mass_mm` and `inertia_kg_m2` of all that the flange carries, in the flange frame.
 pub(super) fn spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
-    let [xyz, rotation] = table.fields(["xyz_mm", "rotation"])?;
-    Spindle::new(rotation.matrix3()?, xyz.vector3()? / 1e3).map_err(|problem| {
+    let [xyz, rotation, body @ ..] = table.fields(["xyz_mm", "rotation", MASS, CENTRE, INERTIA])?;
+    let mut spindle = Spindle::new(rotation.matrix3()?, xyz.vector3()? / 1e3).map_err(|problem| {
         let tolerance = Spindle::ROTATION_TOLERANCE;
         rotation.error(problem, format!("a right-handed rotation matrix [row, row, row] within {tolerance}"))
-    })
+    })?;
+    if body.iter().any(Field::is_given) {
+        spindle.payload = Some(inertial_from(table)?);
+    }
+    Ok(spindle)
 }
 
 pub(super) fn cell_from(table: &Table<'_>) -> Result<Cell, InputError> {

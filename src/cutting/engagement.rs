@@ -176,13 +176,15 @@ pub(super) fn immersion(distance: f64, diameter: f64) -> f64 {
 
 /// What the mean over a turn of a force that turns with the tooth is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Integrals {
+pub struct Integrals {
     /// Integral of sin(phi).
     pub sine: f64,
     /// Integral of cos(phi).
     pub cosine: f64,
     /// Integral of sin(phi)^2.
     pub sine_squared: f64,
+    /// Integral of cos(phi)^2.
+    pub cosine_squared: f64,
     /// Integral of sin(phi) cos(phi).
     pub sine_cosine: f64,
 }
@@ -196,15 +198,18 @@ impl Integrals {
             sine: entry_cosine - exit_cosine,
             cosine: exit_sine - entry_sine,
             sine_squared: ((arc.exit - exit_sine * exit_cosine) - (arc.entry - entry_sine * entry_cosine)) / 2.0,
+            cosine_squared: ((arc.exit + exit_sine * exit_cosine) - (arc.entry + entry_sine * entry_cosine)) / 2.0,
             sine_cosine: (exit_sine * exit_sine - entry_sine * entry_sine) / 2.0,
         }
     }
 
-    fn plus(self, other: Self) -> Self {
+    /// Over the arcs of both.
+    pub fn plus(self, other: Self) -> Self {
         Self {
             sine: self.sine + other.sine,
             cosine: self.cosine + other.cosine,
             sine_squared: self.sine_squared + other.sine_squared,
+            cosine_squared: self.cosine_squared + other.cosine_squared,
             sine_cosine: self.sine_cosine + other.sine_cosine,
         }
     }
@@ -250,6 +255,8 @@ mod tests {
         near(Engagement::between(0.0, FRAC_PI_2).unwrap().integrals(), [1.0, 1.0, FRAC_PI_2 / 2.0, 0.5]);
         near(Engagement::between(FRAC_PI_2, PI).unwrap().integrals(), [1.0, -1.0, FRAC_PI_2 / 2.0, -0.5]);
         near(Integrals::over(Arc { entry: 0.7, exit: 0.7 }), [0.0; 4]);
+        let part = Integrals::over(Arc { entry: 0.3, exit: 1.9 });
+        assert!((part.sine_squared + part.cosine_squared - 1.6).abs() < 1e-15);
     }
 
     #[test]

@@ -19,7 +19,7 @@ mod rotation;
 mod tests;
 
 pub use course::{Course, Sample};
-pub use engagement::{Arc, Engagement, EngagementError};
+pub use engagement::{Arc, Engagement, EngagementError, Integrals};
 pub use milling_tool::MillingTool;
 pub use model::{CuttingModel, Milling, Side};
 pub use rotation::Rotation;

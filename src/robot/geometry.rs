@@ -97,7 +97,7 @@ impl Geometry {
     }
 
     /// The exact sine and cosine of the twist before joint `index` (from 0), as the closed form takes it.
-    pub(super) fn twist_sin_cos(&self, index: usize, alpha: f64) -> (f64, f64) {
+    pub(crate) fn twist_sin_cos(&self, index: usize, alpha: f64) -> (f64, f64) {
         match index {
             1 => (self.lift, 0.0),
             2 => (0.0, self.fold),

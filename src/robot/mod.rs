@@ -27,6 +27,7 @@ pub mod angles;
 mod compliance;
 pub mod conditioning;
 mod data_sheet;
+mod dynamics;
 mod forward;
 mod geometry;
 mod inverse;
@@ -38,6 +39,7 @@ mod uncertainty;
 
 pub use compliance::{Compensator, Compliance};
 pub use data_sheet::DataSheet;
+pub use dynamics::{Inertial, InertialError, JointDynamics, Orthogonal};
 pub use forward::{Frames, Pose, cast};
 pub use geometry::Geometry;
 pub use inverse::Unreachable;
@@ -76,6 +78,7 @@ pub struct Robot {
     geometry: Geometry,
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
+    dynamics: Option<Box<[JointDynamics; 6]>>,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -173,7 +176,14 @@ impl Robot {
             check_joint(index + 1, joint)?;
         }
         let geometry = Geometry::new(&joints)?;
-        Ok(Self { name: name.into(), joints, geometry, data_sheet: DataSheet::default(), uncertainty: None })
+        Ok(Self {
+            name: name.into(),
+            joints,
+            geometry,
+            data_sheet: DataSheet::default(),
+            uncertainty: None,
+            dynamics: None,
+        })
     }
 
     /// The name given by the robot file.

@@ -1,6 +1,6 @@
 //! The spindle on the flange.
 
-use super::{Pose, scalar::Scalar};
+use super::{Inertial, Pose, scalar::Scalar};
 use nalgebra::{Matrix3, Vector3};
 
 /// Rotation from the tool frame to frame P_i of a path point (x along the feed, z along the tool axis from the workpiece to
@@ -18,6 +18,8 @@ pub fn point_from_tool<T: Scalar>(beta: T) -> Matrix3<T> {
 pub struct Spindle {
     /// Coordinates in frame 7 to coordinates in frame 6.
     pub flange_from_tool: Pose<f64>,
+    /// Mass of spindle, holder and tool in the flange frame, where known.
+    pub payload: Option<Inertial>,
 }
 
 impl Spindle {
@@ -57,7 +59,7 @@ impl Spindle {
         let z = z.normalize();
         let x = (x - z * z.dot(&x)).normalize();
         let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
-        Ok(Self { flange_from_tool: Pose { rotation, translation } })
+        Ok(Self { flange_from_tool: Pose { rotation, translation }, payload: None })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod compliance;
 pub mod covariance;
+mod dynamics;
 
 use super::reader::{Field, Table};
 use super::source::Source;
@@ -9,6 +10,7 @@ use crate::input::InputError;
 use crate::robot::{DataSheet, Joint, Robot, RobotError};
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
 use covariance::{COVARIANCE, with_covariance};
+pub(super) use dynamics::moving_robot_from;
 use std::path::Path;
 
 /// Reads a robot file: `name`, `source` (where its numbers come from), where known `payload_kg`, `working_radius_mm` and
@@ -20,6 +22,11 @@ use std::path::Path;
 /// table `[joints.compensator]` with `spring_stiffness_n_per_mm`, `a_mm`, `l_mm`, `alpha_deg` and `free_length_mm`
 /// ([`Compensator`](crate::robot::Compensator)); its stiffness or compliance is then that of the joint alone. A table
 /// `[covariance]` at the end says how well the compliances are known ([`covariance`]).
+///
+/// Where its motion is to be computed, every row has `mass_kg`, `centre_of_mass_mm`, `inertia_kg_m2` (of the link behind the
+/// joint, in the frame of the row) and `damping_nms_per_rad`, and may have `half_backlash_arcsec`, `gravity_compensated`,
+/// `orthogonal_stiffness_mnm_per_rad`, `orthogonal_damping_nms_per_rad` and `bearing_mm`
+/// ([`JointDynamics`](crate::robot::JointDynamics)).
 ///
 /// # Errors
 /// [`InputError`] with line and field: a file that cannot be read or is no TOML, a missing or unknown key, a value of
@@ -60,6 +67,10 @@ pub(super) fn robot_from(source: &Source) -> Result<Robot, InputError> {
     let arm: [Joint; 6] = arm.try_into().map_err(|_| joints.error("does not make a six-axis arm", "six rows"))?;
     let robot = Robot::new(name, arm).and_then(|robot| robot.with_data_sheet(data_sheet));
     let robot = robot.map_err(|error| locate(&Table::root(&document), &rows, &error))?;
+    let robot = match dynamics::dynamics_from(&rows)? {
+        Some(dynamics) => robot.with_dynamics(dynamics),
+        None => robot,
+    };
     match covariance.optional(Field::table)? {
         Some(table) => with_covariance(robot, &table),
         None => Ok(robot),
@@ -67,19 +78,30 @@ pub(super) fn robot_from(source: &Source) -> Result<Robot, InputError> {
 }
 
 fn joint_from(row: &Table<'_>) -> Result<Joint, InputError> {
-    let [alpha, a, d, min, max, stiffness, compliance, speed, acceleration, jerk, compensator] = row.fields([
-        "alpha_deg",
-        "a_mm",
-        "d_mm",
-        "min_deg",
-        "max_deg",
-        STIFFNESS,
-        COMPLIANCE,
-        "max_speed_deg_per_s",
-        "max_acceleration_deg_per_s2",
-        "max_jerk_deg_per_s3",
-        COMPENSATOR,
-    ])?;
+    let [mass, centre, inertia, damping, backlash, compensated, normal, normal_damping, bearing] = dynamics::KEYS;
+    let [alpha, a, d, min, max, stiffness, compliance, speed, acceleration, jerk, compensator, ..]: [Field<'_>; 20] =
+        row.fields([
+            "alpha_deg",
+            "a_mm",
+            "d_mm",
+            "min_deg",
+            "max_deg",
+            STIFFNESS,
+            COMPLIANCE,
+            "max_speed_deg_per_s",
+            "max_acceleration_deg_per_s2",
+            "max_jerk_deg_per_s3",
+            COMPENSATOR,
+            mass,
+            centre,
+            inertia,
+            damping,
+            backlash,
+            compensated,
+            normal,
+            normal_damping,
+            bearing,
+        ])?;
     let angle = |field: &Field<'_>| field.positive().map(f64::to_radians);
     Ok(Joint {
         alpha: alpha.number()?.to_radians(),

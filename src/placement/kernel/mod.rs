@@ -11,7 +11,7 @@
 //! and all is done in the widest vectors that the processor has ([`lanes`]), to the same bits with each.
 
 mod arm;
-pub mod lanes;
+pub use crate::lanes;
 mod laws;
 mod limit;
 mod pose;

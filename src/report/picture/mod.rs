@@ -12,12 +12,15 @@ mod convergence;
 mod cutting;
 mod deflection_map;
 mod deflections;
+mod frequency_response;
 mod hatch;
 mod indicators;
 mod lettering;
+mod lobes;
 mod measurement_plan;
 mod open_region;
 mod patches;
+mod path_stability;
 mod plane_view;
 mod polar;
 mod scene;
@@ -29,9 +32,12 @@ pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
 pub use deflections::deflections;
+pub use frequency_response::frequency_response;
 pub use indicators::indicators;
+pub use lobes::lobes;
 pub use measurement_plan::measurement_plan;
 pub use open_region::open_region;
+pub use path_stability::path_stability;
 pub use polar::polar;
 
 #[cfg(test)]

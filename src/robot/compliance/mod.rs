@@ -218,7 +218,11 @@ impl Robot {
         for (joint, compliance) in joints.iter_mut().zip(compliances) {
             joint.compliance = compliance.into();
         }
-        Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())
+        let robot = Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())?;
+        Ok(match self.dynamics() {
+            Some(dynamics) => robot.with_dynamics(*dynamics),
+            None => robot,
+        })
     }
 
     /// The same arm with one compliance in place of every range, so far from its smaller to its larger value: 0 to 1.

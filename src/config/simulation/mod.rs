@@ -1,0 +1,88 @@
+//! Simulation files: the config of `stead simulate` and `stead stability`.
+
+mod arm;
+mod milling;
+mod survey;
+#[cfg(test)]
+mod tests;
+
+pub use arm::{MOST_DAMPING_SCALE, Overrides};
+pub use milling::FASTEST_RPM;
+
+use super::reader::{Field, Table};
+use super::source::Source;
+use crate::input::{InputError, InputFile};
+use crate::simulation::milling::{Cut, Cutter};
+use crate::simulation::setup::Setup;
+use crate::simulation::survey::Plan;
+use arm::{ArmFields, setup_from};
+pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
+use std::path::Path;
+use survey::plan_from;
+
+/// A simulation file and the files it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationRun {
+    /// The arm and its pass.
+    pub setup: Setup,
+    /// The cutter.
+    pub cutter: Cutter,
+    /// What it cuts.
+    pub cut: Cut,
+    /// How far before the work the pass starts. m
+    pub gap: f64,
+    /// What is to be found out of its stability.
+    pub plan: Plan,
+    /// The files that were read: config, robot.
+    pub inputs: Vec<InputFile>,
+}
+
+/// Slices of the cutter and steps a turn, where the file does not say.
+const SLICES: u64 = 32;
+const STEPS_PER_TURN: u64 = 360;
+
+/// Reads a simulation file and the robot file that it names. Top-level keys: `robot` (its path relative to the folder of the
+/// file), `[spindle]`, with mass, `[pass]`, `[work]` and `[milling]`; optionally `variant`, `damping_scale`, `[simulation]` and
+/// `[stability]`. The shipped files explain each field.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
+/// wrong kind or out of range, a robot without masses, a pass that the arm cannot make, a cut that the cutter cannot do.
+pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
+    let source = Source::read(file)?;
+    let document = source.parse()?;
+    let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability] = Table::root(&document)
+        .fields([
+        "robot",
+        "variant",
+        "damping_scale",
+        "spindle",
+        "pass",
+        "work",
+        "milling",
+        "simulation",
+        "stability",
+    ])?;
+    let mut inputs = vec![source.as_config()];
+    let setup = setup_from(&ArmFields { robot, variant, damping_scale, spindle, pass }, overrides, &mut inputs)?;
+    let [length, gap] = work.table()?.fields(["length_mm", "gap_mm"])?;
+    let length = length.positive()? / 1e3;
+    let gap = gap.number_where("a finite number not below 0", |value| value >= 0.0)? / 1e3;
+    let (slices, steps) = simulation
+        .optional(|field| {
+            let [slices, steps] = field.table()?.fields(["slices", "steps_per_turn"])?;
+            let whole = |field: &Field<'_>, most, default| {
+                field.optional(|field| field.integer(1..=most)).map(|value| value.unwrap_or(default))
+            };
+            Ok((whole(&slices, 1024, SLICES)?, whole(&steps, 100_000, STEPS_PER_TURN)?))
+        })?
+        .unwrap_or((SLICES, STEPS_PER_TURN));
+    let table = milling.table()?;
+    table.fields(MILLING_KEYS)?;
+    let (cutter, mut cut) = milling_from(&table, length, slices as usize, steps as usize)?;
+    if let Some(speed) = overrides.spindle_speed {
+        cut.spindle_speed = speed;
+    }
+    let plan = plan_from(&stability, &setup, &cutter, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap, plan, inputs })
+}

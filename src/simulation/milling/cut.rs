@@ -1,0 +1,119 @@
+//! The cut: how wide, how deep, how fast, and by how many slices and steps it is represented.
+
+use super::cutter::Cutter;
+use crate::cutting::Milling;
+use std::f64::consts::TAU;
+
+/// A straight pass along a wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cut {
+    /// Up or down milling.
+    pub milling: Milling,
+    /// Width of cut a_e; the whole diameter is a slot, with work on both sides of the tool. m
+    pub radial_depth: f64,
+    /// Depth of cut a_p. m
+    pub axial_depth: f64,
+    /// Length of the work along the feed. m
+    pub length: f64,
+    /// Angular speed of the spindle. rad/s
+    pub spindle_speed: f64,
+    /// Slices along the axis.
+    pub slices: usize,
+    /// Steps of time a turn.
+    pub steps_per_turn: usize,
+}
+
+/// Why a cutter cannot do a cut.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum CutError {
+    /// A width of cut that is none, or wider than the cutter.
+    #[error("the width of cut must be above 0 and not above the cutter diameter of {diameter} m, but is {width} m")]
+    Width {
+        /// Width of cut. m
+        width: f64,
+        /// Diameter of the cutter. m
+        diameter: f64,
+    },
+    /// A depth of cut that is none, or deeper than the flutes.
+    #[error("the depth of cut must be above 0 and not above the flute length of {flute} m, but is {depth} m")]
+    Depth {
+        /// Depth of cut. m
+        depth: f64,
+        /// Length of the flutes. m
+        flute: f64,
+    },
+    /// No work, or no speed.
+    #[error("length of the work and spindle speed must be finite numbers above 0, but one is {value}")]
+    Positive {
+        /// The value. m or rad/s
+        value: f64,
+    },
+    /// No slice.
+    #[error("there must be at least one slice")]
+    Slices,
+    /// Steps that are too coarse to tell teeth apart.
+    #[error("there must be at least {least} steps a turn for the smallest pitch of the teeth, but are {steps}")]
+    Steps {
+        /// Steps a turn.
+        steps: usize,
+        /// The fewest that would do.
+        least: usize,
+    },
+}
+
+/// Steps between two teeth, at least.
+const STEPS_PER_PITCH: f64 = 6.0;
+
+impl Cut {
+    /// Checks the cut against the cutter.
+    ///
+    /// # Errors
+    /// [`CutError`] if it is too wide, too deep, or too coarse.
+    pub fn check(&self, cutter: &Cutter) -> Result<(), CutError> {
+        let (width, diameter) = (self.radial_depth, 2.0 * cutter.radius());
+        if !(width > 0.0 && width <= diameter) {
+            return Err(CutError::Width { width, diameter });
+        }
+        let (depth, flute) = (self.axial_depth, cutter.flute());
+        if !(depth > 0.0 && depth <= flute) {
+            return Err(CutError::Depth { depth, flute });
+        }
+        for value in [self.length, self.spindle_speed] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(CutError::Positive { value });
+            }
+        }
+        if self.slices == 0 {
+            return Err(CutError::Slices);
+        }
+        let least = least_steps(cutter);
+        if self.steps_per_turn < least {
+            return Err(CutError::Steps { steps: self.steps_per_turn, least });
+        }
+        Ok(())
+    }
+
+    /// The length of a step. s
+    pub fn step(&self) -> f64 {
+        TAU / self.spindle_speed / self.steps_per_turn as f64
+    }
+
+    /// The sign with which psi changes: down milling ends at the wall, up milling starts there.
+    pub fn sense(&self) -> f64 {
+        match self.milling {
+            Milling::Climb => -1.0,
+            Milling::Conventional => 1.0,
+        }
+    }
+
+    /// Whether the work is on both sides of the tool.
+    pub fn is_slot(&self, cutter: &Cutter) -> bool {
+        self.radial_depth >= 2.0 * cutter.radius()
+    }
+}
+
+/// The fewest steps a turn with which earlier teeth can be found between steps already done.
+pub fn least_steps(cutter: &Cutter) -> usize {
+    let smallest = cutter.teeth().iter().fold(TAU, |smallest, tooth| tooth.pitch.min(smallest));
+    (STEPS_PER_PITCH * TAU / smallest - 1e-9).ceil() as usize
+}

@@ -1,0 +1,128 @@
+//! What swings how fast: natural frequencies, damping and shapes of an arm, and how its tip answers to a swinging force.
+//!
+//! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state matrix
+//! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode of natural frequency
+//! `omega = |s|` and damping ratio `zeta`.
+
+use super::arm::Arm;
+use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
+use std::f64::consts::TAU;
+
+/// An arm at rest, for small motions about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linear<const N: usize> {
+    /// kg m^2
+    pub mass: SMatrix<f64, N, N>,
+    /// N m s/rad
+    pub damping: SMatrix<f64, N, N>,
+    /// Springs and gravity, the play of the gears taken up. N m/rad
+    pub stiffness: SMatrix<f64, N, N>,
+    /// Velocity of the tip per unit speed of each joint. m/rad
+    pub tip: SMatrix<f64, 3, N>,
+}
+
+/// A way in which an arm swings by itself, or creeps back without swinging.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// Natural frequency |s| / (2 pi). Hz
+    pub frequency: f64,
+    /// Share of the critical damping; 1 for what does not swing, negative for what grows.
+    pub damping_ratio: f64,
+    /// Amplitudes of the joints, the largest 1, where the largest is at its peak.
+    pub joints: Vec<f64>,
+    /// Amplitude of the tip (m) for those of the joints (rad).
+    pub tip: Vector3<f64>,
+}
+
+impl<const N: usize> Linear<N> {
+    /// The arm at rest at angles `q` (rad), with its damping times `damping_scale`.
+    pub fn of(arm: &Arm<N>, q: &SVector<f64, N>, damping_scale: f64) -> Self {
+        let posed = arm.chain.at(q);
+        Self {
+            mass: posed.mass_matrix(&arm.chain),
+            damping: SMatrix::from_diagonal(&(arm.drive.damping * damping_scale)),
+            stiffness: arm.stiffness(&posed, &arm.drive.stiffness),
+            tip: posed.tip_jacobian(),
+        }
+    }
+
+    /// Natural frequencies without damping, ascending: square roots of the eigenvalues of `M^-1 K`. Hz; none where the mass
+    /// matrix is not positive definite. What does not swing back, since gravity outweighs its spring, counts as 0 Hz.
+    pub fn undamped(&self) -> Option<Vec<f64>> {
+        let factor = to_dynamic(&self.mass).cholesky()?;
+        let half = factor.l().solve_lower_triangular(&to_dynamic(&self.stiffness))?;
+        let both = factor.l().solve_lower_triangular(&half.transpose())?;
+        let both = (&both + both.transpose()) / 2.0;
+        let mut found: Vec<f64> =
+            both.symmetric_eigenvalues().iter().map(|square| libm::sqrt(square.max(0.0)) / TAU).collect();
+        found.sort_by(f64::total_cmp);
+        Some(found)
+    }
+
+    /// The state matrix `[0, 1; -M^-1 K, -M^-1 C]`; none where the mass matrix is not positive definite.
+    pub fn state_matrix(&self) -> Option<DMatrix<f64>> {
+        let factor = to_dynamic(&self.mass).cholesky()?;
+        let mut matrix = DMatrix::zeros(2 * N, 2 * N);
+        matrix.view_mut((0, N), (N, N)).fill_with_identity();
+        matrix.view_mut((N, 0), (N, N)).copy_from(&-factor.solve(&to_dynamic(&self.stiffness)));
+        matrix.view_mut((N, N), (N, N)).copy_from(&-factor.solve(&to_dynamic(&self.damping)));
+        Some(matrix)
+    }
+
+    /// All modes, by natural frequency; none where the mass matrix is not positive definite.
+    pub fn modes(&self) -> Option<Vec<Mode>> {
+        let matrix = self.state_matrix()?;
+        let mut modes: Vec<Mode> = matrix
+            .complex_eigenvalues()
+            .iter()
+            // One of each pair; what does not swing is by itself.
+            .filter(|s| s.im >= 0.0)
+            .filter_map(|s| self.mode(*s))
+            .collect();
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        Some(modes)
+    }
+
+    /// The mode of an eigenvalue: a null vector of `s^2 M + s C + K`, by inverse iteration.
+    fn mode(&self, s: Complex<f64>) -> Option<Mode> {
+        let size = s.norm();
+        // Next to the eigenvalue, so that the matrix has an inverse.
+        let near = s * (1.0 + 1e-9) + Complex::new(1e-300, 0.0);
+        let factor = self.dynamic_stiffness(near).lu();
+        let mut shape = DVector::from_fn(N, |k, _| Complex::new(1.0 + k as f64 / 7.0, 0.3));
+        for _ in 0..4 {
+            shape = factor.solve(&shape)?;
+            let norm = shape.norm();
+            shape.unscale_mut(norm);
+        }
+        let largest = shape.iter().copied().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))?;
+        let joints: Vec<f64> = shape.iter().map(|amplitude| (amplitude / largest).re).collect();
+        let tip = self.tip * SVector::<f64, N>::from_column_slice(&joints);
+        Some(Mode { frequency: size / TAU, damping_ratio: if size > 0.0 { -s.re / size } else { 0.0 }, joints, tip })
+    }
+
+    /// `s^2 M + s C + K`.
+    fn dynamic_stiffness(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
+        DMatrix::from_fn(N, N, |row, column| {
+            let at = (row, column);
+            s * s * self.mass[at] + s * self.damping[at] + Complex::from(self.stiffness[at])
+        })
+    }
+
+    /// How the tip answers (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
+    /// are directions of the force; none in a resonance without damping.
+    pub fn response(&self, frequency: f64) -> Option<Matrix3<Complex<f64>>> {
+        let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));
+        let jacobian = DMatrix::from_fn(N, 3, |row, column| Complex::from(self.tip[(column, row)]));
+        let angles = matrix.lu().solve(&jacobian)?;
+        let answer = jacobian.transpose() * angles;
+        Some(Matrix3::from_fn(|row, column| answer[(row, column)]))
+    }
+}
+
+fn to_dynamic<const N: usize>(matrix: &SMatrix<f64, N, N>) -> DMatrix<f64> {
+    DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,287 @@
+//! Multipliers and critical depths against a published benchmark, the classical method, the time domain, and the robot.
+
+use super::*;
+use crate::cutting::Milling as Way;
+use crate::simulation::arm::{Arm, Variant, testing};
+use crate::simulation::milling::{Coefficients, Cut, Cutter, Milling, Tooth};
+use crate::simulation::modes::Linear;
+use crate::simulation::surface::Node;
+use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
+use std::f64::consts::{PI, TAU};
+
+const RADIUS: f64 = 5e-3;
+const MASS: f64 = 0.03993;
+const OMEGA: f64 = 922.0 * TAU;
+const DAMPING: f64 = 0.011;
+
+/// The tool of Insperger and Stépán 2004: 922 Hz, 1.1 % damping, 39.93 g, along the feed alone.
+fn benchmark_plant() -> Plant {
+    let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -OMEGA * OMEGA, -2.0 * DAMPING * OMEGA]);
+    let b = DMatrix::from_row_slice(2, 2, &[0.0, 0.0, 1.0 / MASS, 0.0]);
+    Plant::new(a, b, DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0])).unwrap()
+}
+
+/// Its two teeth, K_t = 600 MPa and K_n = 200 MPa.
+fn benchmark_cutter(pitches_deg: &[f64], helix_deg: f64) -> Cutter {
+    let teeth = pitches_deg.iter().map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
+    let coefficients = Coefficients { tangential: 6e8, radial: 2e8, axial: 0.0 };
+    Cutter::new(teeth.collect(), helix_deg.to_radians(), 0.05, coefficients).unwrap()
+}
+
+fn cut(milling: Way, immersion: f64, rpm: f64) -> Cut {
+    Cut {
+        milling,
+        radial_depth: immersion * 2.0 * RADIUS,
+        axial_depth: 1e-3,
+        length: 1.0,
+        spindle_speed: rpm * TAU / 60.0,
+        slices: 1,
+        steps_per_turn: 160,
+    }
+}
+
+/// In a slot at 5000 rpm the largest multipliers are 0.8192, 1.0726 and 1.4040 at 0.2, 0.5 and 1 mm (Ding et al. 2010, who judge
+/// their method and that of Insperger and Stépán by these numbers, from 200 intervals a tooth).
+#[test]
+fn the_published_multipliers_of_a_slot_come_out() {
+    let (plant, cutter, cut) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0), cut(Way::Climb, 1.0, 5000.0));
+    let fine = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 400).unwrap();
+    let coarse = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap();
+    for (depth, published) in [(0.2e-3, 0.8192), (0.5e-3, 1.0726), (1e-3, 1.4040)] {
+        let size = fine.verdict(depth).multiplier.norm();
+        assert!((size / published - 1.0).abs() < 5e-4, "{size} {published}");
+        assert!((coarse.verdict(depth).multiplier.norm() / published - 1.0).abs() < 2e-2);
+    }
+}
+
+/// The method as first published (Insperger and Stépán 2002 and 2004, one delay): in each interval the matrix
+/// `A - b K_i B C` is constant and the delayed motion a mean of two, and all matrices are multiplied out.
+fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: usize) -> f64 {
+    let n = plant.states();
+    let step = PI / cut.spindle_speed / intervals as f64;
+    let exit = libm::acos(1.0 - cut.radial_depth / RADIUS);
+    let size = n + 2 * intervals;
+    let mut whole = DMatrix::<f64>::identity(size, size);
+    let [_, _, rising] = plant.step(1e-9);
+    // B from the answer to a force over a very short time.
+    let b = rising * 2.0 / 1e-9;
+    for interval in 0..intervals {
+        let mut mean = Matrix2::zeros();
+        for part in 0..400 {
+            let phi = (interval as f64 + (f64::from(part) + 0.5) / 400.0) / intervals as f64 * PI;
+            let psi = if cut.milling == Way::Climb { PI - phi } else { phi };
+            if psi < exit {
+                let (sine, cosine) = libm::sincos(psi);
+                let sign = if cut.milling == Way::Climb { 1.0 } else { -1.0 };
+                let Coefficients { tangential, radial, .. } = cutter.coefficients();
+                let force = nalgebra::Vector2::new(
+                    sign * tangential * cosine - radial * sine,
+                    sign * tangential * sine + radial * cosine,
+                );
+                mean += force * nalgebra::RowVector2::new(sine, -cosine) * (depth / 400.0);
+            }
+        }
+        let fed = &b * DMatrix::from_fn(2, 2, |row, column| mean[(row, column)]);
+        let a = plant.a() + &fed * plant.c();
+        let mut all = DMatrix::zeros(n + 2, n + 2);
+        all.view_mut((0, 0), (n, n)).copy_from(&(&a * step));
+        all.view_mut((0, n), (n, 2)).copy_from(&(-&fed * step));
+        let all = all.exp();
+        // [x, u one ago, ..., u m ago] to the same an interval later.
+        let mut map = DMatrix::zeros(size, size);
+        map.view_mut((0, 0), (n, n)).copy_from(&all.view((0, 0), (n, n)));
+        let delayed = all.view((0, n), (n, 2)) * 0.5;
+        map.view_mut((0, n + 2 * intervals - 2), (n, 2)).copy_from(&delayed);
+        map.view_mut((0, n + 2 * intervals - 4), (n, 2)).copy_from(&delayed);
+        map.view_mut((n, 0), (2, n)).copy_from(plant.c());
+        for ago in 1..intervals {
+            map.view_mut((n + 2 * ago, n + 2 * ago - 2), (2, 2)).fill_with_identity();
+        }
+        whole = map * whole;
+    }
+    whole.complex_eigenvalues().iter().fold(0.0, |most, value| value.norm().max(most))
+}
+
+#[test]
+fn the_classical_method_agrees_for_all_immersions() {
+    let (plant, cutter) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0));
+    for (way, immersion) in [(Way::Climb, 1.0), (Way::Climb, 0.1), (Way::Climb, 0.05), (Way::Conventional, 0.1)] {
+        let cut = cut(way, immersion, 9000.0);
+        let ours = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap();
+        for depth in [0.5e-3, 3e-3] {
+            let (ours, classical) =
+                (ours.verdict(depth).multiplier.norm(), classical(&plant, &cutter, &cut, depth, 80));
+            assert!((ours / classical - 1.0).abs() < 0.02, "{ours} {classical} {way:?} {immersion} {depth}");
+        }
+    }
+}
+
+#[test]
+fn errors_fall_with_the_square_of_the_interval() {
+    let (plant, cutter) = (benchmark_plant(), benchmark_cutter(&[170.0, 190.0], 30.0));
+    let cut = Cut { slices: 8, ..cut(Way::Climb, 0.3, 7000.0) };
+    let size = |intervals| {
+        SemiDiscretisation::with_intervals(&plant, &cutter, &cut, intervals).unwrap().verdict(2e-3).multiplier.norm()
+    };
+    let [coarse, middle, fine] = [size(180), size(360), size(1440)];
+    let ratio = (coarse - fine) / (middle - fine);
+    assert!((3.0..6.0).contains(&ratio), "{coarse} {middle} {fine}");
+}
+
+/// Whether motion dies out over time when the tool really mills: in the end the tip comes by the same way from period to period,
+/// to a tenth of the feed of a tooth.
+fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize) -> bool {
+    let cut = Cut { axial_depth: depth, ..*cut };
+    let (turn, dt) = (cut.steps_per_turn, cut.step());
+    let mut milling = Milling::new(cutter, &cut).unwrap();
+    let feed = 0.1e-3 * cutter.teeth().len() as f64 / turn as f64;
+    let (k, c) = (MASS * OMEGA * OMEGA, 2.0 * DAMPING * OMEGA * MASS);
+    let effective = MASS + dt / 2.0 * c + dt * dt / 4.0 * k;
+    let (mut u, mut v, mut a) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    let turns = 120;
+    let mut course = Vec::with_capacity(turns * turn);
+    // A turn with a rigid tool before, so that the first chips are as all others.
+    for step in 0..turn {
+        milling.remember(Node { place: [0.5 + feed * step as f64, RADIUS], motion: [feed, 0.0] });
+    }
+    for step in turn..turns * turn {
+        let mut force = [0.0; 2];
+        let (mut next_u, mut next_v, mut next_a) = (u, v, a);
+        for _ in 0..6 {
+            for axis in 0..2 {
+                let free_v = v[axis] + dt / 2.0 * a[axis];
+                let free_u = u[axis] + dt * v[axis] + dt * dt / 4.0 * a[axis];
+                let push = if axis == 0 { force[axis] } else { 0.0 };
+                next_a[axis] = (push - c * free_v - k * free_u) / effective;
+                next_v[axis] = free_v + dt / 2.0 * next_a[axis];
+                next_u[axis] = free_u + dt * dt / 4.0 * next_a[axis];
+            }
+            let place = [0.5 + feed * step as f64 + next_u[0], RADIUS + next_u[1]];
+            let found = milling.force(step as f64, place).on_tool;
+            force = [found[0], found[1]];
+        }
+        (u, v, a) = (next_u, next_v, next_a);
+        let place = [0.5 + feed * step as f64 + u[0], RADIUS + u[1]];
+        milling.remember(Node { place, motion: [feed + dt * v[0], dt * v[1]] });
+        course.push(u[0]);
+    }
+    let last = course.len() - 10 * turn..course.len();
+    last.map(|step| (course[step] - course[step - period]).abs()).fold(0.0, f64::max) < 0.01e-3
+}
+
+/// Within 5 % of the depth at which vibration in the time domain no longer dies out: equal and unequal pitch, with and without
+/// helix, where the tool stays in the cut (linear theory knows no other).
+#[test]
+fn the_time_domain_has_the_same_critical_depths() {
+    let plant = benchmark_plant();
+    for (way, immersion, rpm, pitches, helix, slices) in [
+        (Way::Climb, 0.5, 5000.0, [180.0; 2], 0.0, 1),
+        (Way::Climb, 0.5, 5000.0, [180.0; 2], 30.0, 8),
+        (Way::Conventional, 0.5, 10_000.0, [180.0; 2], 0.0, 1),
+        (Way::Climb, 0.1, 11_000.0, [180.0; 2], 0.0, 1),
+        (Way::Conventional, 0.1, 7500.0, [180.0; 2], 0.0, 1),
+        (Way::Climb, 0.6, 8000.0, [160.0, 200.0], 0.0, 1),
+    ] {
+        let cutter = benchmark_cutter(&pitches, helix);
+        let cut = Cut { slices, steps_per_turn: 360, ..cut(way, immersion, rpm) };
+        let period = if pitches[0] == pitches[1] { 180 } else { 360 };
+        let ours = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().critical_depth(20e-3).unwrap();
+        let calm = |depth: f64| calm(&cutter, &cut, depth, period);
+        assert!(calm(0.95 * ours) && !calm(1.05 * ours), "{ours} {way:?} {immersion} {rpm} {pitches:?} {helix}");
+    }
+}
+
+/// With its mean in place of `K(t)`, semi-discretisation solves the very equation that the zero order solves in closed form: one
+/// direction and two, equal and unequal pitch.
+#[test]
+fn the_zero_order_solution_is_that_of_mean_coefficients() {
+    let (k, c) = (OMEGA * OMEGA, 2.0 * DAMPING * OMEGA);
+    let a = DMatrix::from_row_slice(
+        4,
+        4,
+        &[0., 0., 1., 0., 0., 0., 0., 1., -k, 0.1 * k, -c, 0.0, 0.1 * k, -0.6 * k, 0.0, -2.0 * c],
+    );
+    let b = DMatrix::from_row_slice(4, 2, &[0., 0., 0., 0., 1.0 / MASS, 0., 0., 1.0 / MASS]);
+    let c = DMatrix::from_row_slice(2, 4, &[1., 0., 0., 0., 0., 1., 0., 0.]);
+    let two_directions = Plant::new(a, b, c).unwrap();
+    for (plant, way, immersion, rpm, pitches) in [
+        (benchmark_plant(), Way::Climb, 1.0, 8000.0, [180.0; 2]),
+        (benchmark_plant(), Way::Conventional, 0.3, 13_000.0, [150.0, 210.0]),
+        (two_directions.clone(), Way::Climb, 0.4, 9000.0, [180.0; 2]),
+        (two_directions, Way::Conventional, 0.2, 7000.0, [165.0, 195.0]),
+    ] {
+        let (cutter, cut) = (benchmark_cutter(&pitches, 0.0), cut(way, immersion, rpm));
+        let zero_order = ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 0.1).unwrap().unwrap();
+        let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap().with_mean_coefficients();
+        let depth = method.critical_depth(0.1).unwrap();
+        assert!((zero_order / depth - 1.0).abs() < 5e-3, "{zero_order} {depth} {way:?} {immersion}");
+    }
+}
+
+fn umons(pitches_deg: [f64; 2], rpm: f64, tangential: f64, radial: f64) -> (Cutter, Cut) {
+    let teeth = pitches_deg.map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
+    let coefficients = Coefficients { tangential, radial, axial: 0.0 };
+    let cutter = Cutter::new(teeth.to_vec(), 30_f64.to_radians(), 0.02, coefficients).unwrap();
+    let cut = Cut {
+        milling: Way::Climb,
+        radial_depth: 4e-3,
+        axial_depth: 1.6e-3,
+        length: 0.09,
+        spindle_speed: rpm * TAU / 60.0,
+        slices: 8,
+        steps_per_turn: 90,
+    };
+    (cutter, cut)
+}
+
+/// The published cuts at the pose of Table 7: aluminium is calm, steel doubles its period, which the zero order does
+/// not see.
+#[test]
+fn aluminium_is_calm_and_steel_flips() {
+    let arm = Arm::six(&testing::tx200(), &testing::spindle(), Variant::Springs, &testing::start()).unwrap();
+    let linear = Linear::of(&arm, &SVector::from(testing::start()), 1.0);
+    // The wall is on the right of the feed.
+    let plant = Plant::of_arm(&linear, [Vector3::x(), Vector3::y()]).unwrap();
+    let (cutter, cut) = umons([170.0, 190.0], 18_700.0, 661.553e6, 253.458e6);
+    let aluminium = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap();
+    assert!(aluminium.verdict(1.6e-3).is_stable());
+    let (cutter, cut) = umons([180.0; 2], 3100.0, 3333e6, 2289e6);
+    let steel = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap();
+    assert_eq!(steel.verdict(1.6e-3).kind(), Kind::Flip);
+    // It flips at two thirds of a millimetre; the zero order sees another instability, at a quarter more.
+    let [depth, zero_order] =
+        [steel.critical_depth(20e-3), ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 20e-3).unwrap()]
+            .map(Option::unwrap);
+    assert!((0.6e-3..0.7e-3).contains(&depth) && zero_order > 1.2 * depth, "{depth} {zero_order}");
+    // Ten times the damping calms it nearly: it more than doubles the depth.
+    let damped = Linear::of(&arm, &SVector::from(testing::start()), 10.0);
+    let damped = Plant::of_arm(&damped, [Vector3::x(), Vector3::y()]).unwrap();
+    let damped = SemiDiscretisation::new(&damped, &cutter, &cut).unwrap();
+    assert!(damped.critical_depth(20e-3).unwrap() > 2.0 * depth);
+}
+
+#[test]
+fn a_plant_of_the_wrong_shape_is_refused() {
+    let zeros = DMatrix::<f64>::zeros;
+    assert_eq!(Plant::new(zeros(2, 2), zeros(2, 1), zeros(2, 2)), Err(PlantError::Shape));
+    assert_eq!(Plant::new(zeros(2, 3), zeros(2, 2), zeros(2, 2)), Err(PlantError::Shape));
+    assert_eq!(Plant::new(zeros(2, 2) * f64::NAN, zeros(2, 2), zeros(2, 2)), Err(PlantError::NotFinite));
+}
+
+/// Exact for a force that rises linearly: an oscillator without damping from rest.
+#[test]
+fn a_step_is_exact_for_a_rising_force() {
+    let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -OMEGA * OMEGA, 0.0]);
+    let b = DMatrix::from_row_slice(2, 2, &[0.0, 0.0, 1.0, 0.0]);
+    let plant = Plant::new(a, b, DMatrix::identity(2, 2)).unwrap();
+    let h = 1e-4;
+    let [e, constant, rising] = plant.step(h);
+    let (sine, cosine) = libm::sincos(OMEGA * h);
+    let x = &e * DVector::from([1.0, 0.0].to_vec());
+    assert!((x[0] - cosine).abs() < 1e-12 && (x[1] + OMEGA * sine).abs() < 1e-8);
+    // x'' + w^2 x = s / h has x = (s - sin(w s) / w) / (h w^2).
+    let expected = (h - sine / OMEGA) / (h * OMEGA * OMEGA);
+    assert!((rising[(0, 0)] / expected - 1.0).abs() < 1e-9);
+    let both = (1.0 - cosine) / (OMEGA * OMEGA);
+    assert!(((rising[(0, 0)] + constant[(0, 0)]) / both - 1.0).abs() < 1e-9);
+}
