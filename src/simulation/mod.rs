@@ -7,6 +7,7 @@
 //! [`stability`] whether small motions die out.
 
 pub mod arm;
+pub mod coupled;
 pub mod drive;
 pub mod integrator;
 pub mod milling;

@@ -3,6 +3,7 @@
 use super::arm::{AnyArm, Arm, Missing};
 use super::modes::{Linear, Mode};
 use super::setup::Setup;
+use crate::cutting::Milling;
 use nalgebra::{Complex, Matrix3, SVector, Vector3};
 
 /// What is to be found out.
@@ -40,6 +41,15 @@ pub struct CutFrame {
     pub feed: Vector3<f64>,
     /// Out of the wall.
     pub normal: Vector3<f64>,
+}
+
+impl CutFrame {
+    /// For a cutter that turns clockwise as seen from its spindle: `axis` points from the work to the spindle. In climb milling
+    /// the wall is to the right of the feed.
+    pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: Milling) -> Self {
+        let left = axis.cross(&feed).normalize();
+        Self { feed, normal: if milling == Milling::Climb { left } else { -left } }
+    }
 }
 
 /// Modes of an arm somewhere on its pass.
