@@ -1,8 +1,10 @@
 //! What may be said on the command line.
 
 use crate::assessment::roundness::Sector;
+use crate::config::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides};
 use crate::placement::problem::Placement;
 use crate::robot::angles::yaw_from_q4;
+use crate::simulation::arm::Variant;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -31,6 +33,8 @@ pub(super) enum Command {
     Identify(IdentifyCommand),
     /// Roundness of measured points: the four reference circles of ISO 12181
     Circularity(CircularityOptions),
+    /// Tell whether a cut chatters: modes of the arm, frequency response at the tip, stability lobes, verdict
+    Stability(StabilityOptions),
 }
 
 #[derive(Debug, Args)]
@@ -168,6 +172,45 @@ pub(super) struct CircularityOptions {
     pub json: bool,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct StabilityOptions {
+    /// Simulation file (TOML)
+    pub config: PathBuf,
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Folder for the results [default: results/<name of the simulation file>-stability]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: as many as processors]; it does not change the result
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+    /// Print one JSON document instead of a text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What takes the place of a simulation file's.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct ModelArguments {
+    /// How much of the arm is modelled, instead of the file's
+    #[arg(long, value_name = "V", value_parser = variant)]
+    pub variant: Option<Variant>,
+    /// All damping of the arm times S, instead of the file's
+    #[arg(long, value_name = "S", value_parser = damping_scale, allow_hyphen_values = true)]
+    pub damping_scale: Option<f64>,
+    /// Spindle speed in turns a minute, instead of the file's
+    #[arg(long, value_name = "N", value_parser = rpm, allow_hyphen_values = true)]
+    pub spindle_rpm: Option<f64>,
+}
+
+impl From<&ModelArguments> for Overrides {
+    fn from(model: &ModelArguments) -> Self {
+        let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
+        Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
+    }
+}
+
 /// A placement: the workpiece origin in the robot base frame, and its yaw.
 #[derive(Debug, Args)]
 #[group(skip)]
@@ -205,6 +248,21 @@ impl PlaceArguments {
         };
         Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
     }
+}
+
+fn variant(text: &str) -> Result<Variant, String> {
+    let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
+    found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+}
+
+fn damping_scale(text: &str) -> Result<f64, String> {
+    let allowed = || format!("allowed: a number from 0 to {MOST_DAMPING_SCALE}");
+    finite(text).ok().filter(|scale| (0.0..=MOST_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
+}
+
+fn rpm(text: &str) -> Result<f64, String> {
+    let allowed = || format!("allowed: a number above 0 and not above {FASTEST_RPM}");
+    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= FASTEST_RPM).ok_or_else(allowed)
 }
 
 fn finite(text: &str) -> Result<f64, String> {

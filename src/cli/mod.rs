@@ -13,6 +13,7 @@ mod identify;
 mod place;
 mod progress;
 mod score;
+mod stability;
 
 use crate::assessment::study::AssessError;
 use crate::compensation::NotCompensated;
@@ -73,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Compensate(options) => compensate::run(&options),
         Command::Identify(command) => identify::run(&command),
         Command::Circularity(options) => circularity::run(&options),
+        Command::Stability(options) => stability::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -142,7 +144,13 @@ impl OutFolder {
 /// The folder asked for, or `results/` and the name of the config; tried before the long work, so that one that cannot be
 /// written to is found out now.
 fn out_folder(asked: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
-    let name = config.file_stem().unwrap_or_default();
+    out_folder_named(asked, config, "")
+}
+
+/// As [`out_folder`], with an ending to the name, for a command that shares its config with another.
+fn out_folder_named(asked: Option<&Path>, config: &Path, ending: &str) -> Result<OutFolder, Failure> {
+    let mut name = config.file_stem().unwrap_or_default().to_owned();
+    name.push(ending);
     let path = asked.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
     Ok(OutFolder { folder: Folder::create(&path).map_err(Failure::Output)?, is_new })

@@ -2,7 +2,7 @@
 
 use super::arguments::PlaceOptions;
 use super::progress::Watcher;
-use super::score::mention_cancellation;
+use super::score::{mention_cancellation, path_stability};
 use super::{Failure, on_threads, out_folder, print, say};
 use crate::config::read_run;
 use crate::placement::control::Control;
@@ -33,7 +33,13 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         }
     })?;
 
-    let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference };
+    let [best, _, worst, _] = &outcome.cases;
+    let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
+    let stability = match &run.chatter {
+        Some(chatter) => Some(on_threads(options.threads, || path_stability(&run.problem, chatter, plans))?.0?),
+        None => None,
+    };
+    let context = Context { inputs: run.inputs, search, transfer: run.transfer, reference: run.reference, stability };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
     let document = || json::place_json(&outcome, &context, &Timing { wall, threads });
     let where_to = |folder| format!("; results in {folder}");

@@ -19,6 +19,7 @@
 
 mod arrays;
 mod assess;
+mod chatter;
 mod compensate;
 mod cutting;
 mod identify;
@@ -42,4 +43,4 @@ pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run};
-pub use simulation::{Overrides, SimulationRun, read_simulation};
+pub use simulation::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation};

@@ -1,8 +1,9 @@
 //! Run files.
 
+use super::chatter::chatter_from;
 use super::cutting::cutting_from;
 use super::reader::{Field, NamedFile, Table};
-use super::robot::robot_from;
+use super::robot::{moving_robot_from, robot_from};
 use super::source::{Source, input_file};
 use super::tables::{
     cell_from, check_confidence, check_tables, constraints_from, criterion_from, redundancy_from, reference_from,
@@ -12,6 +13,8 @@ use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
 use crate::placement::settings::{SearchSettings, TransferSettings};
 use crate::robot::Robot;
+use crate::simulation::arm::Variant;
+use crate::simulation::chatter::Chatter;
 use crate::task::{Imported, Task, ToolPath, parse_csv};
 use std::path::Path;
 
@@ -28,13 +31,15 @@ pub struct Run {
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
     pub reference: Option<Reference>,
+    /// What is to be cut along the path, where its stability is asked for.
+    pub chatter: Option<Chatter>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
 }
 
 /// Reads a run file and the robot and task files that it names. Top-level keys: `robot` and `task` (paths relative to
 /// the folder of the run file), `[spindle]`, `[cell]`, `[constraints]` and `[redundancy]`; optionally `[criterion]`,
-/// `[search]`, `[transfer]` and `[reference]`; and `[cutting]` if, and only if, the task has no force columns.
+/// `[search]`, `[transfer]`, `[stability]` and `[reference]`; and `[cutting]` if, and only if, the task has no force columns.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
@@ -42,20 +47,33 @@ pub struct Run {
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
     let source = Source::read(file)?;
     let document = source.parse()?;
-    let [robot, task, spindle, cell, constraints, criterion, redundancy, search, transfer, cutting, reference] =
-        Table::root(&document).fields([
-            "robot",
-            "task",
-            "spindle",
-            "cell",
-            "constraints",
-            "criterion",
-            "redundancy",
-            "search",
-            "transfer",
-            "cutting",
-            "reference",
-        ])?;
+    let [
+        robot,
+        task,
+        spindle,
+        cell,
+        constraints,
+        criterion,
+        redundancy,
+        search,
+        transfer,
+        cutting,
+        stability,
+        reference,
+    ] = Table::root(&document).fields([
+        "robot",
+        "task",
+        "spindle",
+        "cell",
+        "constraints",
+        "criterion",
+        "redundancy",
+        "search",
+        "transfer",
+        "cutting",
+        "stability",
+        "reference",
+    ])?;
     let spindle = spindle_from(&spindle.table()?)?;
     let cell = cell_from(&cell.table()?)?;
     let constraints = constraints_from(&constraints.table()?)?;
@@ -69,7 +87,11 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
 
     let robot_file = robot.named_file()?;
     let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
-    let robot = robot_from(&robot_source)?;
+    let chatter = stability.optional(|field| chatter_from(&field.table()?))?;
+    let robot = match &chatter {
+        Some(chatter) => moving_robot_from(&robot_source, chatter.variant >= Variant::Orthogonal)?,
+        None => robot_from(&robot_source)?,
+    };
     if let Some(table) = &scoring {
         check_confidence(table, &criterion, &robot)?;
     }
@@ -89,7 +111,7 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
     }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
-    Ok(Run { problem, search, transfer, inputs, reference, notes })
+    Ok(Run { problem, search, transfer, inputs, reference, chatter, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the `[cutting]` table.

@@ -199,6 +199,12 @@ impl Problem {
             .then(&self.spindle.flange_from_tool.inverse().cast())
     }
 
+    /// The feed at every path point in the base frame, with the workpiece placed.
+    pub fn feeds(&self, placement: &Placement) -> Vec<Vector3<f64>> {
+        let rotation = placement.base_from_workpiece().rotation;
+        self.task.points().iter().map(|point| rotation * point.feed).collect()
+    }
+
     /// Time from path point `point - 1` to `point` at the given feed, both in one segment. s
     pub fn step_time(&self, point: usize) -> f64 {
         self.step_length(point) / self.redundancy.feed

@@ -2,6 +2,7 @@
 
 use super::json::{placement as placement_json, put_deviation};
 use super::number::{Unit, fixed};
+use super::stability::PathStability;
 use super::text::aligned;
 use super::words;
 use crate::placement::feasibility::{Explanation, Finding};
@@ -15,8 +16,8 @@ const FINE_DEG: Unit = Unit { decimals: 6, ..Unit::ANGLE_DEG };
 /// Millimetres likewise.
 const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
 
-/// What `stead score --json` prints.
-pub fn score_json(score: &Score) -> Value {
+/// What `stead score --json` prints, with the critical depths along both plans where they were asked for.
+pub fn score_json(score: &Score, stability: Option<&PathStability>) -> Value {
     let plan = |plan: &Plan| {
         let mut value = json!({
             "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
@@ -26,12 +27,16 @@ pub fn score_json(score: &Score) -> Value {
         put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
         value
     };
-    json!({
+    let mut document = json!({
         "placement": placement_json(&score.placement),
         "feasible": true,
         "best": plan(&score.best),
         "worst": plan(&score.worst),
-    })
+    });
+    if let (Some(stability), Some(object)) = (stability, document.as_object_mut()) {
+        object.insert("stability".to_owned(), stability.document(true));
+    }
+    document
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
@@ -54,7 +59,7 @@ pub fn infeasible_json(nothing: &NothingFeasible) -> Value {
 }
 
 /// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
-pub fn score_text(score: &Score) -> String {
+pub fn score_text(score: &Score, stability: Option<&PathStability>) -> String {
     let row = |name: &str, plan: &Plan| {
         let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
         row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
@@ -67,7 +72,8 @@ pub fn score_text(score: &Score) -> String {
     let last = header.len() - 1;
     let header = header.into_iter().map(str::to_owned).collect();
     let rows = [header, row("best", &score.best), row("worst", &score.worst)];
-    format!("{}\n\n{}", place_text(&score.placement), aligned(&rows, &[0, last]))
+    let stability = stability.map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
+    format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
 }
 
 /// What `stead explain --json` prints.

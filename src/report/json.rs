@@ -23,7 +23,7 @@ pub struct Timing {
 
 /// What `stead place --json` prints.
 pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
-    let mut document = common(outcome, context);
+    let mut document = common(outcome, context, true);
     document.insert("cases".to_owned(), cases(outcome, true));
     document.insert("threads".to_owned(), json!(timing.threads));
     document.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
@@ -34,7 +34,7 @@ pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Valu
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
 pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> Value {
-    let mut document = common(outcome, context);
+    let mut document = common(outcome, context, false);
     document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
     document.insert("robot".to_owned(), json!(problem.robot.name()));
     document.insert("seed".to_owned(), json!(context.search.seed));
@@ -55,20 +55,22 @@ pub fn bytes(document: &Value) -> Vec<u8> {
     format!("{document:#}\n").into_bytes()
 }
 
-fn common(outcome: &Outcome, context: &Context) -> Map<String, Value> {
+fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {
     let reference = context
         .reference
         .as_ref()
         .map_or(Value::Null, |reference| json!({ "source": reference.source, "case_mm": reference.case_mm }));
     let refinements: Vec<Value> = outcome.refinements.iter().map(refinement).collect();
-    Map::from_iter([
+    let mut document = Map::from_iter([
         ("evaluations".to_owned(), json!(outcome.evaluations)),
         ("states".to_owned(), json!(outcome.states)),
         ("table".to_owned(), outcome.tabled.as_ref().map_or(Value::Null, tabled)),
         ("interrupted".to_owned(), json!(outcome.interrupted)),
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
-    ])
+    ]);
+    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), found.document(with_points))));
+    document
 }
 
 /// Errors of a table, relative.

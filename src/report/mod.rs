@@ -12,6 +12,7 @@ pub mod json;
 pub mod number;
 pub mod output;
 pub mod picture;
+pub mod stability;
 pub mod tables;
 pub mod text;
 pub(crate) mod words;
@@ -27,6 +28,7 @@ use crate::input::{InputFile, Reference};
 use crate::placement::outcome::Outcome;
 use crate::placement::problem::Problem;
 use crate::placement::settings::{SearchSettings, TransferSettings};
+use stability::PathStability;
 use std::path::PathBuf;
 
 /// What the reports state besides the problem and its result.
@@ -40,13 +42,15 @@ pub struct Context {
     pub transfer: TransferSettings,
     /// Figures to compare with, where there are any.
     pub reference: Option<Reference>,
+    /// How deep may be cut along the path, where that was asked for.
+    pub stability: Option<PathStability>,
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`. Returns the
-/// paths in that order.
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
+/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`. Returns the paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -60,7 +64,7 @@ pub fn write_placement(
     let summary = json::summary_json(problem, outcome, context);
     let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst)?;
     let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst)?;
-    let files = [
+    let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst.plan)?),
         ("worst.csv", tables::plan(&worst.plan)?),
@@ -77,5 +81,8 @@ pub fn write_placement(
         ("deflection-map-worst.svg", map_worst.into_bytes()),
         ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
     ];
+    if let Some(stability) = &context.stability {
+        files.extend(stability.files([&best.plan, &worst.plan])?);
+    }
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

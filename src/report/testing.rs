@@ -70,6 +70,7 @@ pub fn context() -> Context {
             source: "Caro et al. 2013, Table III".to_owned(),
             case_mm: [0.083, 0.35, 0.82, 1.2],
         }),
+        stability: None,
     }
 }
 

@@ -24,6 +24,10 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     if let Some(reference) = &context.reference {
         line(&mut text, &format!("ref: {}", reference.source));
     }
+    if let Some(stability) = &context.stability {
+        text.push('\n');
+        text.push_str(&stability.text(["best placement", "worst placement"]));
+    }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
     match &outcome.tabled {

@@ -2,12 +2,14 @@
 //!
 //! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
 //! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
-//! [`setup`] what a job needs of both, [`motion`] the way that the joints are commanded, [`integrator`] Newmark's method, [`modes`] what swings how fast.
-//! [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it, [`roughness`] the wall that stays,
-//! [`stability`] whether small motions die out.
+//! [`motion`] the way that the joints are commanded, [`setup`] an arm with its motion, [`integrator`] Newmark's method,
+//! [`modes`] what swings how fast. [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it,
+//! [`roughness`] the wall that stays. [`stability`] tells whether small motions die out, [`survey`] that of an arm in a cut, and
+//! [`chatter`] the same along a tool path.
 
 pub mod arm;
 pub mod coupled;
+pub mod chatter;
 pub mod drive;
 pub mod integrator;
 pub mod milling;

@@ -21,6 +21,9 @@ pub struct Overrides {
     pub spindle_speed: Option<f64>,
 }
 
+/// Damping times more than this is none of an arm.
+pub const MOST_DAMPING_SCALE: f64 = 1e4;
+
 /// The fields of a simulation file that make a [`Setup`].
 pub(super) struct ArmFields<'a> {
     pub robot: Field<'a>,
@@ -43,7 +46,8 @@ pub(super) fn setup_from(
     let words = Variant::ALL.map(|variant| (variant.word(), variant));
     let variant = fields.variant.optional(|field| field.one_of(&words))?;
     let variant = overrides.variant.or(variant).unwrap_or(Variant::Springs);
-    let scale = |field: &Field<'_>| field.number_where("a number from 0 to 1e6", |value| (0.0..=1e6).contains(&value));
+    let allowed = format!("a number from 0 to {MOST_DAMPING_SCALE}");
+    let scale = |field: &Field<'_>| field.number_where(&allowed, |value| (0.0..=MOST_DAMPING_SCALE).contains(&value));
     let damping_scale = fields.damping_scale.optional(scale)?;
     let damping_scale = overrides.damping_scale.or(damping_scale).unwrap_or(1.0);
     let spindle = spindle_from(&fields.spindle.table()?)?;

@@ -24,7 +24,7 @@ pub(in crate::config) const KEYS: [&str; 13] = [
 ];
 
 /// Speeds beyond this are those of no spindle. rpm
-pub(in crate::config) const FASTEST_RPM: f64 = 1e6;
+pub const FASTEST_RPM: f64 = 1e6;
 
 /// Reads the keys of [`KEYS`] from a table: the cutter and the cut, for work of a length (m), in so many slices and steps a
 /// turn. `pitch_deg` may be left out for equal ones, `runout_um`, `helix_deg` and `ka_mpa` where they are 0.

@@ -6,7 +6,8 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use arm::Overrides;
+pub use arm::{MOST_DAMPING_SCALE, Overrides};
+pub use milling::FASTEST_RPM;
 
 use super::reader::{Field, Table};
 use super::source::Source;
@@ -15,7 +16,7 @@ use crate::simulation::milling::{Cut, Cutter};
 use crate::simulation::setup::Setup;
 use crate::simulation::survey::Plan;
 use arm::{ArmFields, setup_from};
-pub(super) use milling::{FASTEST_RPM, KEYS as MILLING_KEYS, milling_from};
+pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use std::path::Path;
 use survey::plan_from;
 

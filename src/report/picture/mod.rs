@@ -12,11 +12,14 @@ mod convergence;
 mod cutting;
 mod deflection_map;
 mod deflections;
+mod frequency_response;
 mod hatch;
 mod indicators;
 mod lettering;
+mod lobes;
 mod measurement_plan;
 mod patches;
+mod path_stability;
 mod plane_view;
 mod polar;
 mod scene;
@@ -28,8 +31,11 @@ pub use convergence::convergence;
 pub use cutting::cutting;
 pub use deflection_map::deflection_map;
 pub use deflections::deflections;
+pub use frequency_response::frequency_response;
 pub use indicators::indicators;
+pub use lobes::lobes;
 pub use measurement_plan::measurement_plan;
+pub use path_stability::path_stability;
 pub use polar::polar;
 
 #[cfg(test)]

@@ -53,21 +53,32 @@ fn statistics(run: &Run, window: [f64; 2]) -> [[f64; 4]; 2] {
 }
 
 #[test]
-fn trial() {
-    for variant in Variant::ALL {
-        for steps in [90, 360] {
-            for fast in [true, false] {
-                let setup = setup(variant, 1.0, 3.7 / 60.0, 0.1079167);
-                let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, steps));
-                let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
-                let tic = std::time::Instant::now();
-                let run = if fast { job.run_fast() } else { job.run() }.unwrap();
-                eprintln!("{variant:?} {steps} fast={fast} {:.3} s, {} steps {:?} evals {}", tic.elapsed().as_secs_f64(), run.samples.len(), run.end, run.evaluations);
-                let [x, y] = statistics(&run, [0.4, 1.4]);
-                eprintln!("   x {x:.3?}\n   y {y:.3?}");
-                let deepest = run.samples.iter().map(|s| s.deflection[1]).fold(0.0, f64::max);
-                eprintln!("   deflection {deepest} last {:?}", run.samples.last().unwrap().deflection);
+fn steel_trial() {
+    for damping in [1.0, 10.0] {
+        for (steps, fast) in [(90, true), (180, true), (90, false)] {
+            let setup = setup(Variant::Springs, damping, 0.28 / 60.0, 0.103);
+            let (cutter, cut) = (cutter(180.0, 6.929e-6, 3333e6, 2289e6), cut(3100.0, steps));
+            let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
+            let tic = std::time::Instant::now();
+            let run = if fast { job.run_fast() } else { job.run() }.unwrap();
+            eprintln!("damping {damping} {steps} fast={fast} {:.3} s, {} steps {:?} evals {}", tic.elapsed().as_secs_f64(), run.samples.len(), run.end, run.evaluations);
+            for from in [2.0, 5.0, 10.0, 15.0] {
+                let [x, y] = statistics(&run, [from, from + 3.0]);
+                eprintln!("   x {x:.3?} y {y:.3?}");
             }
+            let wall = crate::simulation::roughness::Profile::of_wall(&run.trail, &cutter, &cut, 0.8e-3, [0.0, 0.09], 10e-6);
+            eprintln!("   wall {:?} {:?} {:.3}", wall.roughness(), wall.filtered(2.5e-3).roughness(), tic.elapsed().as_secs_f64());
         }
+    }
+    let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.1079167);
+    let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, 360));
+    let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
+    let run = job.run_fast().unwrap();
+    for height in [0.2e-3, 0.8e-3, 1.4e-3] {
+    for span in [[0.0, 0.09], [0.001, 0.089], [0.005, 0.085], [0.0, 0.095]] {
+        let wall = crate::simulation::roughness::Profile::of_wall(&run.trail, &cutter, &cut, height, span, 10e-6);
+        let r = |p: &crate::simulation::roughness::Profile| { let r = p.roughness().unwrap(); [r.mean, r.root_mean_square, r.total].map(|v| (v * 1e9).round() / 1e3) };
+        eprintln!("   alu wall {span:?} {:?} {:?} ends {:?} {:?}", r(&wall), r(&wall.filtered(2.5e-3)), wall.heights[0], wall.heights.last());
+    }
     }
 }

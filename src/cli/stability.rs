@@ -1,0 +1,21 @@
+//! `stead stability`: whether a cut chatters, then files, then a text.
+
+use super::arguments::StabilityOptions;
+use super::{Failure, on_threads, out_folder_named};
+use crate::config::{Overrides, read_simulation};
+use crate::report::stability::{stability_json, stability_text, write_stability};
+use crate::simulation::survey::survey;
+
+pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
+    let run = read_simulation(&options.config, &Overrides::from(&options.model))?;
+    let out = out_folder_named(options.out.as_deref(), &options.config, "-stability")?;
+    let (found, _) = on_threads(options.threads, || survey(&run.setup, &run.cutter, &run.cut, &run.plan))?;
+    let found = found.map_err(|error| {
+        out.give_up();
+        Failure::Job(error.to_string())
+    })?;
+    let written = write_stability(&out.folder, &run, &found);
+    let document = || stability_json(&run, &found);
+    let where_to = |folder| format!("\nresults in {folder}\n");
+    out.show(written, options.json, document, where_to, |where_to| stability_text(&run, &found) + &where_to)
+}
