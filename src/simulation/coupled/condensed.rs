@@ -199,14 +199,12 @@ pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError>
     let motion = process.motion;
     let mut frozen = Frozen::new(arm, motion, &process.plane, h, steps);
     let reference = Arm::<N>::spread(&motion.motors(0.0).0);
-    let mut state = Yielded {
-        u: arm.at_rest(&reference) - reference,
-        speed: SVector::zeros(),
-        acceleration: SVector::zeros(),
-    };
+    let mut state =
+        Yielded { u: arm.at_rest(&reference) - reference, speed: SVector::zeros(), acceleration: SVector::zeros() };
     let start = process.plane.place(&arm.chain.at(&(reference + state.u)).tip());
     let mut force = process.force(0.0, start);
-    let mut end = process.keep(start, [motion.ramp().at(0.0).1, 0.0], force).map_or_else(End::Limit, |()| End::Complete);
+    let mut end =
+        process.keep(start, [motion.ramp().at(0.0).1, 0.0], force).map_or_else(End::Limit, |()| End::Complete);
     for index in 1..=steps {
         if end != End::Complete {
             break;
