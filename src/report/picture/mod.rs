@@ -24,6 +24,7 @@ mod path_stability;
 mod plane_view;
 mod polar;
 mod scene;
+mod simulation;
 
 pub use cell::cell;
 pub use circularity_map::circularity_map;
@@ -39,6 +40,7 @@ pub use measurement_plan::measurement_plan;
 pub use open_region::open_region;
 pub use path_stability::path_stability;
 pub use polar::polar;
+pub use simulation::{forces, turns, wall};
 
 #[cfg(test)]
 mod assessment_tests;
