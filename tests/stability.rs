@@ -118,7 +118,7 @@ fn bad_input_is_named_with_file_line_and_field() {
         let line = bench.replace(file, from, to);
         let ended = stability(&bench, STEEL, &[]);
         assert_eq!(ended.code, Some(2), "{}", ended.stderr);
-        ended.assert_says(parts);
+        ended.assert_says(&parts);
         ended.assert_says(&["; allowed: "]);
         // What the robot file lacks is located there, anything else where it stands.
         if !to.starts_with("kuka") {
