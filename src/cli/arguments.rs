@@ -33,6 +33,8 @@ pub(super) enum Command {
     Identify(IdentifyCommand),
     /// Roundness of measured points: the four reference circles of ISO 12181
     Circularity(CircularityOptions),
+    /// Simulate a milling pass with an arm that yields: forces, the wall that is left, and whether the cut stays calm
+    Simulate(SimulateOptions),
     /// Tell whether a cut chatters: modes of the arm, frequency response at the tip, stability lobes, verdict
     Stability(StabilityOptions),
 }
@@ -168,6 +170,23 @@ pub(super) struct CircularityOptions {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SimulateOptions {
+    /// Simulation file (TOML)
+    pub config: PathBuf,
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Use the condensed model, with mass matrix and Jacobian frozen every few millimetres
+    #[arg(long)]
+    pub fast: bool,
+    /// Folder for the results [default: results/<name of the simulation file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document instead of a text
     #[arg(long)]
     pub json: bool,
 }

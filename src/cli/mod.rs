@@ -13,6 +13,7 @@ mod identify;
 mod place;
 mod progress;
 mod score;
+mod simulate;
 mod stability;
 
 use crate::assessment::study::AssessError;
@@ -74,6 +75,7 @@ pub fn main() -> ExitCode {
         Command::Compensate(options) => compensate::run(&options),
         Command::Identify(command) => identify::run(&command),
         Command::Circularity(options) => circularity::run(&options),
+        Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
     };
     match result {

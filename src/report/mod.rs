@@ -12,6 +12,7 @@ pub mod json;
 pub mod number;
 pub mod output;
 pub mod picture;
+pub mod simulation;
 pub mod stability;
 pub mod tables;
 pub mod text;

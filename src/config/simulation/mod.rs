@@ -1,6 +1,7 @@
 //! Simulation files: the config of `stead simulate` and `stead stability`.
 
 mod arm;
+mod look;
 mod milling;
 mod survey;
 #[cfg(test)]
@@ -13,9 +14,11 @@ use super::reader::{Field, Table};
 use super::source::Source;
 use crate::input::{InputError, InputFile};
 use crate::simulation::milling::{Cut, Cutter};
+use crate::simulation::outcome::Look;
 use crate::simulation::setup::Setup;
 use crate::simulation::survey::Plan;
 use arm::{ArmFields, setup_from};
+use look::{LookFields, check_step, look_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use std::path::Path;
 use survey::plan_from;
@@ -29,8 +32,10 @@ pub struct SimulationRun {
     pub cutter: Cutter,
     /// What it cuts.
     pub cut: Cut,
-    /// How far before the work the pass starts. m
+    /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
+    /// How to look at the simulated pass.
+    pub look: Look,
     /// What is to be found out of its stability.
     pub plan: Plan,
     /// The files that were read: config, robot.
@@ -42,8 +47,8 @@ const SLICES: u64 = 32;
 const STEPS_PER_TURN: u64 = 360;
 
 /// Reads a simulation file and the robot file that it names. Top-level keys: `robot` (its path relative to the folder of the
-/// file), `[spindle]`, with mass, `[pass]`, `[work]` and `[milling]`; optionally `variant`, `damping_scale`, `[simulation]` and
-/// `[stability]`. The shipped files explain each field.
+/// file), `[spindle]`, with mass, `[pass]`, `[work]` and `[milling]`; optionally `variant`, `damping_scale`, `[simulation]`,
+/// `[stability]` and `[published]`. The shipped files explain each field.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
@@ -51,38 +56,41 @@ const STEPS_PER_TURN: u64 = 360;
 pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
     let source = Source::read(file)?;
     let document = source.parse()?;
-    let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability] = Table::root(&document)
-        .fields([
-        "robot",
-        "variant",
-        "damping_scale",
-        "spindle",
-        "pass",
-        "work",
-        "milling",
-        "simulation",
-        "stability",
-    ])?;
+    let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability, published] =
+        Table::root(&document).fields([
+            "robot",
+            "variant",
+            "damping_scale",
+            "spindle",
+            "pass",
+            "work",
+            "milling",
+            "simulation",
+            "stability",
+            "published",
+        ])?;
     let mut inputs = vec![source.as_config()];
     let setup = setup_from(&ArmFields { robot, variant, damping_scale, spindle, pass }, overrides, &mut inputs)?;
     let [length, gap] = work.table()?.fields(["length_mm", "gap_mm"])?;
     let length = length.positive()? / 1e3;
     let gap = gap.number_where("a finite number not below 0", |value| value >= 0.0)? / 1e3;
-    let (slices, steps) = simulation
-        .optional(|field| {
-            let [slices, steps] = field.table()?.fields(["slices", "steps_per_turn"])?;
-            let whole = |field: &Field<'_>, most, default| {
-                field.optional(|field| field.integer(1..=most)).map(|value| value.unwrap_or(default))
-            };
-            Ok((whole(&slices, 1024, SLICES)?, whole(&steps, 100_000, STEPS_PER_TURN)?))
-        })?
-        .unwrap_or((SLICES, STEPS_PER_TURN));
+    let keys = simulation.optional(Field::table)?;
+    let keys = keys.map(|table| table.fields(["slices", "steps_per_turn", "window_s", "wall_height_mm", "cutoff_mm"]));
+    let keys = keys.transpose()?;
+    let whole = |index: usize, most, default: u64| {
+        let field = keys.as_ref().map(|keys| &keys[index]);
+        let found = field.map(|field| field.optional(|field| field.integer(1..=most))).transpose()?.flatten();
+        Ok::<_, InputError>(found.unwrap_or(default) as usize)
+    };
+    let (slices, steps) = (whole(0, 1024, SLICES)?, whole(1, 100_000, STEPS_PER_TURN)?);
     let table = milling.table()?;
     table.fields(MILLING_KEYS)?;
-    let (cutter, mut cut) = milling_from(&table, length, slices as usize, steps as usize)?;
+    let (cutter, mut cut) = milling_from(&table, length, slices, steps)?;
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;
     }
     let plan = plan_from(&stability, &setup, &cutter, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap, plan, inputs })
+    check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
+    let look = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap, look, plan, inputs })
 }

@@ -23,6 +23,7 @@ mod path_stability;
 mod plane_view;
 mod polar;
 mod scene;
+mod simulation;
 
 pub use cell::cell;
 pub use circularity_map::circularity_map;
@@ -37,6 +38,7 @@ pub use lobes::lobes;
 pub use measurement_plan::measurement_plan;
 pub use path_stability::path_stability;
 pub use polar::polar;
+pub use simulation::{forces, turns, wall};
 
 #[cfg(test)]
 mod assessment_tests;

@@ -117,3 +117,64 @@ pub fn least_steps(cutter: &Cutter) -> usize {
     let smallest = cutter.teeth().iter().fold(TAU, |smallest, tooth| tooth.pitch.min(smallest));
     (STEPS_PER_PITCH * TAU / smallest - 1e-9).ceil() as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulation::milling::{Coefficients, CutterError, Tooth};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    const RADIUS: f64 = 5e-3;
+    const K: Coefficients = Coefficients { tangential: 6e8, radial: 2e8, axial: 0.0 };
+
+    #[test]
+    fn what_cannot_be_cut_is_refused() {
+        let teeth = [170.0_f64, 190.0].map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
+        let cutter = Cutter::new(teeth.to_vec(), 0.5, 0.02, K).unwrap();
+        let good = Cut {
+            milling: Milling::Climb,
+            radial_depth: 4e-3,
+            axial_depth: 1.6e-3,
+            length: 0.09,
+            spindle_speed: 2e3,
+            slices: 32,
+            steps_per_turn: 90,
+        };
+        assert_eq!(good.check(&cutter), Ok(()));
+        let refused = |change: &dyn Fn(&mut Cut)| {
+            let mut cut = good;
+            change(&mut cut);
+            cut.check(&cutter).unwrap_err()
+        };
+        for value in [0.0, -1.0, 10.001e-3, f64::NAN] {
+            assert!(matches!(refused(&|cut| cut.radial_depth = value), CutError::Width { .. }));
+        }
+        for value in [0.0, 20.001e-3, f64::NAN] {
+            assert!(matches!(refused(&|cut| cut.axial_depth = value), CutError::Depth { .. }));
+        }
+        for value in [0.0, f64::INFINITY, f64::NAN] {
+            assert!(matches!(refused(&|cut| cut.length = value), CutError::Positive { .. }));
+            assert!(matches!(refused(&|cut| cut.spindle_speed = value), CutError::Positive { .. }));
+        }
+        assert_eq!(refused(&|cut| cut.slices = 0), CutError::Slices);
+        assert!(matches!(refused(&|cut| cut.steps_per_turn = 12), CutError::Steps { least: 13, .. }));
+        let make = |pitch: f64, radius: f64, helix, flute, coefficients| {
+            let teeth = vec![Tooth { pitch, radius: RADIUS }, Tooth { pitch: PI, radius }];
+            Cutter::new(teeth, helix, flute, coefficients)
+        };
+        assert!(make(PI, 1e-3, 0.5, 0.01, K).is_ok());
+        assert!(matches!(Cutter::new(vec![], 0.0, 1.0, K), Err(CutterError::Toothless)));
+        for pitch in [3.0, 0.0, f64::NAN] {
+            assert!(matches!(make(pitch, 1e-3, 0.5, 0.01, K), Err(CutterError::Pitch { .. })));
+        }
+        for radius in [0.0, f64::INFINITY, f64::NAN] {
+            assert!(matches!(make(PI, radius, 0.5, 0.01, K), Err(CutterError::Radius { .. })));
+        }
+        assert!(matches!(make(PI, 1e-3, FRAC_PI_2, 0.01, K), Err(CutterError::Helix { .. })));
+        assert!(matches!(make(PI, 1e-3, 0.0, 0.0, K), Err(CutterError::Flute { .. })));
+        for tangential in [0.0, f64::NAN, f64::INFINITY] {
+            let coefficients = Coefficients { tangential, ..K };
+            assert!(matches!(make(PI, 1e-3, 0.0, 0.01, coefficients), Err(CutterError::Coefficient { .. })));
+        }
+    }
+}

@@ -38,6 +38,7 @@ pub struct Milling {
     passes: Passes,
     coefficients: Coefficients,
     slice: f64,
+    slices: usize,
     largest: f64,
     smallest: f64,
     /// The farthest that the centre came along the feed in a turn. m
@@ -97,6 +98,14 @@ impl Milling {
     /// # Errors
     /// [`CutError`] if the cutter cannot do the cut.
     pub fn new(cutter: &Cutter, cut: &Cut) -> Result<Self, CutError> {
+        Self::with_room(cutter, cut, 0)
+    }
+
+    /// The same with room for a number of steps.
+    ///
+    /// # Errors
+    /// [`CutError`] if the cutter cannot do the cut.
+    pub fn with_room(cutter: &Cutter, cut: &Cut, steps: usize) -> Result<Self, CutError> {
         cut.check(cutter)?;
         let sense = cut.sense();
         let slice = cut.axial_depth / cut.slices as f64;
@@ -114,10 +123,11 @@ impl Milling {
             lags: lags.collect(),
             rest: (cut.slices - 1) % LANES + 1,
             stock: Stock { length: cut.length, top },
-            trail: Trail::default(),
+            trail: Trail::with_room(steps),
             passes: Passes::default(),
             coefficients: cutter.coefficients(),
             slice,
+            slices: cut.slices,
             largest: cutter.largest_radius(),
             smallest: cutter.smallest_radius(),
             advance: 0.0,
@@ -192,6 +202,17 @@ impl Milling {
             self.advance = self.advance.max((node.place[0] - before.place[0]).abs());
         }
         self.trail.push(node);
+    }
+
+    /// By how much the force may change with the place of the tool, at most: all teeth in the work over the whole depth. N/m
+    pub fn stiffness(&self) -> f64 {
+        let Coefficients { tangential, radial, .. } = self.coefficients;
+        (tangential.abs() + radial.abs()) * self.slice * self.slices as f64 * self.teeth.len() as f64
+    }
+
+    /// The way of the tool centre, when all is done.
+    pub fn into_trail(self) -> Trail {
+        self.trail
     }
 
     /// The way of the tool centre so far.

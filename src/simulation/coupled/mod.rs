@@ -1,0 +1,210 @@
+//! A pass: the arm and the milling, each acting on the other.
+//!
+//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the way and condenses each
+//! step to the two unknowns of the tip. Both give a [`Run`]: forces and places over time, the work that was left, and how
+//! it ended. What is no longer represented ends a run, with the reason.
+
+pub mod condensed;
+pub mod full;
+#[cfg(test)]
+mod tests;
+
+use super::arm::{AnyArm, Missing};
+use super::integrator::StepError;
+use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, Milling};
+use super::motion::Motion;
+use super::setup::Setup;
+use super::surface::{Node, Trail};
+use super::survey::CutFrame;
+use nalgebra::Vector3;
+
+/// What is to be simulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Job<'a> {
+    /// The arm and its pass.
+    pub setup: &'a Setup,
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// What it cuts.
+    pub cut: &'a Cut,
+    /// How far before the work the rim of the cutter is at the start. m
+    pub gap: f64,
+}
+
+/// One moment of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// On the tool: along the feed, the outward normal of the wall, the tool axis. N
+    pub force: [f64; 3],
+    /// The tool centre off its path, along the feed and the normal. m
+    pub deflection: [f64; 2],
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum End {
+    /// With the pass.
+    Complete,
+    /// Where the milling is no longer represented.
+    Limit(Limit),
+    /// Where a step could not be made.
+    Step(StepError),
+}
+
+/// A simulated pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The length of a step. s
+    pub step: f64,
+    /// One sample a step, the first at time 0.
+    pub samples: Vec<Sample>,
+    /// Where the tool centre was.
+    pub trail: Trail,
+    /// How it ended.
+    pub end: End,
+    /// Evaluations of the milling force.
+    pub evaluations: usize,
+}
+
+/// Why a job cannot be run.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum JobError {
+    /// The robot file says too little.
+    #[error("{0}")]
+    Missing(#[from] Missing),
+    /// The cutter cannot do the cut.
+    #[error("{0}")]
+    Cut(#[from] CutError),
+    /// At the start the arm cannot be set in motion.
+    #[error("{0}")]
+    Start(#[from] StepError),
+}
+
+impl Job<'_> {
+    /// Simulates the pass with the whole chain.
+    ///
+    /// # Errors
+    /// [`JobError`] before the first step; what happens later is the [`End`] of the run.
+    pub fn run(&self) -> Result<Run, JobError> {
+        match self.setup.arm()? {
+            AnyArm::Six(arm) => full::run(self, &arm),
+            AnyArm::Eighteen(arm) => full::run(self, &arm),
+        }
+    }
+
+    /// Simulates the pass with the condensed model.
+    ///
+    /// # Errors
+    /// As [`Job::run`].
+    pub fn run_fast(&self) -> Result<Run, JobError> {
+        match self.setup.arm()? {
+            AnyArm::Six(arm) => condensed::run(self, &arm),
+            AnyArm::Eighteen(arm) => condensed::run(self, &arm),
+        }
+    }
+}
+
+/// The plane of the cut in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Plane {
+    feed: Vector3<f64>,
+    normal: Vector3<f64>,
+    axis: Vector3<f64>,
+    /// The corner of the work where the tool enters along the nominal wall.
+    origin: Vector3<f64>,
+}
+
+impl Plane {
+    fn new(job: &Job<'_>) -> Self {
+        let motion = &job.setup.motion;
+        let axis = -motion.start().rotation.column(2).into_owned();
+        let CutFrame { feed, normal } = CutFrame::new(*motion.direction(), axis, job.cut.milling);
+        let radius = job.cutter.radius();
+        let origin = motion.start().translation + feed * (radius + job.gap) - normal * radius;
+        Self { feed, normal, axis, origin }
+    }
+
+    /// A place (m) in the plane.
+    fn place(&self, point: &Vector3<f64>) -> [f64; 2] {
+        self.part(&(point - self.origin))
+    }
+
+    /// A vector in the plane.
+    fn part(&self, vector: &Vector3<f64>) -> [f64; 2] {
+        [self.feed.dot(vector), self.normal.dot(vector)]
+    }
+
+    /// A force of milling in the base frame. N
+    fn force(&self, [feed, normal, axis]: [f64; 3]) -> Vector3<f64> {
+        self.feed * feed + self.normal * normal + self.axis * axis
+    }
+
+    /// Where the tool centre should be after a way (m).
+    fn nominal(&self, motion: &Motion, way: f64) -> [f64; 2] {
+        self.place(&(motion.start().translation + motion.direction() * way))
+    }
+}
+
+/// The milling of a run and what is written down of it.
+#[derive(Debug)]
+struct Process<'a> {
+    motion: &'a Motion,
+    plane: Plane,
+    milling: Milling,
+    limits: Limits,
+    step: f64,
+    samples: Vec<Sample>,
+    evaluations: usize,
+}
+
+impl<'a> Process<'a> {
+    fn new(job: &Job<'a>) -> Result<Self, CutError> {
+        let step = job.cut.step();
+        let steps = (job.setup.motion.duration() / step) as usize + 2;
+        Ok(Self {
+            motion: &job.setup.motion,
+            plane: Plane::new(job),
+            milling: Milling::with_room(job.cutter, job.cut, steps)?,
+            limits: Limits { radius: job.cutter.radius(), spindle_speed: job.cut.spindle_speed },
+            step,
+            samples: Vec::with_capacity(steps),
+            evaluations: 0,
+        })
+    }
+
+    /// Steps of the pass.
+    fn steps(&self) -> usize {
+        (self.motion.duration() / self.step + 1e-9) as usize
+    }
+
+    /// The force at a time (s) with the tool centre at a place.
+    fn force(&mut self, time: f64, place: [f64; 2]) -> Force {
+        self.evaluations += 1;
+        let steps = time / self.step;
+        let whole = steps.round();
+        // Times are products with the step: whole ones but for rounding.
+        let steps = if (steps - whole).abs() < 1e-6 { whole } else { steps };
+        self.milling.force(steps, place)
+    }
+
+    /// Writes down the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
+    fn keep(&mut self, place: [f64; 2], velocity: [f64; 2], force: Force) -> Result<(), Limit> {
+        let time = self.samples.len() as f64 * self.step;
+        let (way, feed) = self.motion.ramp().at(time);
+        let nominal = self.plane.nominal(self.motion, way);
+        let deflection = [place[0] - nominal[0], place[1] - nominal[1]];
+        self.samples.push(Sample { force: force.on_tool, deflection });
+        self.milling.remember(Node { place, motion: velocity.map(|part| part * self.step) });
+        self.limits.check(time, force.chip, deflection, [velocity[0] - feed, velocity[1]])
+    }
+
+    fn ended(self, end: End) -> Run {
+        Run {
+            step: self.step,
+            samples: self.samples,
+            trail: self.milling.into_trail(),
+            end,
+            evaluations: self.evaluations,
+        }
+    }
+}
