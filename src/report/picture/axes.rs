@@ -52,9 +52,16 @@ pub(super) struct Ticks {
     pub values: Vec<f64>,
     /// Decimals of the labels.
     pub decimals: usize,
+    /// Whether the labels are powers of ten with the numbers as exponents.
+    pub of_ten: bool,
 }
 
 impl Ticks {
+    /// No ticks at all.
+    pub fn none() -> Self {
+        Self { values: vec![], decimals: 0, of_ten: false }
+    }
+
     /// Multiples of 1, 2 or 5 times a power of ten, at most `most` of them.
     pub fn round(scale: &Scale, most: usize) -> Self {
         let room = (scale.to - scale.from) / most.max(1) as f64;
@@ -66,17 +73,26 @@ impl Ticks {
                 }
             }
         }
-        Self { values: vec![scale.from, scale.to], decimals: 0 }
+        Self { values: vec![scale.from, scale.to], decimals: 0, of_ten: false }
     }
 
     /// Multiples of a step.
     pub fn every(scale: &Scale, step: f64, decimals: usize) -> Self {
         let (first, last) = ((scale.from / step - 1e-9).ceil() as i64, (scale.to / step + 1e-9).floor() as i64);
-        Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals }
+        Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals, of_ten: false }
+    }
+
+    /// Whole exponents on a scale of common logarithms.
+    pub fn decades(scale: &Scale) -> Self {
+        Self { of_ten: true, ..Self::every(scale, 1.0, 0) }
     }
 
     /// The label of a tick.
     pub fn label(&self, value: f64) -> String {
+        if self.of_ten {
+            let decimals = (-value).max(0.0).round() as usize;
+            return fixed(libm::pow(10.0, value), decimals);
+        }
         fixed(value, self.decimals)
     }
 }
@@ -153,5 +169,8 @@ mod tests {
         let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
         assert_eq!(labels, ["-2500", "-2000", "-1500", "-1000", "-500", "0"]);
         assert!(Ticks::round(&Scale::new(3.0, 3.0, 0, 10), 5).values.contains(&3.0));
+        let ticks = Ticks::decades(&Scale::new(-2.3, 1.7, 0, 100));
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["0.01", "0.1", "1", "10"]);
     }
 }

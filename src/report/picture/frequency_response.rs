@@ -8,20 +8,24 @@ use crate::report::output::ReportError;
 use crate::simulation::survey::{Answer, Survey};
 use nalgebra::Complex;
 
-/// Size of the answer at the tip over the frequency of the force: along the feed, along the normal of the wall and across, with a
-/// line at each mode.
+/// Decades of the vertical axis.
+const DECADES: f64 = 4.0;
+
+/// Size of the answer at the tip over the frequency of the force: along the feed, along the normal of the wall and across, on a
+/// logarithmic scale, with a line at each mode.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
 pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
-    let size = |part: Complex<f64>| part.norm_sqr().sqrt() * 1e6;
-    let all = survey.answers.iter().flat_map(|answer| [answer.feed, answer.normal, answer.cross]);
-    let highest = all.map(size).fold(1e-9, f64::max);
+    let size = |part: Complex<f64>| libm::log10((part.norm_sqr().sqrt() * 1e6).max(1e-12));
+    let all = survey.answers.iter().flat_map(|answer| [answer.feed, answer.normal]);
+    let highest = all.map(size).fold(-12.0, f64::max).ceil();
+    let lowest = highest - DECADES;
     let ends = [survey.answers.first(), survey.answers.last()].map(|answer| answer.map_or(0.0, |a| a.frequency));
     picture("the picture of the frequency response", (1000, 520), |canvas| {
         canvas.text("How the tool tip answers to a swinging force", (95, 26), Lettering::new(17.0).bold())?;
-        let (x, y) = (Scale::new(ends[0], ends[1], 95, 970), Scale::new(0.0, highest * 1.05, 440, 84));
-        let (x_ticks, y_ticks) = (Ticks::round(&x, 12), Ticks::round(&y, 8));
+        let (x, y) = (Scale::new(ends[0], ends[1], 95, 970), Scale::new(lowest, highest, 440, 84));
+        let (x_ticks, y_ticks) = (Ticks::round(&x, 12), Ticks::decades(&y));
         let panel = Panel { x, y, x_ticks, y_ticks, x_label: "frequency (Hz)", y_label: "answer (um/N)" };
         panel.draw_grid(canvas)?;
         let mut free_from = 0;
@@ -41,7 +45,7 @@ pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
             (|answer| answer.feed, BLUE),
             (|answer| answer.normal, RED),
         ] {
-            let place = |answer: &Answer| panel.place(answer.frequency, size(of(answer)));
+            let place = |answer: &Answer| panel.place(answer.frequency, size(of(answer)).max(lowest));
             canvas.curve(&survey.answers.iter().map(place).collect::<Vec<_>>(), colour, 2)?;
         }
         panel.draw_frame(canvas)?;

@@ -138,7 +138,7 @@ fn head(canvas: &Canvas<'_>, assessment: &Assessment, known: &[Known<'_>]) -> Dr
 fn draw_row(canvas: &Canvas<'_>, robots: &[RobotResult], (top, room): Pixel, known: &[Known<'_>]) -> Drawn {
     let x = Scale::new(0.0, robots.len() as f64, LEFT, LEFT + room * robots.len() as i32);
     let y = Scale::new(0.0, FULL, top + ROWS[1], top);
-    let (x_ticks, y_ticks) = (Ticks { values: Vec::new(), decimals: 0 }, Ticks::every(&y, 0.2, 1));
+    let (x_ticks, y_ticks) = (Ticks::none(), Ticks::every(&y, 0.2, 1));
     let y_label = "relative to the best robot, which has 1";
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: "robot", y_label };
     panel.draw_grid(canvas)?;

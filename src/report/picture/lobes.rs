@@ -2,7 +2,7 @@
 
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, picture};
-use super::colour::{BLUE, GREEN, INK, RED};
+use super::colour::{BLUE, GREEN, RED};
 use crate::report::number::fixed;
 use crate::report::output::ReportError;
 use crate::simulation::milling::Cut;
@@ -45,23 +45,20 @@ pub fn lobes(survey: &Survey, cut: &Cut, deepest: f64) -> Result<String, ReportE
         if (ends[0]..=ends[1]).contains(&rpm(cut.spindle_speed)) {
             canvas.dot(at, 5, if is_stable { GREEN } else { RED })?;
             let word = if is_stable { "stable" } else { "chatters" };
-            let label = format!("this cut, {} mm: {word}", fixed(cut.axial_depth * 1e3, 2));
-            let lettering = Lettering::new(12.0).coloured(INK);
-            let to_left = at.0 > 800.0;
-            let place = (at.0 as i32 + if to_left { -12 } else { 12 }, at.1 as i32 - 12);
-            canvas.text(&label, place, if to_left { lettering.ending() } else { lettering })?;
         }
         panel.draw_frame(canvas)?;
-        legend(canvas)
+        legend(canvas, cut, is_stable)
     })
 }
 
 /// The legend, in one line under the title.
-fn legend(canvas: &Canvas<'_>) -> Drawn {
+fn legend(canvas: &Canvas<'_>, cut: &Cut, is_stable: bool) -> Drawn {
     for (left, label, colour) in [(95, "critical depth, semi-discretisation", RED), (380, "zero-order solution", BLUE)]
     {
         canvas.line(vec![(left, 52), (left + 28, 52)], colour, 2)?;
         canvas.text(label, (left + 36, 52), Lettering::new(12.0))?;
     }
-    Ok(())
+    let (colour, word) = if is_stable { (GREEN, "stable") } else { (RED, "chatters") };
+    canvas.dot((600.0, 52.0), 5, colour)?;
+    canvas.text(&format!("this cut, {} mm: {word}", fixed(cut.axial_depth * 1e3, 2)), (612, 52), Lettering::new(12.0))
 }

@@ -68,7 +68,7 @@ fn draw_bars(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
     let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.bars.len().max(1) as f64, LEFT, RIGHT);
     let y_ticks = Ticks::round(&y, 7);
-    let x_ticks = Ticks { values: vec![], decimals: 0 };
+    let x_ticks = Ticks::none();
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: "compliance", y_label: "standard deviation (%)" };
     panel.draw_grid(canvas)?;
     for (index, bar) in plan.bars.iter().enumerate() {
