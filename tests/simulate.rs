@@ -155,6 +155,11 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
             "spindle_rpm = 300.0",
             &["simulation.steps_per_turn", "90", "too coarse", "at least"],
         ),
+        (
+            "gap_mm = 0.5",
+            "gap_mm = 0.5\nslot_width_mm = 9.5",
+            &["work.slot_width_mm", "9.5", "narrower than the cutter, 10 mm"],
+        ),
         ("window_s = [0.3, 0.4]", "window_s = [0.4, 0.3]", &["simulation.window_s", "[0.4, 0.3]", "first below"]),
         (
             "window_s = [0.3, 0.4]",

@@ -71,7 +71,7 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
         ])?;
     let mut inputs = vec![source.as_config()];
     let setup = setup_from(&ArmFields { robot, variant, damping_scale, spindle, pass }, overrides, &mut inputs)?;
-    let [length, gap] = work.table()?.fields(["length_mm", "gap_mm"])?;
+    let [length, gap, slot] = work.table()?.fields(["length_mm", "gap_mm", "slot_width_mm"])?;
     let length = length.positive()? / 1e3;
     let gap = gap.number_where("a finite number not below 0", |value| value >= 0.0)? / 1e3;
     let keys = simulation.optional(Field::table)?;
@@ -86,6 +86,7 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
     let table = milling.table()?;
     table.fields(MILLING_KEYS)?;
     let (cutter, mut cut) = milling_from(&table, length, slices, steps)?;
+    slot.optional(|field| fits(field, &cutter))?;
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;
     }
@@ -93,4 +94,15 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
     check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
     let look = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
     Ok(SimulationRun { setup, cutter, cut, gap, look, plan, inputs })
+}
+
+/// The width of the slot that the pass is part of: the cutter has to fit into it.
+fn fits(field: &Field<'_>, cutter: &Cutter) -> Result<(), InputError> {
+    let diameter = 2e3 * cutter.largest_radius();
+    let width = field.positive()?;
+    if width >= diameter {
+        return Ok(());
+    }
+    let problem = format!("is narrower than the cutter, {diameter} mm");
+    Err(field.error(problem, format!("a slot into which the cutter fits, {diameter} mm or wider")))
 }

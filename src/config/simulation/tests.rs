@@ -63,12 +63,19 @@ fn spindle_pose() -> nalgebra::Matrix3<f64> {
 
 #[test]
 fn optional_tables_override_the_defaults() {
-    let more = "[simulation]\nslices = 8\nsteps_per_turn = 90\n[stability]\nway_mm = 20\nlobes_rpm = [1000, 20000]\n\
+    let more = "[stability]\nway_mm = 20\nlobes_rpm = [1000, 20000]\n\
                 lobes_points = 10\nmax_depth_mm = 5\nfrequencies_hz = [0, 100]\n";
-    let text =
-        format!("{}{more}", shipped("umons-aluminium.toml")).replace("variant = \"springs\"", "damping_scale = 2");
+    let text = format!("{}{more}", shipped("umons-aluminium.toml"))
+        .replace("variant = \"springs\"", "damping_scale = 2")
+        .replace("# slices = 32", "slices = 8")
+        .replace("# steps_per_turn = 360", "steps_per_turn = 90\nwall_height_mm = 1.2\ncutoff_mm = 0.8");
     let run = read(&text).unwrap();
     assert_eq!((run.cut.slices, run.cut.steps_per_turn, run.setup.damping_scale), (8, 90, 2.0));
+    assert_eq!((run.look.height, run.look.cutoff, run.look.window), (1.2e-3, 0.8e-3, Some([0.4, 1.4])));
+    // The figures of the variant that is run, which is the first where none is named.
+    let published = run.look.published.unwrap();
+    assert_eq!(published.forces.unwrap()[1].least, -111.39);
+    assert_eq!(published.roughness.unwrap().total, 13.5e-6);
     assert_eq!((run.plan.way, run.plan.points, run.plan.deepest), (0.02, 10, 0.005));
     assert_eq!(run.plan.frequencies, [0.0, 100.0]);
     assert!((run.plan.speeds[1] - 20000.0 / 60.0 * TAU).abs() < 1e-9);
@@ -100,7 +107,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         ("\"climb\"", "\"down\"", [": milling.milling: ", "found \"down\"", "\"climb\""]),
         ("spindle_rpm = 18700.0", "spindle_rpm = 0", [": milling.spindle_rpm: ", "found 0", "above 0"]),
         ("helix_deg = 30.0", "helix = 30.0", [": milling.helix: ", "nearest known one: helix_deg", "30.0"]),
-        ("# [simulation]", "[simulation]\nsteps_per_turn = 4", [": milling.pitch_deg: ", "4 steps", "at least"]),
+        ("# steps_per_turn = 360", "steps_per_turn = 4", [": milling.pitch_deg: ", "4 steps", "at least"]),
         ("# [stability]", "[stability]\nway_mm = 200", [": stability.way_mm: ", "found 200", "107.9"]),
         ("# [stability]", "[stability]\nlobes_rpm = [9, 9]", [": stability.lobes_rpm: ", "no width", "below the"]),
         ("# [stability]", "[stability]\nmax_depth_mm = 30", [": stability.max_depth_mm: ", "found 30", "= 22"]),
