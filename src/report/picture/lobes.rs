@@ -44,7 +44,6 @@ pub fn lobes(survey: &Survey, cut: &Cut, deepest: f64) -> Result<String, ReportE
         let is_stable = survey.depths.verdict.is_stable();
         if (ends[0]..=ends[1]).contains(&rpm(cut.spindle_speed)) {
             canvas.dot(at, 5, if is_stable { GREEN } else { RED })?;
-            let word = if is_stable { "stable" } else { "chatters" };
         }
         panel.draw_frame(canvas)?;
         legend(canvas, cut, is_stable)
