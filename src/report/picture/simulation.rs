@@ -9,8 +9,11 @@ use crate::simulation::roughness::Profile;
 use plotters::style::RGBColor;
 use std::f64::consts::TAU;
 
+/// A force that is drawn: its name, its colour, and its value in a sample.
+type Drawing = (&'static str, RGBColor, fn(&[f64; 3]) -> f64);
+
 /// The forces that are drawn: name, colour, and the value of a sample along the feed and out of the wall.
-const FORCES: [(&str, RGBColor, fn(&[f64; 3]) -> f64); 2] = [
+const FORCES: [Drawing; 2] = [
     ("along the feed, F_x", COMPONENTS[0], |force| force[0]),
     ("towards the wall, F_y", COMPONENTS[1], |force| -force[1]),
 ];

@@ -79,24 +79,26 @@ impl Cutter {
         if teeth.is_empty() {
             return Err(CutterError::Toothless);
         }
-        if let Some(tooth) = teeth.iter().find(|tooth| !(tooth.pitch > 0.0)) {
+        if let Some(tooth) = teeth.iter().find(|tooth| !is_length(tooth.pitch)) {
             return Err(CutterError::Pitch { sum: tooth.pitch });
         }
         let sum: f64 = teeth.iter().map(|tooth| tooth.pitch).sum();
-        if !((sum - TAU).abs() < 1e-9) {
+        let is_a_turn = (sum - TAU).abs() < 1e-9;
+        if !is_a_turn {
             return Err(CutterError::Pitch { sum });
         }
-        if let Some(tooth) = teeth.iter().find(|tooth| !(tooth.radius > 0.0 && tooth.radius.is_finite())) {
+        if let Some(tooth) = teeth.iter().find(|tooth| !is_length(tooth.radius)) {
             return Err(CutterError::Radius { radius: tooth.radius });
         }
-        if !(helix.abs() < FRAC_PI_2) {
+        let is_below_a_quarter = helix.abs() < FRAC_PI_2;
+        if !is_below_a_quarter {
             return Err(CutterError::Helix { helix });
         }
-        if !(flute > 0.0 && flute.is_finite()) {
+        if !is_length(flute) {
             return Err(CutterError::Flute { flute });
         }
         let Coefficients { tangential, radial, axial } = coefficients;
-        if !(tangential > 0.0) {
+        if !is_length(tangential) {
             return Err(CutterError::Coefficient { coefficient: tangential });
         }
         match [tangential, radial, axial].into_iter().find(|coefficient| !coefficient.is_finite()) {
@@ -153,4 +155,9 @@ impl Cutter {
     pub fn lag(&self, height: f64) -> f64 {
         height * libm::tan(self.helix) / self.radius()
     }
+}
+
+/// Whether a number is finite and above 0.
+fn is_length(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
 }

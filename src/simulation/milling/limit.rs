@@ -54,13 +54,16 @@ impl Limits {
     pub fn check(&self, time: f64, chip: f64, deflection: [f64; 2], velocity: [f64; 2]) -> Result<(), Limit> {
         let (radius, edge) = (self.radius, self.radius * self.spindle_speed);
         let square = |[x, y]: [f64; 2]| x * x + y * y;
-        if !(square(deflection) <= radius * radius / 4.0) {
+        // What is not a number is not within either.
+        let (is_near, is_slow) = (square(deflection) <= radius * radius / 4.0, square(velocity) <= edge * edge / 16.0);
+        let is_thin = chip <= radius / 2.0;
+        if !is_near {
             return Err(Limit::Deflection { time, deflection: square(deflection).sqrt(), radius });
         }
-        if !(square(velocity) <= edge * edge / 16.0) {
+        if !is_slow {
             return Err(Limit::Speed { time, speed: square(velocity).sqrt(), edge });
         }
-        if !(chip <= radius / 2.0) {
+        if !is_thin {
             return Err(Limit::Chip { time, chip, radius });
         }
         Ok(())

@@ -157,7 +157,7 @@ impl<'a> SemiDiscretisation<'a> {
 fn repeats(cutter: &Cutter) -> usize {
     let teeth = cutter.teeth();
     let repeat = |period: &usize| {
-        teeth.len() % period == 0
+        teeth.len().is_multiple_of(*period)
             && (0..teeth.len()).all(|k| (teeth[k].pitch - teeth[(k + period) % teeth.len()].pitch).abs() < 1e-9)
     };
     (1..=teeth.len()).find(repeat).map_or(1, |period| teeth.len() / period)
@@ -270,7 +270,8 @@ impl<'a> Map<'a> {
             let scale = column.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
             column.push(norm);
             columns.push(column);
-            let exhausted = columns.len() == size || !(norm > 1e-14 * scale);
+            let goes_on = norm > 1e-14 * scale;
+            let exhausted = columns.len() == size || !goes_on;
             if columns.len() == wanted || exhausted {
                 let now = largest(&columns);
                 let close = |before: Complex<f64>| (before.norm_sqr() / now.norm_sqr() - 1.0).abs() < AGREE;

@@ -101,7 +101,7 @@ impl Trail {
     /// The step in which a time lies and how far it is into it; the last step for what comes after it.
     #[inline]
     pub(super) fn leg(&self, time: f64) -> Option<(&Leg, f64)> {
-        if !(time >= 0.0) {
+        if time < 0.0 || time.is_nan() {
             return None;
         }
         // A signed integer is converted with one instruction.
