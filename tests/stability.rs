@@ -64,8 +64,11 @@ fn aluminium_is_calm_and_steel_chatters_with_a_flip_until_it_is_damped() {
     assert!(steel["growth_rate_per_s"].as_f64().unwrap() > 0.0);
     let critical = steel["critical_depth_mm"]["semi_discretisation"].as_f64().unwrap();
     assert!(critical < 1.6 && critical < steel["critical_depth_mm"]["zero_order"].as_f64().unwrap());
+    let growth = |found: &Value| found["growth_rate_per_s"].as_f64().unwrap();
     let damped = json(&stability(&bench, STEEL, &["--json", "--damping-scale", "10"]));
-    assert_eq!(damped["stable"], true);
+    assert!(growth(&damped) < growth(&steel) / 5.0);
+    let damped = json(&stability(&bench, STEEL, &["--json", "--damping-scale", "20"]));
+    assert!(growth(&damped) < 0.0 && damped["stable"] == true);
     let faster = json(&stability(&bench, STEEL, &["--json", "--spindle-rpm", "9000"]));
     assert_eq!((&faster["stable"], &faster["spindle_rpm"]), (&true.into(), &9000.0.into()));
 }
