@@ -2,59 +2,32 @@
 
 mod common;
 
-use common::Ended;
+use common::{Bench, Ended, RUN};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use tempfile::TempDir;
+use std::path::Path;
 
-/// A folder with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
-struct Shop {
-    folder: TempDir,
+/// The shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
+fn bench() -> Bench {
+    let bench = Bench::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (from, to) in [
+        ("configs/umons-aluminium.toml", RUN),
+        ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
+    ] {
+        bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
+    }
+    bench.replace(RUN, "length_mm = 107.9167", "length_mm = 32.0");
+    bench.replace(RUN, "length_mm = 90.0", "length_mm = 20.0");
+    bench.replace(RUN, "window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
+    bench
 }
 
-const RUN: &str = "configs/run.toml";
+fn simulate(bench: &Bench, more: &[&str]) -> Ended {
+    bench.stead(&[&["simulate", RUN], more].concat())
+}
 
-impl Shop {
-    fn new() -> Self {
-        let shop = Self { folder: tempfile::tempdir().unwrap() };
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        std::fs::create_dir_all(shop.path("configs/robots")).unwrap();
-        for (from, to) in [
-            ("configs/umons-aluminium.toml", RUN),
-            ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
-        ] {
-            std::fs::copy(root.join(from), shop.path(to)).unwrap();
-        }
-        shop.replace("length_mm = 107.9167", "length_mm = 32.0");
-        shop.replace("length_mm = 90.0", "length_mm = 20.0");
-        shop.replace("window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
-        shop
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn replace(&self, from: &str, to: &str) {
-        let text = std::fs::read_to_string(self.path(RUN)).unwrap();
-        assert!(text.contains(from), "{from}");
-        std::fs::write(self.path(RUN), text.replacen(from, to, 1)).unwrap();
-    }
-
-    fn run(&self, arguments: &[&str]) -> Ended {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("stead"));
-        let output = command.arg("simulate").arg(RUN).args(arguments).current_dir(self.folder.path()).output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
-    }
-
-    fn files(&self, folder: &str) -> Vec<String> {
-        let names = std::fs::read_dir(self.path(folder)).unwrap();
-        let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
+fn files(bench: &Bench, folder: &str) -> Vec<String> {
+    bench.tree(folder).into_keys().collect()
 }
 
 fn number(value: &Value) -> f64 {
@@ -63,10 +36,10 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn a_pass_has_its_files_its_document_and_its_text() {
-    let shop = Shop::new();
-    let ended = shop.run(&["--json"]);
+    let bench = bench();
+    let ended = simulate(&bench, &["--json"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    let document: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let document: Value = ended.json();
     for axis in ["force_x", "force_y"] {
         let [least, most, mean, rms] = ["min_n", "max_n", "mean_n", "rms_n"].map(|key| number(&document[axis][key]));
         assert!(least < mean && mean < most && rms >= mean.abs(), "{axis}");
@@ -83,35 +56,35 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert!(number(&document["real_time_factor"]) > 0.0);
 
     let expected = ["forces.svg", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
-    assert_eq!(shop.files("results/run"), expected);
-    let series = std::fs::read_to_string(shop.path("results/run/series.csv")).unwrap();
+    assert_eq!(files(&bench, "results/run"), expected);
+    let series = std::fs::read_to_string(bench.path("results/run/series.csv")).unwrap();
     assert!(series.starts_with("time_s,force_x_n,force_y_n,force_axial_n,x_mm,y_mm,deflection_x_um,deflection_y_um\n"));
     assert_eq!(series.lines().count() as f64, number(&document["steps"]) + 2.0);
     let summary: Value =
-        serde_json::from_str(&std::fs::read_to_string(shop.path("results/run/summary.json")).unwrap()).unwrap();
+        serde_json::from_str(&std::fs::read_to_string(bench.path("results/run/summary.json")).unwrap()).unwrap();
     assert_eq!(summary["force_x"], document["force_x"]);
     assert!(summary["real_time_factor"].is_null());
 
     // The same bytes again; and a text for people.
-    let before: Vec<_> = expected.map(|name| std::fs::read(shop.path("results/run").join(name)).unwrap()).into();
-    let ended = shop.run(&["--out", "again"]);
+    let before: Vec<_> = expected.map(|name| std::fs::read(bench.path("results/run").join(name)).unwrap()).into();
+    let ended = simulate(&bench, &["--out", "again"]);
     assert_eq!(ended.code, Some(0));
     for part in ["along the feed", "published", "roughness of the wall", "The cut is calm", "results in again"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
     for (name, bytes) in expected.iter().zip(before) {
-        assert!(std::fs::read(shop.path("again").join(name)).unwrap() == bytes, "{name}");
+        assert!(std::fs::read(bench.path("again").join(name)).unwrap() == bytes, "{name}");
     }
 }
 
 #[test]
 fn the_fast_model_agrees_in_every_variant() {
-    let shop = Shop::new();
+    let bench = bench();
     for variant in ["springs", "gravity", "orthogonal", "backlash"] {
         let [full, fast] = [&["--json"][..], &["--json", "--fast"]].map(|arguments| {
-            let ended = shop.run(&[arguments, &["--variant", variant]].concat());
+            let ended = simulate(&bench, &[arguments, &["--variant", variant]].concat());
             assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-            serde_json::from_str::<Value>(&ended.stdout).unwrap()
+            ended.json()
         });
         assert_eq!((full["variant"].as_str(), fast["fast"].as_bool()), (Some(variant), Some(true)));
         let tolerance = if variant == "backlash" { 0.02 } else { 1e-3 };
@@ -127,18 +100,18 @@ fn the_fast_model_agrees_in_every_variant() {
 /// Whatever happens, a run that could start ends with a verdict, its files and exit code 0.
 #[test]
 fn an_unstable_run_ends_cleanly_with_the_verdict() {
-    let shop = Shop::new();
-    shop.replace("kt_mpa = 661.553", "kt_mpa = 66155.3");
-    shop.replace("kr_mpa = 253.458", "kr_mpa = 25345.8");
-    shop.replace("axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
-    let ended = shop.run(&["--json", "--damping-scale", "0"]);
+    let bench = bench();
+    bench.replace(RUN, "kt_mpa = 661.553", "kt_mpa = 66155.3");
+    bench.replace(RUN, "kr_mpa = 253.458", "kr_mpa = 25345.8");
+    bench.replace(RUN, "axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
+    let ended = simulate(&bench, &["--json", "--damping-scale", "0"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let document: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let document: Value = ended.json();
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(shop.files("results/run").len(), 6);
-    assert!(shop.run(&["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
+    assert_eq!(files(&bench, "results/run").len(), 6);
+    assert!(simulate(&bench, &["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 
 #[test]
@@ -178,13 +151,12 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
             &["published.springs.force_x_n", "four numbers"],
         ),
     ] {
-        let shop = Shop::new();
-        shop.replace(from, to);
-        let ended = shop.run(&[]);
+        let bench = bench();
+        bench.replace(RUN, from, to);
+        let ended = simulate(&bench, &[]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{to}");
-        for part in parts.iter().chain(&["configs/run.toml:", "allowed: "]) {
-            assert!(ended.stderr.contains(part), "{part} in {}", ended.stderr);
-        }
-        assert!(!shop.path("results").exists(), "{to}");
+        ended.assert_says(parts);
+        ended.assert_says(&["configs/run.toml:", "allowed: "]);
+        assert!(!bench.path("results").exists(), "{to}");
     }
 }
