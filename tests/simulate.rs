@@ -1,30 +1,29 @@
 //! `stead simulate` from outside.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
 mod common;
 
-use common::Ended;
+use common::{Bench, Ended};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use tempfile::TempDir;
+use std::path::Path;
 
-/// A folder with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
+const PASS: &str = "configs/pass.toml";
+
+/// A bench with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
 struct Shop {
-    folder: TempDir,
+    bench: Bench,
 }
-
-const RUN: &str = "configs/run.toml";
 
 impl Shop {
     fn new() -> Self {
-        let shop = Self { folder: tempfile::tempdir().unwrap() };
+        let shop = Self { bench: Bench::new() };
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        std::fs::create_dir_all(shop.path("configs/robots")).unwrap();
         for (from, to) in [
-            ("configs/umons-aluminium.toml", RUN),
+            ("configs/umons-aluminium.toml", PASS),
             ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
         ] {
-            std::fs::copy(root.join(from), shop.path(to)).unwrap();
+            shop.bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
         }
         shop.replace("length_mm = 107.9167", "length_mm = 32.0");
         shop.replace("length_mm = 90.0", "length_mm = 20.0");
@@ -32,25 +31,20 @@ impl Shop {
         shop
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
     fn replace(&self, from: &str, to: &str) {
-        let text = std::fs::read_to_string(self.path(RUN)).unwrap();
-        assert!(text.contains(from), "{from}");
-        std::fs::write(self.path(RUN), text.replacen(from, to, 1)).unwrap();
+        self.bench.replace(PASS, from, to);
     }
 
     fn run(&self, arguments: &[&str]) -> Ended {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("stead"));
-        let output = command.arg("simulate").arg(RUN).args(arguments).current_dir(self.folder.path()).output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+        self.bench.stead(&[&["simulate", PASS], arguments].concat())
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.bench.path(name)).unwrap()
     }
 
     fn files(&self, folder: &str) -> Vec<String> {
-        let names = std::fs::read_dir(self.path(folder)).unwrap();
+        let names = std::fs::read_dir(self.bench.path(folder)).unwrap();
         let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
@@ -66,7 +60,7 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     let shop = Shop::new();
     let ended = shop.run(&["--json"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    let document: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let document = ended.json();
     for axis in ["force_x", "force_y"] {
         let [least, most, mean, rms] = ["min_n", "max_n", "mean_n", "rms_n"].map(|key| number(&document[axis][key]));
         assert!(least < mean && mean < most && rms >= mean.abs(), "{axis}");
@@ -83,24 +77,23 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert!(number(&document["real_time_factor"]) > 0.0);
 
     let expected = ["forces.svg", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
-    assert_eq!(shop.files("results/run"), expected);
-    let series = std::fs::read_to_string(shop.path("results/run/series.csv")).unwrap();
+    assert_eq!(shop.files("results/pass"), expected);
+    let series = shop.bench.read("results/pass/series.csv");
     assert!(series.starts_with("time_s,force_x_n,force_y_n,force_axial_n,x_mm,y_mm,deflection_x_um,deflection_y_um\n"));
     assert_eq!(series.lines().count() as f64, number(&document["steps"]) + 2.0);
-    let summary: Value =
-        serde_json::from_str(&std::fs::read_to_string(shop.path("results/run/summary.json")).unwrap()).unwrap();
+    let summary: Value = serde_json::from_str(&shop.bench.read("results/pass/summary.json")).unwrap();
     assert_eq!(summary["force_x"], document["force_x"]);
     assert!(summary["real_time_factor"].is_null());
 
     // The same bytes again; and a text for people.
-    let before: Vec<_> = expected.map(|name| std::fs::read(shop.path("results/run").join(name)).unwrap()).into();
+    let before = expected.map(|name| shop.bytes(&format!("results/pass/{name}")));
     let ended = shop.run(&["--out", "again"]);
     assert_eq!(ended.code, Some(0));
     for part in ["along the feed", "published", "roughness of the wall", "The cut is calm", "results in again"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
     for (name, bytes) in expected.iter().zip(before) {
-        assert!(std::fs::read(shop.path("again").join(name)).unwrap() == bytes, "{name}");
+        assert!(shop.bytes(&format!("again/{name}")) == bytes, "{name}");
     }
 }
 
@@ -111,7 +104,7 @@ fn the_fast_model_agrees_in_every_variant() {
         let [full, fast] = [&["--json"][..], &["--json", "--fast"]].map(|arguments| {
             let ended = shop.run(&[arguments, &["--variant", variant]].concat());
             assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-            serde_json::from_str::<Value>(&ended.stdout).unwrap()
+            ended.json()
         });
         assert_eq!((full["variant"].as_str(), fast["fast"].as_bool()), (Some(variant), Some(true)));
         let tolerance = if variant == "backlash" { 0.02 } else { 1e-3 };
@@ -133,11 +126,11 @@ fn an_unstable_run_ends_cleanly_with_the_verdict() {
     shop.replace("axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
     let ended = shop.run(&["--json", "--damping-scale", "0"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let document: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let document = ended.json();
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(shop.files("results/run").len(), 6);
+    assert_eq!(shop.files("results/pass").len(), 6);
     assert!(shop.run(&["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 
@@ -182,9 +175,7 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
         shop.replace(from, to);
         let ended = shop.run(&[]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{to}");
-        for part in parts.iter().chain(&["configs/run.toml:", "allowed: "]) {
-            assert!(ended.stderr.contains(part), "{part} in {}", ended.stderr);
-        }
-        assert!(!shop.path("results").exists(), "{to}");
+        ended.assert_says(&[parts, &["configs/pass.toml:", "allowed: "]].concat());
+        assert!(!shop.bench.path("results").exists(), "{to}");
     }
 }
