@@ -1,33 +1,49 @@
 //! `stead simulate` from outside.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
 mod common;
 
-use common::{Bench, Ended, RUN};
+use common::{Bench, Ended};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
-fn bench() -> Bench {
-    let bench = Bench::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for (from, to) in [
-        ("configs/umons-aluminium.toml", RUN),
-        ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
-    ] {
-        bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
+const PASS: &str = "configs/pass.toml";
+
+/// A bench with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
+struct Shop {
+    bench: Bench,
+}
+
+impl Shop {
+    fn new() -> Self {
+        let shop = Self { bench: Bench::new() };
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        for (from, to) in [
+            ("configs/umons-aluminium.toml", PASS),
+            ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
+        ] {
+            shop.bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
+        }
+        shop.replace("length_mm = 107.9167", "length_mm = 32.0");
+        shop.replace("length_mm = 90.0", "length_mm = 20.0");
+        shop.replace("window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
+        shop
     }
-    bench.replace(RUN, "length_mm = 107.9167", "length_mm = 32.0");
-    bench.replace(RUN, "length_mm = 90.0", "length_mm = 20.0");
-    bench.replace(RUN, "window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
-    bench
-}
 
-fn simulate(bench: &Bench, more: &[&str]) -> Ended {
-    bench.stead(&[&["simulate", RUN], more].concat())
-}
+    fn replace(&self, from: &str, to: &str) {
+        self.bench.replace(PASS, from, to);
+    }
 
-fn files(bench: &Bench, folder: &str) -> Vec<String> {
-    bench.tree(folder).into_keys().collect()
+    fn run(&self, arguments: &[&str]) -> Ended {
+        self.bench.stead(&[&["simulate", PASS], arguments].concat())
+    }
+
+    /// The files in a folder with their content.
+    fn files(&self, folder: &str) -> BTreeMap<String, Option<Vec<u8>>> {
+        self.bench.tree(folder)
+    }
 }
 
 fn number(value: &Value) -> f64 {
@@ -36,10 +52,10 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn a_pass_has_its_files_its_document_and_its_text() {
-    let bench = bench();
-    let ended = simulate(&bench, &["--json"]);
+    let shop = Shop::new();
+    let ended = shop.run(&["--json"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    let document: Value = ended.json();
+    let document = ended.json();
     for axis in ["force_x", "force_y"] {
         let [least, most, mean, rms] = ["min_n", "max_n", "mean_n", "rms_n"].map(|key| number(&document[axis][key]));
         assert!(least < mean && mean < most && rms >= mean.abs(), "{axis}");
@@ -56,33 +72,30 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert!(number(&document["real_time_factor"]) > 0.0);
 
     let expected = ["forces.svg", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
-    assert_eq!(files(&bench, "results/run"), expected);
-    let series = std::fs::read_to_string(bench.path("results/run/series.csv")).unwrap();
+    let files = shop.files("results/pass");
+    assert!(files.keys().eq(&expected), "{:?}", files.keys());
+    let series = shop.bench.read("results/pass/series.csv");
     assert!(series.starts_with("time_s,force_x_n,force_y_n,force_axial_n,x_mm,y_mm,deflection_x_um,deflection_y_um\n"));
     assert_eq!(series.lines().count() as f64, number(&document["steps"]) + 2.0);
-    let summary: Value =
-        serde_json::from_str(&std::fs::read_to_string(bench.path("results/run/summary.json")).unwrap()).unwrap();
+    let summary: Value = serde_json::from_str(&shop.bench.read("results/pass/summary.json")).unwrap();
     assert_eq!(summary["force_x"], document["force_x"]);
     assert!(summary["real_time_factor"].is_null());
 
     // The same bytes again; and a text for people.
-    let before: Vec<_> = expected.map(|name| std::fs::read(bench.path("results/run").join(name)).unwrap()).into();
-    let ended = simulate(&bench, &["--out", "again"]);
+    let ended = shop.run(&["--out", "again"]);
     assert_eq!(ended.code, Some(0));
     for part in ["along the feed", "published", "roughness of the wall", "The cut is calm", "results in again"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
-    for (name, bytes) in expected.iter().zip(before) {
-        assert!(std::fs::read(bench.path("again").join(name)).unwrap() == bytes, "{name}");
-    }
+    assert!(shop.files("again") == files);
 }
 
 #[test]
 fn the_fast_model_agrees_in_every_variant() {
-    let bench = bench();
+    let shop = Shop::new();
     for variant in ["springs", "gravity", "orthogonal", "backlash"] {
         let [full, fast] = [&["--json"][..], &["--json", "--fast"]].map(|arguments| {
-            let ended = simulate(&bench, &[arguments, &["--variant", variant]].concat());
+            let ended = shop.run(&[arguments, &["--variant", variant]].concat());
             assert_eq!(ended.code, Some(0), "{}", ended.stderr);
             ended.json()
         });
@@ -100,18 +113,18 @@ fn the_fast_model_agrees_in_every_variant() {
 /// Whatever happens, a run that could start ends with a verdict, its files and exit code 0.
 #[test]
 fn an_unstable_run_ends_cleanly_with_the_verdict() {
-    let bench = bench();
-    bench.replace(RUN, "kt_mpa = 661.553", "kt_mpa = 66155.3");
-    bench.replace(RUN, "kr_mpa = 253.458", "kr_mpa = 25345.8");
-    bench.replace(RUN, "axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
-    let ended = simulate(&bench, &["--json", "--damping-scale", "0"]);
+    let shop = Shop::new();
+    shop.replace("kt_mpa = 661.553", "kt_mpa = 66155.3");
+    shop.replace("kr_mpa = 253.458", "kr_mpa = 25345.8");
+    shop.replace("axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
+    let ended = shop.run(&["--json", "--damping-scale", "0"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let document: Value = ended.json();
+    let document = ended.json();
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(files(&bench, "results/run").len(), 6);
-    assert!(simulate(&bench, &["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
+    assert_eq!(shop.files("results/pass").len(), 6);
+    assert!(shop.run(&["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 
 #[test]
@@ -151,12 +164,11 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
             &["published.springs.force_x_n", "four numbers"],
         ),
     ] {
-        let bench = bench();
-        bench.replace(RUN, from, to);
-        let ended = simulate(&bench, &[]);
+        let shop = Shop::new();
+        shop.replace(from, to);
+        let ended = shop.run(&[]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{to}");
-        ended.assert_says(parts);
-        ended.assert_says(&["configs/run.toml:", "allowed: "]);
-        assert!(!bench.path("results").exists(), "{to}");
+        ended.assert_says(&[parts, &["configs/pass.toml:", "allowed: "]].concat());
+        assert!(!shop.bench.path("results").exists(), "{to}");
     }
 }

@@ -76,7 +76,7 @@ fn gravity_about_joint_5_is_that_of_the_levers() {
         let torque = arm.chain.at(&q.into()).gravity(&arm.chain)[4];
         let levers = 0.068 * 14.0 + (0.194 - 0.012) * 0.6 + (0.194 + 0.158) * 44.4;
         let across = 44.4 * -0.004;
-        let expected = -GRAVITY * (levers * bend.sin() + across * bend.cos());
+        let expected = -GRAVITY * (levers * libm::sin(bend) + across * libm::cos(bend));
         assert!((torque - expected).abs() < 1e-9, "{torque} {expected}");
     }
 }

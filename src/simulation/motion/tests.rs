@@ -35,9 +35,9 @@ fn the_ramp_is_smooth_and_reaches_the_feed() {
 proptest! {
     /// Everywhere along the pass, also between knots, the arm stands where the tool should be, and moves as it should.
     #[test]
-    fn the_motors_take_the_tool_along_the_pass(time in 0.0..1.6_f64, heading in 0.0..6.28_f64) {
+    fn the_motors_take_the_tool_along_the_pass(time in 0.0..1.6_f64, heading in 0.0..std::f64::consts::TAU) {
         let (robot, spindle) = (tx200(), spindle());
-        let direction = Vector3::new(heading.cos(), heading.sin(), 0.0);
+        let direction = Vector3::new(libm::cos(heading), libm::sin(heading), 0.0);
         let motion = Motion::new(&robot, &spindle, &pass(direction, 0.1), RAMP).unwrap();
         let (angles, speeds) = motion.motors(time);
         let pose = robot.forward(&angles).then(&spindle.flange_from_tool);

@@ -32,7 +32,7 @@ pub fn courses<const N: usize>(
         };
         let cross = axis.cross_matrix().to_homogeneous() - Matrix4::from_diagonal(&vector![0.0, 0.0, 0.0, 1.0]);
         // Rodrigues: exp(cross q), and its derivatives, which commute with it.
-        let (s, c) = q[j].sin_cos();
+        let (s, c) = libm::sincos(q[j]);
         let turn = Matrix4::identity() + cross * s + cross * cross * (1.0 - c);
         let step = joint.previous_from_joint();
         let mut placed = step.rotation.to_homogeneous();
