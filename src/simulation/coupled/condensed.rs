@@ -1,7 +1,7 @@
 //! The fast model: mass matrix and Jacobian frozen along the way, each step condensed to the two unknowns of the tip.
 //!
 //! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is what gravity
-//! and the commanded motion ask for. [`Stations`](Station) every few millimetres have M, the slope of gravity and J; between
+//! and the commanded motion ask for. Stations every few millimetres have M, the slope of gravity and J; between
 //! two, M is that of the middle and J is interpolated. A step of Newmark's method is then linear but for the force, and the tip
 //! moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows, so that the force alone is iterated on, and an arm of eighteen
 //! joints costs little more than one of six.
