@@ -133,7 +133,7 @@ pub struct JointDynamics {
     pub damping: f64,
     /// Half the play of the gear: as far the joint turns from its middle without torque. rad
     pub backlash: f64,
-    /// Whether a compensator carries what gravity does about this axis.
+    /// Whether a compensator carries what gravity does about this axis with joints 4 and 6 at zero, the arm in a plane.
     pub gravity_compensated: bool,
     /// How the joint yields normal to its axis, where known.
     pub orthogonal: Option<Orthogonal>,

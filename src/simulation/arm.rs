@@ -202,9 +202,23 @@ impl<const N: usize> Arm<N> {
         let mut torques = posed.inverse_dynamics(&self.chain, speed, acceleration);
         torques -= self.drive.torques(q, speed, reference[0], reference[1]);
         if self.feels_gravity() {
-            torques += posed.gravity(&self.chain).component_mul(&self.drive.felt_gravity);
+            torques += self.felt_gravity(posed, q);
         }
         torques
+    }
+
+    /// What the springs have to carry of gravity at angles `q` (rad), posed there. N m
+    ///
+    /// Compensators take what gravity would ask of their joint with the motors of joints 4 and 6 at zero, so that the arm is
+    /// in a plane: the paper computes them from sums of q2, q3 and q5 alone (its eq. 9, with the payload).
+    pub fn felt_gravity(&self, posed: &Posed<N>, q: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut planar = *q;
+        for motor in [3, 5] {
+            planar[motor * Self::PER_MOTOR] = 0.0;
+        }
+        let compensated = self.chain.at(&planar).gravity(&self.chain);
+        let taken = self.drive.felt_gravity.map(|share| 1.0 - share).component_mul(&compensated);
+        posed.gravity(&self.chain) - taken
     }
 
     /// Whether some spring has to carry gravity.
@@ -235,7 +249,7 @@ impl<const N: usize> Arm<N> {
             return q;
         }
         for _ in 0..50 {
-            let load = -self.chain.at(&q).gravity(&self.chain).component_mul(&self.drive.felt_gravity);
+            let load = -self.felt_gravity(&self.chain.at(&q), &q);
             let next = reference + self.drive.deflection(&load);
             let change = (next - q).amax();
             q = next;

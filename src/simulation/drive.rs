@@ -11,7 +11,8 @@ pub struct Drive<const N: usize> {
     pub damping: SVector<f64, N>,
     /// Half the play: no spring torque within it. rad
     pub backlash: SVector<f64, N>,
-    /// Which share of gravity the spring has to carry: 0 where a compensator takes it or gravity is left out, 1 elsewhere.
+    /// Which share of gravity the spring has to carry: 0 where a compensator takes it or gravity is left
+    /// out, 1 elsewhere.
     pub felt_gravity: SVector<f64, N>,
 }
 

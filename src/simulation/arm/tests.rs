@@ -81,6 +81,25 @@ fn gravity_about_joint_5_is_that_of_the_levers() {
     }
 }
 
+/// Eq. 9 knows of no joint 4: compensators carry all of gravity where the arm is in a plane, and what they would there elsewhere.
+#[test]
+fn compensators_take_the_gravity_of_an_arm_in_a_plane() {
+    let arm = six(Variant::Gravity);
+    let gravity = |q: [f64; 6]| arm.chain.at(&q.into()).gravity(&arm.chain);
+    let felt = |q: [f64; 6]| arm.felt_gravity(&arm.chain.at(&q.into()), &q.into());
+    let q = start();
+    let planar = [q[0], q[1], q[2], 0.0, q[4], 0.0];
+    for j in 0..6 {
+        let is_compensated = [1, 2, 4].contains(&j);
+        let [left, expected] = match is_compensated {
+            true => [felt(q)[j], gravity(q)[j] - gravity(planar)[j]],
+            false => [felt(q)[j], gravity(q)[j]],
+        };
+        assert!((left - expected).abs() < 1e-9, "{j} {left} {expected}");
+        assert!(!is_compensated || felt(planar)[j].abs() < 1e-9 && left.abs() > 1.0, "{j} {left}");
+    }
+}
+
 #[test]
 fn at_rest_drives_hold_what_is_not_compensated() {
     let arm = eighteen(Variant::Backlash);
@@ -89,12 +108,10 @@ fn at_rest_drives_hold_what_is_not_compensated() {
     let out = arm.unbalanced(&arm.chain.at(&q), [&q, &zero, &zero], [&reference, &zero]);
     assert!(out.amax() < 1e-6, "{out}");
     let gap = (15.0_f64 / 3600.0).to_radians();
-    // Compensated joints stand in the middle of their play, as does joint 1, which carries nothing; 4 and 6 at its end.
+    // Joint 1, which carries nothing, stands in the middle of its play, the others at its end.
     let off = q - reference;
-    for j in [0, 1, 2, 4] {
-        assert!(off[3 * j].abs() < 1e-12, "{off}");
-    }
-    assert!(off[9].abs() > gap && off[15].abs() > gap);
+    assert!(off[0].abs() < 1e-12, "{off}");
+    assert!((1..6).all(|j| off[3 * j].abs() > gap), "{off}");
     let rigid = six(Variant::Springs);
     assert_eq!(rigid.at_rest(&start().into()), SVector::from(start()));
 }

@@ -138,7 +138,7 @@ fn asked<const N: usize>(arm: &Arm<N>, motion: &Motion, time: f64) -> SVector<f6
     let posed = arm.chain.at(&q);
     let mut torques = -posed.inverse_dynamics(&arm.chain, &speed, &acceleration);
     if arm.feels_gravity() {
-        torques -= posed.gravity(&arm.chain).component_mul(&arm.drive.felt_gravity);
+        torques -= arm.felt_gravity(&posed, &q);
         torques += arm.stiffness(&posed, &SVector::zeros()) * (q - reference);
     }
     torques

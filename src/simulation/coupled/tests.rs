@@ -54,15 +54,14 @@ fn near(found: f64, expected: f64, tolerance: f64) -> bool {
     (found - expected).abs() <= tolerance * expected.abs()
 }
 
-/// Table 10: smallest, largest, mean and rms of F_x, then of F_y. What is not reached is said: the gravity of the paper pulls the
-/// tool about 0.1 mm further into the wall than ours, so that means and rms of F_y differ by up to 2.5 %, and all smallest F_x,
-/// which hang on the width of cut, by up to 27 %.
+/// Table 10: smallest, largest, mean and rms of F_x, then of F_y. What is not reached is said: the smallest F_x, which hangs on
+/// the width of cut, differs by up to 21 %.
 #[test]
 fn the_aluminium_table_comes_out() {
     for (variant, tolerance, x, y) in [
         (Variant::Springs, 0.01, [-7.63, 38.82, 8.78, 16.28], [-111.39, 0.0, -25.67, 44.42]),
-        (Variant::Gravity, 0.018, [-8.53, 38.84, 8.72, 16.31], [-113.4, 0.0, -26.1, 44.96]),
-        (Variant::Orthogonal, 0.018, [-7.92, 38.98, 8.79, 16.29], [-112.45, 0.0, -25.70, 44.47]),
+        (Variant::Gravity, 0.01, [-8.53, 38.84, 8.72, 16.31], [-113.4, 0.0, -26.1, 44.96]),
+        (Variant::Orthogonal, 0.01, [-7.92, 38.98, 8.79, 16.29], [-112.45, 0.0, -25.70, 44.47]),
         (Variant::Backlash, 0.03, [-8.31, 42.40, 8.92, 16.41], [-117.07, 0.0, -25.43, 44.15]),
     ] {
         let found = forces(&aluminium(variant, 90, false));
@@ -70,7 +69,7 @@ fn the_aluminium_table_comes_out() {
             assert!(near(found.mean, mean, tolerance), "{variant:?} mean {} {mean}", found.mean);
             assert!(near(found.root_mean_square, square, tolerance), "{variant:?} {} {square}", found.root_mean_square);
             assert!((found.most - most).abs() <= 0.05 * most.abs() + 1e-6, "{variant:?} most {} {most}", found.most);
-            let allowed = if least > -10.0 { 0.27 } else { 0.05 };
+            let allowed = if least > -10.0 { 0.22 } else { 0.05 };
             assert!(near(found.least, least, allowed), "{variant:?} least {} {least}", found.least);
         }
     }
