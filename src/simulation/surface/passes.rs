@@ -97,7 +97,7 @@ impl Passes {
     }
 }
 
-/// Centres that in a radian of the tooth come farther than this part of the radius need two steps to be found.
+/// Centres that in a radian of the tooth come farther than this part of the radius need three steps to be found.
 const SWIFT: f64 = 0.01;
 
 /// Where the centre was when an earlier tooth was on each ray: x and y. m
@@ -113,13 +113,18 @@ fn centres<S: Simd>(simd: S, look: &Look<'_>, met: &Met, rays: &Rays) -> [[f64; 
     if vx.abs() + vy.abs() < SWIFT {
         return found;
     }
-    let mut times = times(simd, look, met, rays, &found, [0.0; 2]);
-    for lane in 0..LANES {
-        // What is left of the error shrinks once more by the drift of the centre.
-        let drift = vx * rays.cosine[lane] + vy * rays.sine[lane];
-        times[lane] += drift * (first[lane] - times[lane]);
+    let (mut known, mut found) = (first, found);
+    for _ in 0..2 {
+        let mut next = times(simd, look, met, rays, &found, [0.0; 2]);
+        for lane in 0..LANES {
+            // What is left of the error shrinks once more by the drift of the centre.
+            let drift = vx * rays.cosine[lane] + vy * rays.sine[lane];
+            next[lane] += drift * (known[lane] - next[lane]);
+        }
+        found = places(simd, look, met, &next);
+        known = next;
     }
-    places(simd, look, met, &times)
+    found
 }
 
 /// When an earlier tooth was on each ray, in steps, if the centre was at a place and moved on from there by a share of the radius
