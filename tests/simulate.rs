@@ -150,7 +150,7 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
         (
             "window_s = [0.3, 0.4]",
             "window_s = [0.3, 9.0]",
-            &["simulation.window_s", "[0.3, 9.0]", "duration of the pass"],
+            &["simulation.window_s[2]", "found 9.0", "duration of the pass"],
         ),
         ("# cutoff_mm = 2.5 ", "cutoff_mm = 0.0 #", &["simulation.cutoff_mm", "found 0.0", "0.08 to 25"]),
         (

@@ -9,14 +9,14 @@ pub struct Node {
     pub motion: [f64; 2],
 }
 
-/// What all nodes up to one have in common.
+/// What all of the way up to a node has in common: bounds of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The largest x so far. m
+    /// At least the largest x so far. m
     pub front: f64,
-    /// The smallest y so far. m
+    /// At most the smallest y so far. m
     pub bottom: f64,
-    /// The largest y so far. m
+    /// At least the largest y so far. m
     pub top: f64,
 }
 
@@ -46,10 +46,19 @@ impl Trail {
     /// The end of the next step; the first node is that of step 0.
     pub fn push(&mut self, node: Node) {
         let [x, y] = node.place;
-        let extent = match self.extents.last() {
+        let mut extent = match self.extents.last() {
             None => Extent { front: x, bottom: y, top: y },
             Some(last) => Extent { front: last.front.max(x), bottom: last.bottom.min(y), top: last.top.max(y) },
         };
+        if let Some(last) = self.nodes.last() {
+            // A cubic stays within its control points.
+            for (place, motion) in [(last.place, last.motion), (node.place, node.motion.map(|motion| -motion))] {
+                let [x, y] = [0, 1].map(|axis| place[axis] + motion[axis] / 3.0);
+                extent.front = extent.front.max(x);
+                extent.bottom = extent.bottom.min(y);
+                extent.top = extent.top.max(y);
+            }
+        }
         if let Some(last) = self.nodes.last() {
             let part = |axis: usize| {
                 let leap = node.place[axis] - last.place[axis];
