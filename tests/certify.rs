@@ -165,16 +165,17 @@ fn a_time_limit_leaves_what_is_reached_and_says_so() {
     bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.0001\ntime_limit_s = 0.05\n[constraints]");
     let ended = place(&bench, &[]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    ended.assert_says(&[
-        "the time limit of 0.0500 s is over: no gap is reached, 0.000100 % was asked for; 1 box is open",
-    ]);
-    // Never a bound that is none.
-    assert!(ended.stdout.contains("nothing is known") && !ended.stdout.contains("below 0"), "{}", ended.stdout);
+    // By then there may be a bound or none yet.
+    ended.assert_says(&["the time limit of 0.0500 s is over: ", "is reached, 0.000100 % was asked for; ", " open"]);
     let found = certificate(&bench);
-    assert_eq!((&found["best"]["status"], found["best"]["bound_mm"].as_f64()), (&"time_limit".into(), Some(0.0)));
+    assert_eq!(found["best"]["status"], "time_limit");
+    let [bound, value] = ["bound_mm", "value_mm"].map(|key| found["best"][key].as_f64().unwrap());
+    assert!((0.0..value).contains(&bound), "{bound} and {value}");
+    // Never a bound that is none.
+    assert_eq!(ended.stdout.contains("nothing is known"), bound == 0.0, "{}", ended.stdout);
     assert!(found["worst_reason"].as_str().unwrap().contains("time limit"), "{found:#}");
     let rows = bench.read("out/open-region.csv").lines().filter(|line| line.starts_with("best,")).count();
-    assert_eq!((rows, found["best"]["open_boxes"].as_u64()), (1, Some(1)));
+    assert!(rows > 0 && Some(rows as u64) == found["best"]["open_boxes"].as_u64());
     assert!(bench.read("out/open-region.svg").contains("<polygon"));
 }
 
