@@ -195,7 +195,8 @@ impl Milling {
         }
     }
 
-    /// Where the tool centre is at the end of the next step, the first time at step 0: what it swept is gone.
+    /// Where the tool centre is at the end of the next step, the first time at step 0: what it swept is gone. The tool has to
+    /// be outside the work in its first turn: passes within a radian of the start are not known.
     pub fn remember(&mut self, node: Node) {
         let nodes = self.trail.nodes();
         if let Some(before) = nodes.len().checked_sub(self.turn as usize).and_then(|index| nodes.get(index)) {

@@ -220,7 +220,8 @@ impl Wild {
 }
 
 /// Where the work begins on a ray from the centre at a time: the farthest crossing with any earlier edge, found by following
-/// each edge in small steps over all its earlier turns.
+/// each edge in small steps over all its earlier turns. A pass counts if its tooth was turned as on the ray, about a fixed
+/// centre, more than a radian after the start.
 fn brute_force(wild: &Wild, cutter: &Cutter, sense: f64, time: f64, psi: f64) -> f64 {
     let centre = wild.node(time).place;
     let (sine, cosine) = libm::sincos(psi);
@@ -233,19 +234,23 @@ fn brute_force(wild: &Wild, cutter: &Cutter, sense: f64, time: f64, psi: f64) ->
             [dx, dy]
         };
         let split = |[dx, dy]: [f64; 2]| [dx * sine - dy * cosine, dx * cosine + dy * sine];
-        let fine = 0.05;
+        let fine = 0.25;
         // An edge is not met again before a quarter of a step has passed.
         let mut last = split(edge(0.0));
         for index in 1..((time - 0.25) / fine) as usize {
             let next = split(edge(index as f64 * fine));
             if last[1] * next[1] <= 0.0 && last[0] > 0.0 {
-                // Regula falsi between the two.
+                // Bisection between the two.
                 let (mut a, mut b) = ((index - 1) as f64 * fine, index as f64 * fine);
                 for _ in 0..60 {
                     let middle = (a + b) / 2.0;
                     if split(edge(middle))[1] * split(edge(a))[1] <= 0.0 { b = middle } else { a = middle }
                 }
-                farthest = farthest.max(split(edge(a))[0]);
+                let turned = sense * psi - (a / wild.turn * TAU - offset);
+                let apart = turned - (turned / TAU).round() * TAU;
+                if a / wild.turn * TAU + apart >= 1.0 {
+                    farthest = farthest.max(split(edge(a))[0]);
+                }
             }
             last = next;
         }
@@ -256,8 +261,8 @@ fn brute_force(wild: &Wild, cutter: &Cutter, sense: f64, time: f64, psi: f64) ->
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Whatever the tool does: vibration that leaves the cut, runout, unequal pitch, down and up milling. In vibrations of 0.3 mm a
-    /// chip may be 2.2e-8 m off, the most that was seen: why is not known.
+    /// Whatever the tool does: vibration that leaves the cut, runout, unequal pitch, down and up milling. What is left, up to 7e-10 m,
+    /// is what cubics between steps miss of the vibration.
     #[test]
     fn chips_are_those_that_a_search_by_brute_force_finds(
         feed in 0.02e-3..0.3e-3_f64,
@@ -294,9 +299,10 @@ proptest! {
             }
             let found = force.on_tool[2] / K.axial / 1.6e-3;
             met += usize::from(expected > 0.0);
-            prop_assert!((found - expected).abs() < 1e-7, "{} {} at {}", found, expected, step);
+            prop_assert!((found - expected).abs() < 2e-9, "{} {} at {}", found, expected, step);
         }
-        prop_assert!(met > 0);
+        // Another case, please, for a tool that has gone back and forth so far that nothing is left to cut.
+        prop_assume!(met > 0);
     }
 }
 

@@ -69,7 +69,8 @@ impl Passes {
             let turns = (number / look.predecessors.len()) as f64;
             let predecessor = look.predecessors[number % look.predecessors.len()];
             let time = look.time - predecessor.delay - turns * look.turn;
-            match look.trail.at(time) {
+            // So that the centre is known for all rays that lie within a radian.
+            match look.trail.at(time).filter(|_| time >= look.steps_per_radian.abs()) {
                 Some(centre) => {
                     let older = look.trail.extent(time - predecessor.spacing / 2.0);
                     self.met.push(Met { time, radius: predecessor.radius, centre, older });
@@ -97,24 +98,32 @@ impl Passes {
     }
 }
 
-/// Centres that in a radian of the tooth come farther than this part of the radius need three steps to be found.
+/// Centres that in a radian of the tooth come farther than this part of the radius need four steps to be found,
 const SWIFT: f64 = 0.01;
+/// and so do those that stray from a straight way by more than this part of it.
+const STRAY: f64 = 2e-5;
 
 /// Where the centre was when an earlier tooth was on each ray: x and y. m
 ///
 /// The tooth was there, turned by delta more than when it had turned as far as the present one has now, when
-/// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower than the edge.
+/// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower than the edge,
+/// unless it is swift or just now on the turn.
 #[inline(always)]
 fn centres<S: Simd>(simd: S, look: &Look<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
     let [vx, vy] = met.centre.motion.map(|motion| motion * look.steps_per_radian / met.radius);
     let [x, y] = met.centre.place;
     let first = times(simd, look, met, rays, &[[x; LANES], [y; LANES]], [vx, vy]);
     let found = places(simd, look, met, &first);
-    if vx.abs() + vy.abs() < SWIFT {
+    let stray = |lane: usize| {
+        let [dx, dy] = [(0, x), (1, y)]
+            .map(|(axis, place)| (found[axis][lane] - place - met.centre.motion[axis] * first[lane]).abs());
+        dx + dy
+    };
+    if vx.abs() + vy.abs() < SWIFT && stray(0).max(stray(LANES - 1)) < STRAY * met.radius {
         return found;
     }
     let (mut known, mut found) = (first, found);
-    for _ in 0..2 {
+    for _ in 0..3 {
         let mut next = times(simd, look, met, rays, &found, [0.0; 2]);
         for lane in 0..LANES {
             // What is left of the error shrinks once more by the drift of the centre.
