@@ -6,7 +6,7 @@ use divan::{Bencher, black_box};
 use nalgebra::{SMatrix, SVector, Vector3};
 use std::path::Path;
 use stead::config::{Overrides, SimulationRun, read_simulation};
-use stead::simulation::arm::{AnyArm, Arm, Variant};
+use stead::simulation::arm::{AnyArm, Arm, Compensation, Variant};
 use stead::simulation::integrator::{Newmark, Settings, State, System, Tangent};
 use stead::simulation::survey::{depths, linear_at, survey};
 
@@ -24,6 +24,7 @@ fn shipped(variant: Variant) -> SimulationRun {
 struct Shaken<const N: usize> {
     arm: Arm<N>,
     reference: SVector<f64, N>,
+    compensation: Compensation<N>,
 }
 
 impl<const N: usize> System<N> for Shaken<N> {
@@ -31,7 +32,8 @@ impl<const N: usize> System<N> for Shaken<N> {
         let posed = self.arm.chain.at(&state.q);
         let force = Vector3::new(0.0, 50.0 * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
-        self.arm.unbalanced(&posed, motion, [&self.reference, &SVector::zeros()]) - posed.tip_torques(&force)
+        let reference = [&self.reference, &SVector::zeros()];
+        self.arm.unbalanced(&posed, motion, reference, &mut self.compensation) - posed.tip_torques(&force)
     }
 
     fn tangent(&mut self, _: f64, state: &State<N>) -> Tangent<N> {
@@ -46,7 +48,8 @@ impl<const N: usize> System<N> for Shaken<N> {
 fn steps<const N: usize>(bencher: Bencher<'_, '_>, arm: Arm<N>, motors: &[f64; 6]) {
     let reference = Arm::<N>::spread(motors);
     let mut state = State { q: arm.at_rest(&reference), speed: SVector::zeros(), acceleration: SVector::zeros() };
-    let mut system = Shaken { arm, reference };
+    let compensation = Compensation::about(&arm, &state.q);
+    let mut system = Shaken { arm, reference, compensation };
     let mut newmark = Newmark::new(Settings::default());
     let mut step = 0;
     bencher.bench_local(|| {

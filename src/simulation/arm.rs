@@ -197,28 +197,35 @@ impl<const N: usize> Arm<N> {
         posed: &Posed<N>,
         motion: [&SVector<f64, N>; 3],
         reference: [&SVector<f64, N>; 2],
+        compensation: &mut Compensation<N>,
     ) -> SVector<f64, N> {
         let [q, speed, acceleration] = motion;
-        let mut torques = posed.inverse_dynamics(&self.chain, speed, acceleration);
-        torques -= self.drive.torques(q, speed, reference[0], reference[1]);
+        let drives = self.drive.torques(q, speed, reference[0], reference[1]);
         if self.feels_gravity() {
-            torques += self.felt_gravity(posed, q);
+            let held = posed.inverse_dynamics(&self.chain, speed, acceleration, self.chain.free_fall());
+            held - drives - compensation.taken(self, q)
+        } else {
+            posed.inverse_dynamics(&self.chain, speed, acceleration, &Vector3::zeros()) - drives
         }
-        torques
     }
 
     /// What the springs have to carry of gravity at angles `q` (rad), posed there. N m
-    ///
-    /// Compensators take what gravity would ask of their joint with the motors of joints 4 and 6 at zero, so that the arm is
-    /// in a plane: the paper computes them from sums of q2, q3 and q5 alone (its eq. 9, with the payload).
     pub fn felt_gravity(&self, posed: &Posed<N>, q: &SVector<f64, N>) -> SVector<f64, N> {
+        posed.gravity(&self.chain) - self.not_felt(&self.planar(q).gravity(&self.chain))
+    }
+
+    /// The arm with the motors of joints 4 and 6 at zero, so that it is in a plane: compensators take what gravity would ask
+    /// of their joint there, since the paper computes them from sums of q2, q3 and q5 alone (its eq. 9, with the payload).
+    fn planar(&self, q: &SVector<f64, N>) -> Posed<N> {
         let mut planar = *q;
-        for motor in [3, 5] {
+        for motor in COMPENSATED_AS_IF_ZERO {
             planar[motor * Self::PER_MOTOR] = 0.0;
         }
-        let compensated = self.chain.at(&planar).gravity(&self.chain);
-        let taken = self.drive.felt_gravity.map(|share| 1.0 - share).component_mul(&compensated);
-        posed.gravity(&self.chain) - taken
+        self.chain.at(&planar)
+    }
+
+    fn not_felt(&self, torques: &SVector<f64, N>) -> SVector<f64, N> {
+        self.drive.felt_gravity.map(|share| 1.0 - share).component_mul(torques)
     }
 
     /// Whether some spring has to carry gravity.
@@ -258,6 +265,47 @@ impl<const N: usize> Arm<N> {
             }
         }
         q
+    }
+}
+
+/// Motors of the joints whose angles compensators do not know.
+const COMPENSATED_AS_IF_ZERO: [usize; 2] = [3, 5];
+
+/// What compensators take of gravity, near some angles: exact at them, linear about them. Made anew for angles farther off than
+/// 1 mrad, where it is wrong by a millionth of the torque.
+#[derive(Debug, Clone)]
+pub struct Compensation<const N: usize> {
+    at: SVector<f64, N>,
+    taken: SVector<f64, N>,
+    /// N m/rad
+    slope: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> Compensation<N> {
+    /// Angles (rad) for which it is linear.
+    const NEAR: f64 = 1e-3;
+
+    /// About angles `q` (rad).
+    pub fn about(arm: &Arm<N>, q: &SVector<f64, N>) -> Self {
+        let planar = arm.planar(q);
+        let mut slope = planar.gravity_stiffness(&arm.chain);
+        for motor in COMPENSATED_AS_IF_ZERO {
+            slope.fill_column(motor * Arm::<N>::PER_MOTOR, 0.0);
+        }
+        for (mut row, felt) in slope.row_iter_mut().zip(&arm.drive.felt_gravity) {
+            row *= 1.0 - felt;
+        }
+        Self { at: *q, taken: arm.not_felt(&planar.gravity(&arm.chain)), slope }
+    }
+
+    /// At angles `q` (rad). N m
+    pub fn taken(&mut self, arm: &Arm<N>, q: &SVector<f64, N>) -> SVector<f64, N> {
+        let off = q - self.at;
+        if off.amax() > Self::NEAR {
+            *self = Self::about(arm, q);
+            return self.taken;
+        }
+        self.taken + self.slope * off
     }
 }
 

@@ -135,7 +135,7 @@ mod tests {
             slices: 1,
             steps_per_turn: 72,
         };
-        let mut trail = Trail::default();
+        let mut trail = Trail::with_room(0, 100);
         for step in 0..=72 * 10 {
             let time = f64::from(step);
             let motion = [0.2e-3 / 72.0, y(time + 0.5) - y(time - 0.5)];

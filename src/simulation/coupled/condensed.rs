@@ -14,7 +14,7 @@ use crate::simulation::arm::Arm;
 use crate::simulation::integrator::StepError;
 use crate::simulation::milling::Force;
 use crate::simulation::motion::Motion;
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
 
 /// Stations are at most so far apart. m
 const SPACING: f64 = 5e-3;
@@ -136,7 +136,7 @@ fn asked<const N: usize>(arm: &Arm<N>, motion: &Motion, time: f64) -> SVector<f6
     let acceleration = (after - before) / (time + apart - before_time);
     let q = arm.at_rest(&reference);
     let posed = arm.chain.at(&q);
-    let mut torques = -posed.inverse_dynamics(&arm.chain, &speed, &acceleration);
+    let mut torques = -posed.inverse_dynamics(&arm.chain, &speed, &acceleration, &Vector3::zeros());
     if arm.feels_gravity() {
         torques -= arm.felt_gravity(&posed, &q);
         torques += arm.stiffness(&posed, &SVector::zeros()) * (q - reference);

@@ -1,7 +1,7 @@
 //! The whole chain, integrated by Newmark's method.
 
 use super::{End, Job, JobError, Process, Run};
-use crate::simulation::arm::Arm;
+use crate::simulation::arm::{Arm, Compensation};
 use crate::simulation::integrator::{Newmark, Settings, State, System, Tangent};
 use crate::simulation::milling::Force;
 use nalgebra::SVector;
@@ -10,6 +10,7 @@ use nalgebra::SVector;
 struct Coupled<'a, const N: usize> {
     arm: &'a Arm<N>,
     process: Process<'a>,
+    compensation: Compensation<N>,
     /// Of the last evaluation: place and velocity of the tool centre, and the force on it.
     last: ([f64; 2], [f64; 2], Force),
 }
@@ -23,7 +24,8 @@ impl<const N: usize> System<N> for Coupled<'_, N> {
         let force = self.process.force(time, place);
         self.last = (place, velocity, force);
         let reference = [&Arm::<N>::spread(&angles), &Arm::<N>::spread(&speeds)];
-        self.arm.unbalanced(&posed, [&state.q, &state.speed, &state.acceleration], reference)
+        let motion = [&state.q, &state.speed, &state.acceleration];
+        self.arm.unbalanced(&posed, motion, reference, &mut self.compensation)
             - posed.tip_torques(&self.process.plane.force(force.on_tool))
     }
 
@@ -52,7 +54,8 @@ pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError>
         speed: Arm::<N>::spread(&speeds),
         acceleration: SVector::zeros(),
     };
-    let mut system = Coupled { arm, process, last: ([0.0; 2], [0.0; 2], Force::default()) };
+    let compensation = Compensation::about(arm, &state.q);
+    let mut system = Coupled { arm, process, compensation, last: ([0.0; 2], [0.0; 2], Force::default()) };
     state = Newmark::started(&mut system, 0.0, &state)?;
     let mut newmark = Newmark::new(Settings::default());
     let (place, velocity, force) = system.last;

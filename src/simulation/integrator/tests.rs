@@ -1,6 +1,6 @@
 use super::*;
 use crate::simulation::arm::testing::{spindle, start, tx200};
-use crate::simulation::arm::{Arm, Variant};
+use crate::simulation::arm::{Arm, Compensation, Variant};
 
 /// The arm by itself with motors at rest, and a force on its tip that swings.
 struct Free<const N: usize> {
@@ -28,7 +28,9 @@ impl<const N: usize> System<N> for Free<N> {
         let posed = self.arm.chain.at(&state.q);
         let push = nalgebra::Vector3::new(0.0, self.force * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
-        self.arm.unbalanced(&posed, motion, [&self.reference, &SVector::zeros()]) - posed.tip_torques(&push)
+        let mut compensation = Compensation::about(&self.arm, &state.q);
+        let reference = [&self.reference, &SVector::zeros()];
+        self.arm.unbalanced(&posed, motion, reference, &mut compensation) - posed.tip_torques(&push)
     }
 
     fn tangent(&mut self, _: f64, state: &State<N>) -> Tangent<N> {

@@ -25,6 +25,9 @@ use crate::lanes::{Instructions, Lanes};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 
+/// Turns in a stretch of the trail.
+const STRETCH: usize = 6;
+
 /// Milling under way: the cutter in the work that it has milled so far.
 #[derive(Debug, Clone)]
 pub struct Milling {
@@ -123,7 +126,7 @@ impl Milling {
             lags: lags.collect(),
             rest: (cut.slices - 1) % LANES + 1,
             stock: Stock { length: cut.length, top },
-            trail: Trail::with_room(steps),
+            trail: Trail::with_room(steps, STRETCH * cut.steps_per_turn),
             passes: Passes::default(),
             coefficients: cutter.coefficients(),
             slice,

@@ -74,18 +74,20 @@ impl<const N: usize> Posed<N> {
         matrix
     }
 
-    /// Joint torques (N m) that joint speeds (rad/s) and accelerations (rad/s^2) need, gravity left out:
-    /// `M qdd + C(q, qd) qd`, by recursive Newton-Euler.
+    /// Joint torques (N m) that joint speeds (rad/s) and accelerations (rad/s^2) need in a field of gravity (acceleration of
+    /// free fall, m/s^2): `M qdd + C(q, qd) qd + g(q)`, by recursive Newton-Euler.
     pub fn inverse_dynamics(
         &self,
         chain: &Chain<N>,
         speed: &SVector<f64, N>,
         acceleration: &SVector<f64, N>,
+        free_fall: &Vector3<f64>,
     ) -> SVector<f64, N> {
         let pole = self.pole();
         // Motion of the body's point at the pole, and its rate of change there, angular and linear.
         let (mut spin, mut velocity) = (Vector3::zeros(), Vector3::zeros());
-        let (mut spin_rate, mut velocity_rate) = (Vector3::zeros(), Vector3::zeros());
+        // To be held against gravity is to be moved upwards.
+        let (mut spin_rate, mut velocity_rate) = (Vector3::zeros(), -free_fall);
         let mut loads = [None; N];
         for j in 0..N {
             let axis = &self.axes[j];

@@ -16,4 +16,4 @@ mod trail;
 pub use passes::{Look, Passes, Predecessor};
 pub(super) use rays::starts;
 pub use rays::{LANES, Rays, Stock};
-pub use trail::{Extent, Node, Trail};
+pub use trail::{Extent, Extents, Node, Trail};

@@ -1,7 +1,7 @@
 //! What earlier teeth have cleared along rays from the tool centre.
 
 use super::rays::{LANES, Rays, starts};
-use super::trail::{Extent, Node, Trail};
+use super::trail::{Extent, Extents, Node, Trail};
 use crate::lanes::Lanes;
 use pulp::Simd;
 
@@ -49,7 +49,7 @@ struct Met {
     radius: f64,
     centre: Node,
     /// What all passes before this one have in common; `None` if there was none.
-    older: Option<Extent>,
+    older: Option<Extents>,
 }
 
 /// So far (in steps) the cubic of a step is used beyond its ends, for rays that lie a little beside it. There the next step's
@@ -72,7 +72,7 @@ impl Passes {
             // So that the centre is known for all rays that lie within a radian.
             match look.trail.at(time).filter(|_| time >= look.steps_per_radian.abs()) {
                 Some(centre) => {
-                    let older = look.trail.extent(time - predecessor.spacing / 2.0);
+                    let older = look.trail.up_to(time - predecessor.spacing / 2.0);
                     self.met.push(Met { time, radius: predecessor.radius, centre, older });
                 }
                 None => self.ended = true,
@@ -89,8 +89,9 @@ impl Passes {
         while let Some(met) = self.get(look, index) {
             let centres = centres(simd, look, &met, rays);
             advance(simd, look, &met, &centres, rays);
-            let Some(older) = &met.older else { break };
-            if !may_reach(simd, older, look, rays) {
+            let Some(Extents { recent, before }) = &met.older else { break };
+            if !may_reach(simd, recent, look, rays) && !before.is_some_and(|older| may_reach(simd, &older, look, rays))
+            {
                 break;
             }
             index += 1;

@@ -20,6 +20,24 @@ pub struct Extent {
     pub top: f64,
 }
 
+impl Extent {
+    /// Bounds of both.
+    #[must_use]
+    pub fn joined(self, other: Self) -> Self {
+        let Self { front, bottom, top } = self;
+        Self { front: front.max(other.front), bottom: bottom.min(other.bottom), top: top.max(other.top) }
+    }
+}
+
+/// Bounds of the way up to a node, in two parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extents {
+    /// Of the way in the last one to two stretches.
+    pub recent: Extent,
+    /// Of all before that; none at the beginning.
+    pub before: Option<Extent>,
+}
+
 /// A step: the cubic `place + s (motion + s (second + s third))` for s from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Leg {
@@ -30,35 +48,51 @@ pub(super) struct Leg {
 }
 
 /// The way of the tool centre, one node a step; between nodes a cubic through places and motions (Hermite).
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Trail {
+    /// Nodes in a stretch.
+    stretch: usize,
     nodes: Vec<Node>,
     legs: Vec<Leg>,
     extents: Vec<Extent>,
+    /// For each node: since the beginning of the stretch before its own.
+    recents: Vec<Extent>,
+    /// Of each stretch by itself.
+    stretches: Vec<Extent>,
 }
 
 impl Trail {
-    /// An empty trail with room for a number of steps.
-    pub fn with_room(steps: usize) -> Self {
-        Self { nodes: Vec::with_capacity(steps), legs: Vec::with_capacity(steps), extents: Vec::with_capacity(steps) }
+    /// An empty trail with room for a number of steps. What is long past is bounded apart from the last one to two stretches
+    /// of at least one step: a tool that vibrates should come farther in a stretch than it vibrates.
+    pub fn with_room(steps: usize, stretch: usize) -> Self {
+        let stretch = stretch.max(1);
+        Self {
+            stretch,
+            nodes: Vec::with_capacity(steps),
+            legs: Vec::with_capacity(steps),
+            extents: Vec::with_capacity(steps),
+            recents: Vec::with_capacity(steps),
+            stretches: Vec::with_capacity(steps / stretch + 1),
+        }
     }
 
     /// The end of the next step; the first node is that of step 0.
     pub fn push(&mut self, node: Node) {
-        let [x, y] = node.place;
-        let mut extent = match self.extents.last() {
-            None => Extent { front: x, bottom: y, top: y },
-            Some(last) => Extent { front: last.front.max(x), bottom: last.bottom.min(y), top: last.top.max(y) },
-        };
+        let at = |[x, y]: [f64; 2]| Extent { front: x, bottom: y, top: y };
+        let mut own = at(node.place);
         if let Some(last) = self.nodes.last() {
             // A cubic stays within its control points.
             for (place, motion) in [(last.place, last.motion), (node.place, node.motion.map(|motion| -motion))] {
-                let [x, y] = [0, 1].map(|axis| place[axis] + motion[axis] / 3.0);
-                extent.front = extent.front.max(x);
-                extent.bottom = extent.bottom.min(y);
-                extent.top = extent.top.max(y);
+                own = own.joined(at([0, 1].map(|axis| place[axis] + motion[axis] / 3.0)));
             }
         }
+        self.extents.push(self.extents.last().map_or(own, |all| all.joined(own)));
+        match self.stretches.last_mut().filter(|_| !self.nodes.len().is_multiple_of(self.stretch)) {
+            Some(stretch) => *stretch = stretch.joined(own),
+            None => self.stretches.push(own),
+        }
+        let recent = self.stretches.iter().rev().take(2).copied().reduce(Extent::joined);
+        self.recents.extend(recent);
         if let Some(last) = self.nodes.last() {
             let part = |axis: usize| {
                 let leap = node.place[axis] - last.place[axis];
@@ -70,7 +104,6 @@ impl Trail {
             self.legs.push(Leg { place: last.place, motion: last.motion, second, third });
         }
         self.nodes.push(node);
-        self.extents.push(extent);
     }
 
     /// All nodes.
@@ -85,8 +118,15 @@ impl Trail {
 
     /// What the nodes up to a time (in steps) and the next one have in common; `None` before the first.
     #[inline]
-    pub fn extent(&self, time: f64) -> Option<Extent> {
-        if time >= 0.0 { self.extents.get(time as usize + 1).or(self.extents.last()).copied() } else { None }
+    pub fn up_to(&self, time: f64) -> Option<Extents> {
+        if time < 0.0 || time.is_nan() {
+            return None;
+        }
+        let index = (time as i64 as usize + 1).min(self.nodes.len().wrapping_sub(1));
+        let recent = *self.recents.get(index)?;
+        let stretch = index / self.stretch;
+        let before = if stretch < 2 { None } else { self.extents.get((stretch - 1) * self.stretch).copied() };
+        Some(Extents { recent, before })
     }
 
     /// Place and motion at a time, in steps; `None` before the first node. After the last the cubic of the last step goes on.
