@@ -272,7 +272,7 @@ impl<const N: usize> Arm<N> {
 const COMPENSATED_AS_IF_ZERO: [usize; 2] = [3, 5];
 
 /// What compensators take of gravity, near some angles: exact at them, linear about them. Made anew for angles farther off than
-/// 1 mrad, where it is wrong by a millionth of the torque.
+/// 1 mrad, where it is wrong by some millionths of the torque.
 #[derive(Debug, Clone)]
 pub struct Compensation<const N: usize> {
     at: SVector<f64, N>,

