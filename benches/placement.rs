@@ -13,7 +13,7 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
-use stead::placement::kernel::lanes::Instructions;
+use stead::lanes::Instructions;
 use stead::placement::kernel::{Flips, Kernel, States};
 use stead::placement::redundancy::band::{self, Step};
 use stead::placement::redundancy::{Extremum, Planner};

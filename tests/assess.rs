@@ -5,7 +5,6 @@
 mod common;
 
 use common::{Bench, Ended};
-use std::path::Path;
 
 const STUDY: &str = "configs/klimchik-2017.toml";
 const COMPATIBLE: &str = "configs/klimchik-2017-table-compatible.toml";
@@ -23,12 +22,10 @@ fn bench() -> Bench {
 /// The same with the map as shipped.
 fn fine_bench() -> Bench {
     let bench = Bench::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let robots = ["kr100-ha", "kr120-r3900", "kr270-r2700", "kr360-l240", "kr500"];
-    let robots = robots.map(|name| format!("configs/robots/kuka-{name}.toml"));
-    let files = [STUDY, COMPATIBLE, "configs/reference/klimchik-2017-tables.toml"].map(str::to_owned);
-    for name in robots.iter().chain(&files) {
-        bench.write(name, &std::fs::read_to_string(root.join(name)).unwrap());
+    bench.copy_all(&[STUDY, COMPATIBLE, "configs/reference/klimchik-2017-tables.toml"]);
+    for name in ["kr100-ha", "kr120-r3900", "kr270-r2700", "kr360-l240", "kr500"] {
+        let file = format!("configs/robots/kuka-{name}.toml");
+        bench.copy(&file, &file);
     }
     bench
 }

@@ -140,8 +140,7 @@ fn points_in_space_are_measured_in_their_plane() {
 #[test]
 fn shipped_example_is_what_the_manual_says() {
     let bench = bench();
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    bench.write(FILE, &std::fs::read_to_string(root.join("tasks/measured-groove.csv")).unwrap());
+    bench.copy("tasks/measured-groove.csv", FILE);
     let document = run(&bench, &["--exclude-deg", "354:7", "--json"]).json();
     assert_eq!((document["points"].as_u64(), document["excluded"].as_u64()), (Some(240), Some(9)));
     let ratio =

@@ -20,9 +20,8 @@ const SOFTER: &str = "softer.toml";
 /// A bench with the published case, the shipped plan of it, and a file that compensates it.
 fn bench() -> Bench {
     let bench = Bench::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    bench.write(PLAN, &std::fs::read_to_string(root.join("results/caro-2013/best.csv")).unwrap());
-    bench.write(CONFIG, &std::fs::read_to_string(root.join("configs/compensate-caro-2013.toml")).unwrap());
+    bench.copy("results/caro-2013/best.csv", PLAN);
+    bench.copy("configs/compensate-caro-2013.toml", CONFIG);
     bench.replace(CONFIG, "caro-2013.toml", "run.toml");
     bench.replace(CONFIG, "../results/caro-2013/best.csv", "../plan/best.csv");
     bench

@@ -6,7 +6,6 @@ mod common;
 
 use common::{Bench, Ended};
 use nalgebra::Vector3;
-use std::path::Path;
 use stead::identification::Configuration;
 use stead::identification::synthetic::{Cell, sheet};
 use stead::robot::{Compensator, Compliance, Pose};
@@ -18,10 +17,7 @@ const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";
 /// A bench with the shipped example.
 fn bench() -> Bench {
     let bench = Bench::new();
-    for name in [CONFIG, SHEET] {
-        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
-        bench.write(name, &text);
-    }
+    bench.copy_all(&[CONFIG, SHEET]);
     bench
 }
 

@@ -24,9 +24,7 @@ fn bench() -> Bench {
 
 fn shipped() -> Bench {
     let bench = Bench::new();
-    for name in [CONFIG, "configs/robots/kuka-kr270-r2700.toml"] {
-        bench.write(name, &std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap());
-    }
+    bench.copy_all(&[CONFIG, "configs/robots/kuka-kr270-r2700.toml"]);
     bench
 }
 

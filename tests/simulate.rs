@@ -6,44 +6,23 @@ mod common;
 
 use common::{Bench, Ended};
 use serde_json::Value;
-use std::collections::BTreeMap;
-use std::path::Path;
 
 const PASS: &str = "configs/pass.toml";
+const ROBOT: &str = "configs/robots/staubli-tx200.toml";
 
 /// A bench with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
-struct Shop {
-    bench: Bench,
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.copy("configs/umons-aluminium.toml", PASS);
+    bench.copy(ROBOT, ROBOT);
+    bench.replace(PASS, "length_mm = 107.9167", "length_mm = 32.0");
+    bench.replace(PASS, "length_mm = 90.0", "length_mm = 20.0");
+    bench.replace(PASS, "window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
+    bench
 }
 
-impl Shop {
-    fn new() -> Self {
-        let shop = Self { bench: Bench::new() };
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for (from, to) in [
-            ("configs/umons-aluminium.toml", PASS),
-            ("configs/robots/staubli-tx200.toml", "configs/robots/staubli-tx200.toml"),
-        ] {
-            shop.bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
-        }
-        shop.replace("length_mm = 107.9167", "length_mm = 32.0");
-        shop.replace("length_mm = 90.0", "length_mm = 20.0");
-        shop.replace("window_s = [0.4, 1.4]", "steps_per_turn = 90\nslices = 8\nwindow_s = [0.3, 0.4]");
-        shop
-    }
-
-    fn replace(&self, from: &str, to: &str) {
-        self.bench.replace(PASS, from, to);
-    }
-
-    fn run(&self, arguments: &[&str]) -> Ended {
-        self.bench.stead(&[&["simulate", PASS], arguments].concat())
-    }
-
-    /// The files in a folder with their content.
-    fn files(&self, folder: &str) -> BTreeMap<String, Option<Vec<u8>>> {
-        self.bench.tree(folder)
-    }
+fn simulate(bench: &Bench, arguments: &[&str]) -> Ended {
+    bench.stead(&[&["simulate", PASS], arguments].concat())
 }
 
 fn number(value: &Value) -> f64 {
@@ -52,8 +31,8 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn a_pass_has_its_files_its_document_and_its_text() {
-    let shop = Shop::new();
-    let ended = shop.run(&["--json"]);
+    let bench = bench();
+    let ended = simulate(&bench, &["--json"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     let document = ended.json();
     for axis in ["force_x", "force_y"] {
@@ -72,30 +51,30 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert!(number(&document["real_time_factor"]) > 0.0);
 
     let expected = ["forces.svg", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
-    let files = shop.files("results/pass");
+    let files = bench.tree("results/pass");
     assert!(files.keys().eq(&expected), "{:?}", files.keys());
-    let series = shop.bench.read("results/pass/series.csv");
+    let series = bench.read("results/pass/series.csv");
     assert!(series.starts_with("time_s,force_x_n,force_y_n,force_axial_n,x_mm,y_mm,deflection_x_um,deflection_y_um\n"));
     assert_eq!(series.lines().count() as f64, number(&document["steps"]) + 2.0);
-    let summary: Value = serde_json::from_str(&shop.bench.read("results/pass/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&bench.read("results/pass/summary.json")).unwrap();
     assert_eq!(summary["force_x"], document["force_x"]);
     assert!(summary["real_time_factor"].is_null());
 
     // The same bytes again; and a text for people.
-    let ended = shop.run(&["--out", "again"]);
+    let ended = simulate(&bench, &["--out", "again"]);
     assert_eq!(ended.code, Some(0));
     for part in ["along the feed", "published", "roughness of the wall", "The cut is calm", "results in again"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
-    assert!(shop.files("again") == files);
+    assert!(bench.tree("again") == files);
 }
 
 #[test]
 fn the_fast_model_agrees_in_every_variant() {
-    let shop = Shop::new();
+    let bench = bench();
     for variant in ["springs", "gravity", "orthogonal", "backlash"] {
         let [full, fast] = [&["--json"][..], &["--json", "--fast"]].map(|arguments| {
-            let ended = shop.run(&[arguments, &["--variant", variant]].concat());
+            let ended = simulate(&bench, &[arguments, &["--variant", variant]].concat());
             assert_eq!(ended.code, Some(0), "{}", ended.stderr);
             ended.json()
         });
@@ -113,18 +92,18 @@ fn the_fast_model_agrees_in_every_variant() {
 /// Whatever happens, a run that could start ends with a verdict, its files and exit code 0.
 #[test]
 fn an_unstable_run_ends_cleanly_with_the_verdict() {
-    let shop = Shop::new();
-    shop.replace("kt_mpa = 661.553", "kt_mpa = 66155.3");
-    shop.replace("kr_mpa = 253.458", "kr_mpa = 25345.8");
-    shop.replace("axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
-    let ended = shop.run(&["--json", "--damping-scale", "0"]);
+    let bench = bench();
+    bench.replace(PASS, "kt_mpa = 661.553", "kt_mpa = 66155.3");
+    bench.replace(PASS, "kr_mpa = 253.458", "kr_mpa = 25345.8");
+    bench.replace(PASS, "axial_depth_mm = 1.6", "axial_depth_mm = 20.0");
+    let ended = simulate(&bench, &["--json", "--damping-scale", "0"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let document = ended.json();
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(shop.files("results/pass").len(), 6);
-    assert!(shop.run(&["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
+    assert_eq!(bench.tree("results/pass").len(), 6);
+    assert!(simulate(&bench, &["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 
 #[test]
@@ -164,11 +143,11 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
             &["published.springs.force_x_n", "four numbers"],
         ),
     ] {
-        let shop = Shop::new();
-        shop.replace(from, to);
-        let ended = shop.run(&[]);
+        let bench = bench();
+        bench.replace(PASS, from, to);
+        let ended = simulate(&bench, &[]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{to}");
         ended.assert_says(&[parts, &["configs/pass.toml:", "allowed: "]].concat());
-        assert!(!shop.bench.path("results").exists(), "{to}");
+        assert!(!bench.path("results").exists(), "{to}");
     }
 }

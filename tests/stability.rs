@@ -6,7 +6,6 @@ mod common;
 
 use common::{Bench, Ended};
 use serde_json::Value;
-use std::path::Path;
 
 const STEEL: &str = "configs/umons-steel.toml";
 const ALUMINIUM: &str = "configs/umons-aluminium.toml";
@@ -16,10 +15,7 @@ const ROBOT: &str = "configs/robots/staubli-tx200.toml";
 /// A bench with the shipped simulation files, with few lobes, and a path of six points.
 fn bench() -> Bench {
     let bench = Bench::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for name in [STEEL, ALUMINIUM, PATH, ROBOT] {
-        bench.write(name, &std::fs::read_to_string(root.join(name)).unwrap());
-    }
+    bench.copy_all(&[STEEL, ALUMINIUM, PATH, ROBOT]);
     for name in [STEEL, ALUMINIUM] {
         bench.replace(name, "# [stability] ", "[stability]\nlobes_points = 3\n# ");
     }

@@ -1,7 +1,7 @@
 //! `stead circularity`: roundness of measured points.
 
 use super::arguments::CircularityOptions;
-use super::{Failure, print, say};
+use super::{Failure, files_written, print, say};
 use crate::assessment::circle::CircleError;
 use crate::assessment::roundness::{Roundness, RoundnessError, assess};
 use crate::config::{PointFile, read_points};
@@ -17,7 +17,7 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     mention_flatness(&found);
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
-        circularity::write(&folder, &file, &found).map_err(|e| Failure::Job(e.to_string()))?;
+        files_written(circularity::write(&folder, &file, &found))?;
     }
     if options.json {
         print(&json::bytes(&circularity::document(&file, &found)));

@@ -109,6 +109,11 @@ fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -
     Ok((pool.install(job), pool.current_num_threads()))
 }
 
+/// Whether the files of a job that is done could be written.
+fn files_written<T>(written: Result<T, ReportError>) -> Result<(), Failure> {
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+}
+
 /// The folder that results go to.
 struct OutFolder {
     folder: Folder,
@@ -138,7 +143,7 @@ impl OutFolder {
             return self.tell(written, where_to, text);
         }
         print(&json::bytes(&document()));
-        written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+        files_written(written)
     }
 
     /// Shows a result as text, as [`OutFolder::show`] does.
@@ -150,7 +155,7 @@ impl OutFolder {
     ) -> Result<(), Failure> {
         let where_to = written.as_ref().map_or_else(|_| String::new(), |_| where_to(self.folder.path().display()));
         print(text(where_to).as_bytes());
-        written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+        files_written(written)
     }
 }
 

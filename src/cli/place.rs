@@ -4,7 +4,7 @@ use super::arguments::PlaceOptions;
 use super::certify::{certified, warn_unfit};
 use super::progress::Watcher;
 use super::score::{mention_cancellation, path_stability};
-use super::{Failure, on_threads, out_folder, print, say};
+use super::{Failure, files_written, on_threads, out_folder, print, say};
 use crate::config::read_run_to_certify;
 use crate::placement::control::Control;
 use crate::placement::place::place;
@@ -49,7 +49,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     let mut shown = match options.json {
-        true => written.map(|_| ()).map_err(|e| Failure::Job(e.to_string())),
+        true => files_written(written),
         false => out.tell(
             written,
             |folder| format!("; results in {folder}"),
@@ -65,8 +65,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     }
     if let Some(settings) = run.certificate {
         let certificate = certified(&run, settings, &outcome, options.threads, &watcher)?;
-        let written = write_certificate(&out.folder, &run.problem, &certificate);
-        shown = shown.and(written.map(|_| ()).map_err(|e| Failure::Job(e.to_string())));
+        shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate)));
         if let Value::Object(entries) = &mut document {
             entries.insert("certificate".to_owned(), certificate_json(&certificate));
         }

@@ -49,6 +49,15 @@ impl<'a> Field<'a> {
         Ok(ends)
     }
 
+    /// As [`Field::interval_where`], the first number below the second.
+    ///
+    /// # Errors
+    /// [`InputError`] when the key is missing, or its value is no such array.
+    pub fn wide_interval_where(&self, allowed: &str, test: impl Fn(f64) -> bool) -> Result<[f64; 2], InputError> {
+        let ends = self.interval_where(allowed, test)?;
+        if ends[0] < ends[1] { Ok(ends) } else { Err(self.error("has no width", allowed)) }
+    }
+
     /// Two finite numbers, the first not above the second.
     ///
     /// # Errors

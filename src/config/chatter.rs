@@ -1,9 +1,8 @@
 //! The `[stability]` table of a run: what is to be cut along the path, to be told where it chatters.
 
-use super::reader::{Field, Table};
-use super::simulation::{MILLING_KEYS, MOST_DAMPING_SCALE, milling_from};
+use super::reader::Table;
+use super::simulation::{MILLING_KEYS, damping_scale_from, deepest_from, milling_from, variant_from};
 use crate::input::InputError;
-use crate::simulation::arm::Variant;
 use crate::simulation::chatter::Chatter;
 
 /// Slices of the cutter: enough for mean coefficients.
@@ -23,16 +22,10 @@ pub(super) fn chatter_from(table: &Table<'_>) -> Result<Chatter, InputError> {
     table.fields(keys)?;
     let [variant, damping_scale, deepest] = OWN.map(|key| table.field(key));
     let (cutter, cut) = milling_from(table, 1.0, SLICES, STEPS)?;
-    let words = Variant::ALL.map(|variant| (variant.word(), variant));
-    let scale = format!("a number from 0 to {MOST_DAMPING_SCALE}");
-    let scaled = |field: &Field<'_>| field.number_where(&scale, |value| (0.0..=MOST_DAMPING_SCALE).contains(&value));
-    let flute_mm = cutter.flute() * 1e3;
-    let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
-    let depth = |field: &Field<'_>| field.number_where(&within, |value| value > 0.0 && value <= flute_mm);
     Ok(Chatter {
-        variant: variant.optional(|field| field.one_of(&words))?.unwrap_or(Variant::Springs),
-        damping_scale: damping_scale.optional(scaled)?.unwrap_or(1.0),
-        deepest: deepest.optional(depth)?.unwrap_or(flute_mm) / 1e3,
+        variant: variant_from(&variant)?,
+        damping_scale: damping_scale_from(&damping_scale)?,
+        deepest: deepest_from(&deepest, &cutter)?,
         cutter,
         cut,
     })

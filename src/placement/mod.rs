@@ -35,8 +35,8 @@ pub(crate) mod testing {
     use super::problem::*;
     use crate::robot::testing::{kr270, spindle};
     use crate::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
-    use crate::task::{Task, read_csv};
-    use nalgebra::DMatrix;
+    use crate::task::{PathPoint, Task, ToolPath, Wrench, read_csv};
+    use nalgebra::{DMatrix, Vector3};
     use std::f64::consts::PI;
     use std::path::Path;
 
@@ -57,6 +57,35 @@ pub(crate) mod testing {
             criterion: Criterion::default(),
             redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
         }
+    }
+
+    /// The five segments with forces in every direction.
+    pub fn slanted() -> Problem {
+        let mut problem = five_segments();
+        let force = |point: usize| {
+            let (sine, cosine) = libm::sincos(point as f64);
+            Vector3::new(90.0 * sine, 40.0 * cosine, 60.0 * libm::sin(0.3 * point as f64))
+        };
+        let wrenches = (0..105).map(|point| Wrench { force: force(point), moment: Vector3::zeros() }).collect();
+        problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
+        problem
+    }
+
+    /// The five segments on a workpiece that hangs, the tool from below: the other sense of the heading.
+    pub fn hanging() -> Problem {
+        let mut problem = five_segments();
+        let turned = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
+        let path = problem.task.path();
+        let points = path.points().iter().enumerate().map(|(k, point)| {
+            let point =
+                PathPoint { position: turned(point.position), feed: turned(point.feed), axis: turned(point.axis) };
+            (path.segment_of(k) as u32 + 1, point)
+        });
+        let turned_path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+        let wrenches = problem.task.wrenches().iter().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
+        problem.cell.position[2] = Interval { min: 1.0, max: 1.4 };
+        problem.task = Task::new(turned_path, wrenches).unwrap();
+        problem
     }
 
     /// The same problem with other laws of compliance at some joints (from 0).

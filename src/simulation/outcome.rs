@@ -95,9 +95,7 @@ impl Simulation {
         };
         let window = look.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
         let linear = linear_at(job.setup, (job.cut.length / 2.0).min(job.setup.motion.length()))?;
-        let motion = &job.setup.motion;
-        let axis = -motion.start().rotation.column(2).into_owned();
-        let plant = linear.plant(&CutFrame::new(*motion.direction(), axis, job.cut.milling))?;
+        let plant = linear.plant(&CutFrame::along(&job.setup.motion, job.cut.milling))?;
         let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(SurveyError::from)?;
         let wall = wall(job, look, &run);
         let filtered = wall.filtered(look.cutoff);

@@ -3,6 +3,7 @@
 use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::milling::{Cut, Cutter};
 use super::modes::{Linear, Mode};
+use super::motion::Motion;
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use crate::cutting::{EngagementError, Milling};
@@ -44,6 +45,8 @@ pub struct CutFrame {
     pub feed: Vector3<f64>,
     /// Out of the wall.
     pub normal: Vector3<f64>,
+    /// From the work to the spindle.
+    pub axis: Vector3<f64>,
 }
 
 impl CutFrame {
@@ -52,7 +55,12 @@ impl CutFrame {
     pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: Milling) -> Self {
         let left = axis.cross(&feed).normalize();
         let normal = if milling == Milling::Climb { left } else { -left };
-        Self { feed: left.cross(&axis), normal }
+        Self { feed: left.cross(&axis), normal, axis }
+    }
+
+    /// Along a pass.
+    pub fn along(motion: &Motion, milling: Milling) -> Self {
+        Self::new(*motion.direction(), -motion.start().rotation.column(2), milling)
     }
 }
 
@@ -91,8 +99,7 @@ const FREQUENCIES: usize = 1000;
 /// [`SurveyError`] for an arm that says too little, or a cut without width.
 pub fn survey(setup: &Setup, cutter: &Cutter, cut: &Cut, plan: &Plan) -> Result<Survey, SurveyError> {
     let linear = linear_at(setup, plan.way)?;
-    let axis = -setup.motion.start().rotation.column(2);
-    let frame = CutFrame::new(*setup.motion.direction(), axis, cut.milling);
+    let frame = CutFrame::along(&setup.motion, cut.milling);
     let plant = linear.plant(&frame)?;
     let between = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
         (0..count).map(|k| from + (to - from) * k as f64 / (count - 1).max(1) as f64).collect()

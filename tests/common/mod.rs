@@ -29,14 +29,8 @@ impl Bench {
     /// Copies the files.
     pub fn new() -> Self {
         let bench = Self { folder: tempfile::tempdir().unwrap() };
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for (from, to) in [
-            ("configs/caro-2013.toml", RUN),
-            ("configs/robots/kuka-kr270-2.toml", "configs/robots/kuka-kr270-2.toml"),
-            ("tasks/five-segments.csv", "tasks/five-segments.csv"),
-        ] {
-            bench.write(to, &std::fs::read_to_string(root.join(from)).unwrap());
-        }
+        bench.copy("configs/caro-2013.toml", RUN);
+        bench.copy_all(&["configs/robots/kuka-kr270-2.toml", "tasks/five-segments.csv"]);
         bench.replace(RUN, "population = 120\n", "population = 16\n");
         bench.replace(RUN, "generations = 51\n", "generations = 3\nbasins = 2\n");
         bench.replace(RUN, "beta_step_deg = 3.0", "beta_step_deg = 7.2");
@@ -58,6 +52,16 @@ impl Bench {
         let path = self.path(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, text).unwrap();
+    }
+
+    /// Writes a shipped file, by its path in the crate, under another name.
+    pub fn copy(&self, from: &str, to: &str) {
+        self.write(to, &std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(from)).unwrap());
+    }
+
+    /// Writes shipped files under their own names.
+    pub fn copy_all(&self, names: &[&str]) {
+        names.iter().for_each(|name| self.copy(name, name));
     }
 
     /// Replaces the first place where a text stands in a file, which must be there. Returns its line, from 1.

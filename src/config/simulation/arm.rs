@@ -43,13 +43,9 @@ pub(super) fn setup_from(
     overrides: &Overrides,
     inputs: &mut Vec<InputFile>,
 ) -> Result<Setup, InputError> {
-    let words = Variant::ALL.map(|variant| (variant.word(), variant));
-    let variant = fields.variant.optional(|field| field.one_of(&words))?;
-    let variant = overrides.variant.or(variant).unwrap_or(Variant::Springs);
-    let allowed = format!("a number from 0 to {MOST_DAMPING_SCALE}");
-    let scale = |field: &Field<'_>| field.number_where(&allowed, |value| (0.0..=MOST_DAMPING_SCALE).contains(&value));
-    let damping_scale = fields.damping_scale.optional(scale)?;
-    let damping_scale = overrides.damping_scale.or(damping_scale).unwrap_or(1.0);
+    let (variant, damping_scale) = (variant_from(&fields.variant)?, damping_scale_from(&fields.damping_scale)?);
+    let variant = overrides.variant.unwrap_or(variant);
+    let damping_scale = overrides.damping_scale.unwrap_or(damping_scale);
     let spindle = spindle_from(&fields.spindle.table()?)?;
     let named = fields.robot.named_file()?;
     let source = Source::new(&named.file, named.bytes)?;
@@ -57,6 +53,19 @@ pub(super) fn setup_from(
     inputs.push(input_file("robot", named.name, source.bytes()));
     let motion = motion_from(&fields.pass.table()?, &robot, &spindle)?;
     Ok(Setup { robot, spindle, variant, damping_scale, motion })
+}
+
+/// How much of the arm is modelled; the least where the file does not say.
+pub(in crate::config) fn variant_from(field: &Field<'_>) -> Result<Variant, InputError> {
+    let words = Variant::ALL.map(|variant| (variant.word(), variant));
+    Ok(field.optional(|field| field.one_of(&words))?.unwrap_or(Variant::Springs))
+}
+
+/// What all damping is multiplied with; 1 where the file does not say.
+pub(in crate::config) fn damping_scale_from(field: &Field<'_>) -> Result<f64, InputError> {
+    let allowed = format!("a number from 0 to {MOST_DAMPING_SCALE}");
+    let scale = |field: &Field<'_>| field.number_where(&allowed, |value| (0.0..=MOST_DAMPING_SCALE).contains(&value));
+    Ok(field.optional(scale)?.unwrap_or(1.0))
 }
 
 /// The feed may be off the plane normal to the tool axis by so much. deg

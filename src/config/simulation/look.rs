@@ -34,10 +34,8 @@ pub(super) fn look_from(fields: &LookFields<'_, '_>, setup: &Setup, cut: &Cut) -
         let duration = setup.motion.duration();
         let allowed =
             format!("two times [from, to] from 0 to {duration:.4}, the duration of the pass, the first below");
-        look.window = window.optional(|field| {
-            let ends = field.interval_where(&allowed, |value| (0.0..=duration).contains(&value))?;
-            if ends[0] < ends[1] { Ok(ends) } else { Err(field.error("has no width", &allowed)) }
-        })?;
+        let within = |value: f64| (0.0..=duration).contains(&value);
+        look.window = window.optional(|field| field.wide_interval_where(&allowed, within))?;
         let depth_mm = cut.axial_depth * 1e3;
         let on_wall = format!("a number from 0 to axial_depth_mm = {depth_mm}");
         let inside = |value: f64| (0.0..=depth_mm).contains(&value);

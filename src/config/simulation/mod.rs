@@ -18,9 +18,11 @@ use crate::simulation::outcome::Look;
 use crate::simulation::setup::Setup;
 use crate::simulation::survey::Plan;
 use arm::{ArmFields, setup_from};
+pub(super) use arm::{damping_scale_from, variant_from};
 use look::{LookFields, check_step, look_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use std::path::Path;
+pub(super) use survey::deepest_from;
 use survey::plan_from;
 
 /// A simulation file and the files it names, read and checked.

@@ -26,8 +26,7 @@ pub(super) fn plan_from(field: &Field<'_>, setup: &Setup, cutter: &Cutter, cut: 
     let on_pass = format!("a number from 0 to the length of the pass, {length_mm} mm");
     let from_to = |field: &Field<'_>, least: f64, most: f64| {
         let allowed = format!("two numbers [from, to] from {least} to {most}, the first below the second");
-        let ends = field.interval_where(&allowed, |value| (least..=most).contains(&value))?;
-        if ends[0] < ends[1] { Ok(ends) } else { Err(field.error("has no width", allowed)) }
+        field.wide_interval_where(&allowed, |value| (least..=most).contains(&value))
     };
     if let Some(way) = way.optional(|f| f.number_where(&on_pass, |value| (0.0..=length_mm).contains(&value)))? {
         plan.way = way / 1e3;
@@ -38,13 +37,17 @@ pub(super) fn plan_from(field: &Field<'_>, setup: &Setup, cutter: &Cutter, cut: 
     if let Some(count) = points.optional(|field| field.integer(2..=10_000))? {
         plan.points = count as usize;
     }
-    let flute_mm = cutter.flute() * 1e3;
-    let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
-    if let Some(depth) = deepest.optional(|f| f.number_where(&within, |value| value > 0.0 && value <= flute_mm))? {
-        plan.deepest = depth / 1e3;
-    }
+    plan.deepest = deepest_from(&deepest, cutter)?;
     if let Some(ends) = frequencies.optional(|field| from_to(field, 0.0, 1e5))? {
         plan.frequencies = ends;
     }
     Ok(plan)
+}
+
+/// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
+pub(in crate::config) fn deepest_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
+    let flute_mm = cutter.flute() * 1e3;
+    let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
+    let depth = field.optional(|field| field.number_where(&within, |value| value > 0.0 && value <= flute_mm))?;
+    Ok(depth.map_or(cutter.flute(), |mm| mm / 1e3))
 }

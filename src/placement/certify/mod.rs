@@ -11,17 +11,19 @@
 //!    (`minorant`).
 //! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
 //! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
-//! 6. `search` goes through the boxes, most promising first.
+//! 6. `frontier` goes through the boxes, most promising first: from below for the best placement (`best`).
 //! 7. `worst` is the same for the worst placement, from above (`above`) and with the rate of beta dropped; `relaxed` what a
 //!    placement is worth then.
 
 mod above;
 mod arm;
+mod best;
 mod bound;
 mod conditioning;
 mod cost;
 mod elbow;
 mod enclosure;
+mod frontier;
 mod interval;
 mod lanes;
 mod limits;
@@ -31,7 +33,6 @@ mod prepare;
 mod reduced;
 mod region;
 mod relaxed;
-mod search;
 mod table;
 mod tube;
 mod window;
@@ -40,8 +41,9 @@ mod worst;
 #[cfg(test)]
 mod tests;
 
+pub use best::best;
+pub use frontier::{Bound, End, State, Watch};
 pub use prepare::{Unfit, certifiable};
 pub use region::Region;
 pub use relaxed::relaxed_value;
-pub use search::{Bound, End, State, Watch, best};
 pub use worst::worst;

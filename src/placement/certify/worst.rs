@@ -4,14 +4,12 @@
 
 use super::above::{Over, Seen};
 use super::bound::Bounded;
+use super::frontier::{Bound, Open, Search, Watch, halves, widest};
 use super::prepare::{Unfit, certifiable, prepared};
 use super::region::Region;
-use super::search::{BATCH, Bound, End, ROUNDING, SMALLEST, State, Watch, widest};
 use super::table::{Steps, Table};
+use crate::placement::outcome::Goal;
 use crate::placement::problem::Problem;
-use rayon::prelude::*;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first look.
@@ -20,41 +18,8 @@ const LEVELS: usize = 5;
 /// Boxes to begin with are cut to what tables can answer for, but no smaller than this, in terms of those of lower bounds.
 const SMALL: f64 = 0.25;
 
-struct Open {
-    bound: f64,
-    number: u64,
-    region: Region,
-    /// `None` for one not looked at yet.
-    seen: Option<Arc<Seen>>,
-}
-
-impl PartialEq for Open {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Open {}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Open {
-    /// The greatest bound first; of equal ones those not looked at yet, and of these the older, but else the younger: what cannot
-    /// be told apart is found by going down, not by cutting all of it.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_age = |a: &Self, b: &Self| match (&a.seen, &b.seen) {
-            (Some(_), Some(_)) => a.number.cmp(&b.number),
-            (None, None) => b.number.cmp(&a.number),
-            (None, Some(_)) => Ordering::Greater,
-            (Some(_), None) => Ordering::Less,
-        };
-        self.bound.total_cmp(&other.bound).then_with(|| by_age(self, other))
-    }
-}
+/// A box, and what has been seen of it: `None` where it was not looked at yet.
+type Looked = Open<Option<Arc<Seen>>>;
 
 /// Bounds from above what placements of a problem are worth with the limits between neighbouring points dropped, until none can
 /// be worse than `value` ([`super::relaxed_value`] of the worst placement known, m) by more than `gap` (relative).
@@ -71,52 +36,11 @@ pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> 
     let (bounded, whole) = prepared(problem, &compliances, false);
     let (extent, _) = bounded.table.grid();
     let bounded = Bounded { table: Table::new(extent, STEPS, LEVELS), ..bounded };
-    let count = bounded.points.len() as f64;
-    let ceiling = value * count * (1.0 + gap) * (1.0 - ROUNDING);
-    let mut heap = BinaryHeap::new();
-    let mut number = 0;
-    for region in first(&bounded, whole) {
-        number += 1;
-        heap.push(Open { bound: f64::INFINITY, number, region, seen: None });
-    }
-    let mut nodes = 0;
-    let mut stuck: Vec<Open> = Vec::new();
-    let mut end = End::Reached;
-    while let Some(first) = heap.peek() {
-        let most_stuck = stuck.iter().map(|o| o.bound).fold(f64::NEG_INFINITY, f64::max);
-        // Whatever becomes of the others, the bound stays there.
-        if most_stuck >= first.bound {
-            break;
-        }
-        if !watch.goes_on(&State { bound: first.bound / count, open: heap.len() + stuck.len(), nodes }) {
-            end = End::Stopped;
-            break;
-        }
-        let batch: Vec<Open> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
-        let results: Vec<Option<Vec<Open>>> = batch.par_iter().map(|open| children(&bounded, open, ceiling)).collect();
-        for (open, children) in batch.into_iter().zip(results) {
-            let Some(children) = children else {
-                stuck.push(open);
-                continue;
-            };
-            for child in children {
-                nodes += 1;
-                if child.bound > ceiling {
-                    number += 1;
-                    heap.push(Open { number, ..child });
-                }
-            }
-        }
-    }
-    if end == End::Reached && !stuck.is_empty() {
-        end = End::Exhausted;
-    }
-    let mut left = heap.into_sorted_vec();
-    left.reverse();
-    left.extend(stuck);
-    let highest = left.iter().map(|o| o.bound).fold(ceiling, f64::max);
-    let open = left.iter().map(|o| (o.region, o.bound / count)).collect();
-    Ok(Bound { value, bound: highest / count * (1.0 + ROUNDING), with_rate: false, nodes, end, open })
+    let search = Search { goal: Goal::Worst, value, gap, with_rate: false, points: bounded.points.len() };
+    let ceiling = search.ceiling();
+    let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
+    let start = first(&bounded, whole).into_iter().map(unknown).collect();
+    Ok(search.explore(start, 0, watch, |open| parts(&bounded, open, ceiling)))
 }
 
 /// The boxes to begin with, together all of the cell.
@@ -133,24 +57,21 @@ fn first(bounded: &Bounded, whole: Region) -> Vec<Region> {
 }
 
 /// A box not looked at yet with its bound, or the halves of one with theirs; `None` where it is not to be cut further.
-fn children(bounded: &Bounded, open: &Open, ceiling: f64) -> Option<Vec<Open>> {
-    let (parts, seen) = match &open.seen {
+fn parts(bounded: &Bounded, open: &Looked, ceiling: f64) -> Option<Vec<Looked>> {
+    let (parts, seen) = match &open.known {
         None => (vec![open.region], Arc::new(Seen::nothing(bounded))),
-        Some(seen) => match widest(&open.region) {
-            (_, size) if size <= SMALLEST => return None,
-            (side, _) => (open.region.split(side).to_vec(), Arc::clone(seen)),
-        },
+        Some(seen) => (halves(&open.region)?.to_vec(), Arc::clone(seen)),
     };
     let bound = |region: Region| match Over::new(bounded, &region) {
         Some(over) => {
-            let glance = if open.seen.is_none() { over.glance(ceiling) } else { f64::INFINITY };
+            let glance = if open.known.is_none() { over.glance(ceiling) } else { f64::INFINITY };
             if glance <= ceiling {
-                return Open { bound: glance, number: 0, region, seen: None };
+                return Open { bound: glance, region, known: None };
             }
             let (sum, seen) = over.above(&seen, ceiling);
-            Open { bound: sum.min(open.bound), number: 0, region, seen: Some(Arc::new(seen)) }
+            Open { bound: sum.min(open.bound), region, known: Some(Arc::new(seen)) }
         }
-        None => Open { bound: open.bound, number: 0, region, seen: Some(Arc::clone(&seen)) },
+        None => Open { bound: open.bound, region, known: Some(Arc::clone(&seen)) },
     };
     Some(parts.into_iter().filter(|part| bounded.yaws.allow(part)).map(bound).collect())
 }

@@ -1,7 +1,7 @@
 //! The first half of the batch evaluator: joints 1 to 3, which bring the wrist centre to its place.
 
-use super::lanes::{Lanes, Mask};
 use super::{Kernel, PointGeometry};
+use crate::lanes::{Lanes, Mask};
 use pulp::Simd;
 
 /// Wrist centres of neighbouring values of beta.

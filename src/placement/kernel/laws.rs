@@ -1,7 +1,7 @@
 //! Joint compliances in lanes: the same as [`Robot::compliances_at`], several states at a time.
 
-use super::lanes::Lanes;
 use super::limit::Limit;
+use crate::lanes::Lanes;
 use crate::robot::{Compensator, Compliance, Robot};
 use pulp::Simd;
 

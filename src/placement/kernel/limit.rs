@@ -1,6 +1,6 @@
 //! One joint's limits, ready for lanes.
 
-use super::lanes::{Lanes, Mask};
+use crate::lanes::{Lanes, Mask};
 use crate::robot::{angles::ANGLE_ROUNDING, turns::Range};
 use pulp::Simd;
 use std::f64::consts::{PI, TAU};

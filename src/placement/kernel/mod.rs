@@ -8,10 +8,9 @@
 //! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the frame
 //! turned with joint 1, where the arm is a plane mechanism; joint angles are never computed, only their sines and cosines
 //! (but where a compliance is given over the angle itself); what the first three joints rule out never reaches the wrist;
-//! and all is done in the widest vectors that the processor has ([`lanes`]), to the same bits with each.
+//! and all is done in the widest vectors that the processor has ([`crate::lanes`]), to the same bits with each.
 
 mod arm;
-pub use crate::lanes;
 mod laws;
 mod limit;
 mod pose;
@@ -22,8 +21,8 @@ mod wrist;
 pub use states::States;
 
 use super::problem::{Problem, Redundancy, base_from_workpiece};
+use crate::lanes::{Instructions, Lanes, MOST_LANES};
 use crate::robot::{Posture, PostureClass, Robot, turns::Range};
-use lanes::{Instructions, Lanes, MOST_LANES};
 use laws::Laws;
 use limit::Limit;
 use nalgebra::Vector3;

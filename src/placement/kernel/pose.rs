@@ -1,7 +1,7 @@
 //! Configurations of the arm in lanes: their conditioning and their score. Everything is in the frame turned with joint 1: x
 //! along the arm, y to its left, z along axis 1.
 
-use super::lanes::Lanes;
+use crate::lanes::Lanes;
 use pulp::Simd;
 
 /// Vectors in the frame of joint 1.

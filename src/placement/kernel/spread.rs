@@ -1,8 +1,8 @@
 //! What the uncertainty of the compliances adds to a score, in lanes: the same as
 //! [`State::margin`](super::super::criterion::State), several states at a time.
 
-use super::lanes::Lanes;
 use super::limit::Limit;
+use crate::lanes::Lanes;
 use crate::placement::problem::Problem;
 use crate::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
 use pulp::Simd;

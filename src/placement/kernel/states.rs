@@ -1,6 +1,6 @@
 //! Where the kernel writes and the planner reads.
 
-use super::lanes::{Lanes, MOST_LANES};
+use crate::lanes::{Lanes, MOST_LANES};
 use crate::robot::PostureClass;
 use pulp::Simd;
 

@@ -1,9 +1,9 @@
 //! The second half of the batch evaluator: wrist, conditioning and score of the states that the first three joints allow.
 
 use super::arm::{Arm, Elbow};
-use super::lanes::Lanes;
 use super::pose::{Directions, Load, Pose, Vector, turned};
 use super::{Flips, Kernel, PointGeometry, Turning};
+use crate::lanes::Lanes;
 use nalgebra::Vector3;
 use pulp::Simd;
 

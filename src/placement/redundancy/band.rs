@@ -5,8 +5,8 @@
 //! within every step, and then it is the cheapest of those that are.
 
 use super::super::kernel::States;
-use super::super::kernel::lanes::{Instructions, Lanes, MOST_LANES, Mask};
 use super::STEP_ROUNDING;
+use crate::lanes::{Instructions, Lanes, MOST_LANES, Mask};
 use crate::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};

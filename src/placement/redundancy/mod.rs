@@ -21,9 +21,9 @@ mod segment;
 mod sweep;
 mod turns;
 
-use super::kernel::lanes::Instructions;
 use super::kernel::{Flips, Kernel, States};
 use super::problem::{Problem, Redundancy};
+use crate::lanes::Instructions;
 use crate::robot::{Posture, turns::Range};
 use std::ops::Range as Span;
 

@@ -5,29 +5,13 @@ use super::super::genetic::rank;
 use super::super::outcome::Goal;
 use super::super::problem::{Interval, Placement, Redundancy};
 use super::super::redundancy::{Extremum, Worth};
-use super::super::testing::{compensated, five_segments, with_laws, with_uncertainty};
+use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;
 use super::*;
 use crate::robot::{PostureClass, Robot};
-use crate::task::{PathPoint, Task, ToolPath, Wrench};
+use crate::task::{PathPoint, Task, ToolPath};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// The five segments with other forces.
-fn with_forces(mut problem: Problem, force: impl Fn(usize) -> Vector3<f64>) -> Problem {
-    let wrenches = (0..105).map(|point| Wrench { force: force(point), moment: Vector3::zeros() }).collect();
-    problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
-    problem
-}
-
-/// Forces in every direction.
-fn slanted() -> Problem {
-    let force = |point: usize| {
-        let (sine, cosine) = libm::sincos(point as f64);
-        Vector3::new(90.0 * sine, 40.0 * cosine, 60.0 * libm::sin(0.3 * point as f64))
-    };
-    with_forces(five_segments(), force)
-}
 
 /// Errors in all directions counted.
 fn robust() -> Problem {
@@ -42,22 +26,6 @@ fn limited() -> Problem {
     let mut joints = problem.robot.joints().clone();
     (joints[0].min, joints[0].max) = (-1.75, 1.2);
     problem.robot = Robot::new("limited", joints).unwrap();
-    problem
-}
-
-/// The workpiece hangs, the tool comes from below: the other sense of the heading.
-fn hanging() -> Problem {
-    let mut problem = five_segments();
-    let turned = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
-    let path = problem.task.path();
-    let points = path.points().iter().enumerate().map(|(k, point)| {
-        let point = PathPoint { position: turned(point.position), feed: turned(point.feed), axis: turned(point.axis) };
-        (path.segment_of(k) as u32 + 1, point)
-    });
-    let turned_path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    let wrenches = problem.task.wrenches().iter().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
-    problem.cell.position[2] = Interval { min: 1.0, max: 1.4 };
-    problem.task = Task::new(turned_path, wrenches).unwrap();
     problem
 }
 

@@ -85,19 +85,11 @@ impl Proof {
         Self { goal, placement, bound, end, relaxed }
     }
 
-    /// How much better, or worse, than the value found a placement may be, relative to it.
-    pub fn gap(&self) -> f64 {
-        match self.goal {
-            Goal::Best => 1.0 - self.bound.bound / self.bound.value,
-            Goal::Worst => self.bound.bound / self.bound.value - 1.0,
-        }
-    }
-
     /// The gap in per cent, rounded up.
     pub fn gap_percent(&self) -> f64 {
         let scale = libm::pow(10.0, f64::from(GAP_DECIMALS));
         // A gap reached exactly is not rounded up for the last bits of a double.
-        (self.gap() * 100.0 * scale - 1e-6).ceil().max(0.0) / scale
+        (self.bound.gap() * 100.0 * scale - 1e-6).ceil().max(0.0) / scale
     }
 
     /// The bound in mm, rounded to where it still holds.

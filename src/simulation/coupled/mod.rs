@@ -117,8 +117,7 @@ pub(super) struct Plane {
 impl Plane {
     fn new(job: &Job<'_>) -> Self {
         let motion = &job.setup.motion;
-        let axis = -motion.start().rotation.column(2).into_owned();
-        let CutFrame { feed, normal } = CutFrame::new(*motion.direction(), axis, job.cut.milling);
+        let CutFrame { feed, normal, axis } = CutFrame::along(motion, job.cut.milling);
         let radius = job.cutter.radius();
         let origin = motion.start().translation + feed * (radius + job.gap) - normal * radius;
         Self { feed, normal, axis, origin }

@@ -16,11 +16,10 @@ use super::prepare::prepared;
 use super::region::{Point, Region};
 use crate::placement::feasibility::explain;
 use crate::placement::problem::{Interval, Problem};
-use crate::placement::testing::five_segments;
+use crate::placement::testing::{five_segments, hanging, slanted};
 use crate::robot::testing::robot_from;
 use crate::robot::{Frames, PostureClass, Robot};
 use crate::stiffness::displacement;
-use crate::task::{PathPoint, Task, ToolPath, Wrench};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -170,33 +169,6 @@ pub fn anywhere(setting: &Setting, random: &mut ChaCha8Rng) -> (usize, [f64; 3])
     let middle = setting.whole.middle;
     let placement = std::array::from_fn(|k| middle[k] + setting.whole.half[k] * random.random_range(-0.95..0.95));
     (point, setting.place(placement, point))
-}
-
-fn slanted() -> Problem {
-    let mut problem = five_segments();
-    let force = |point: usize| {
-        let (sine, cosine) = libm::sincos(point as f64);
-        Vector3::new(90.0 * sine, 40.0 * cosine, 60.0 * libm::sin(0.3 * point as f64))
-    };
-    let wrenches = (0..105).map(|point| Wrench { force: force(point), moment: Vector3::zeros() }).collect();
-    problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
-    problem
-}
-
-/// The workpiece hangs, the tool comes from below.
-fn hanging() -> Problem {
-    let mut problem = five_segments();
-    let turned = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
-    let path = problem.task.path();
-    let points = path.points().iter().enumerate().map(|(k, point)| {
-        let point = PathPoint { position: turned(point.position), feed: turned(point.feed), axis: turned(point.axis) };
-        (path.segment_of(k) as u32 + 1, point)
-    });
-    let turned_path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    let wrenches = problem.task.wrenches().iter().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
-    problem.cell.position[2] = Interval { min: 1.0, max: 1.4 };
-    problem.task = Task::new(turned_path, wrenches).unwrap();
-    problem
 }
 
 /// The arm hangs, the tool is upright.

@@ -1,5 +1,6 @@
 //! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
 
+use super::super::frontier::{End, State};
 use super::*;
 use crate::placement::certify::cost::CORNERS;
 use crate::placement::certify::relaxed::{relaxed_value, score};
