@@ -167,6 +167,17 @@ fn a_run_that_asks_for_stability_needs_a_robot_with_masses() {
     let ended = bench.stead(&[&["score", PATH][..], &SPOT].concat());
     assert_eq!(ended.code, Some(2));
     ended.assert_says(&["kuka-kr270-2.toml:", "joints[1].mass_kg: is missing", "damping_nms_per_rad in every"]);
+    let body =
+        "centre_of_mass_mm = [-4.0, 0.0, 158.0]\ninertia_kg_m2 = { xx = 0.095, yy = 0.106, zz = 0.098, xz = 0.035 }\n";
+    let bare = bench.read(PATH).replace(body, "").replace("mass_kg = 44.4\n", "");
+    bench.write("configs/bare.toml", &bare);
+    let ended = bench.stead(&[&["score", "configs/bare.toml"][..], &SPOT].concat());
+    assert_eq!(ended.code, Some(2));
+    ended.assert_says(&[
+        "bare.toml:",
+        "spindle.mass_kg: is missing: how the arm moves",
+        "centre_of_mass_mm and inertia",
+    ]);
     let line = bench.replace(PATH, "teeth = 4", "tooth = 4");
     let ended = bench.stead(&[&["score", PATH][..], &SPOT].concat());
     let place = format!("tx200-stability.toml:{line}: stability.tooth: ");

@@ -2,12 +2,12 @@
 
 use super::arguments::StabilityOptions;
 use super::{Failure, on_threads, out_folder_named};
-use crate::config::{Overrides, read_simulation};
+use crate::config::{Overrides, read_survey};
 use crate::report::stability::{stability_json, stability_text, write_stability};
 use crate::simulation::survey::survey;
 
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
-    let run = read_simulation(&options.config, &Overrides::from(&options.model))?;
+    let run = read_survey(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder_named(options.out.as_deref(), &options.config, "-stability")?;
     let (found, _) = on_threads(options.threads, || survey(&run.setup, &run.cutter, &run.cut, &run.plan))?;
     let found = found.map_err(|error| {

@@ -7,8 +7,8 @@ use super::reader::{Field, NamedFile, Table};
 use super::robot::{moving_robot_from, robot_from};
 use super::source::{Source, input_file};
 use super::tables::{
-    cell_from, check_confidence, check_tables, constraints_from, criterion_from, redundancy_from, reference_from,
-    search_from, spindle_from, transfer_from,
+    cell_from, check_confidence, check_tables, constraints_from, criterion_from, moving_spindle_from, redundancy_from,
+    reference_from, search_from, spindle_from, transfer_from,
 };
 use crate::input::{InputError, InputFile, Reference};
 use crate::placement::problem::Problem;
@@ -89,7 +89,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
         "stability",
         "reference",
     ])?;
-    let spindle = spindle_from(&spindle.table()?)?;
+    let carried = spindle.table()?;
+    let spindle = if stability.is_given() { moving_spindle_from(&carried)? } else { spindle_from(&carried)? };
     let cell = cell_from(&cell_field.table()?)?;
     let constraints = constraints_from(&constraints.table()?)?;
     let scoring = criterion.optional(Field::table)?;

@@ -22,6 +22,20 @@ pub(super) fn spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
     Ok(spindle)
 }
 
+/// The same where motion is computed: what the flange carries has to be known.
+///
+/// # Errors
+/// [`InputError`] as [`spindle_from`], and for a table without a mass.
+pub(super) fn moving_spindle_from(table: &Table<'_>) -> Result<Spindle, InputError> {
+    let spindle = spindle_from(table)?;
+    if spindle.payload.is_none() {
+        let what = "is missing: how the arm moves depends on what the flange carries";
+        let allowed = format!("{MASS}, {CENTRE} and {INERTIA} of spindle, holder and tool, in the flange frame");
+        return Err(table.field(MASS).error(what, allowed));
+    }
+    Ok(spindle)
+}
+
 pub(super) fn cell_from(table: &Table<'_>) -> Result<Cell, InputError> {
     let [x, y, z, q4] = table.fields(["x_mm", "y_mm", "z_mm", "q4"])?;
     let length = |field: &Field<'_>| field.interval().map(|ends| interval(ends.map(|end| end / 1e3)));

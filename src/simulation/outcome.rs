@@ -89,12 +89,13 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`] where nothing can be said of small motions.
     pub fn of(job: &Job<'_>, look: &Look, run: Run) -> Result<Self, SimulationError> {
-        let at = |share: f64| {
+        let way = |share: f64| {
             let way = job.cutter.radius() + job.gap + share * job.cut.length;
-            job.setup.motion.ramp().time_of(way.min(job.setup.motion.length()))
+            way.min(job.setup.motion.length())
         };
+        let at = |share: f64| job.setup.motion.ramp().time_of(way(share));
         let window = look.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
-        let linear = linear_at(job.setup, (job.cut.length / 2.0).min(job.setup.motion.length()))?;
+        let linear = linear_at(job.setup, way(0.5))?;
         let plant = linear.plant(&CutFrame::along(&job.setup.motion, job.cut.milling))?;
         let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(SurveyError::from)?;
         let wall = wall(job, look, &run);

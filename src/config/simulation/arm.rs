@@ -3,7 +3,7 @@
 use super::super::reader::{Field, Table};
 use super::super::robot::moving_robot_from;
 use super::super::source::{Source, input_file};
-use super::super::tables::spindle_from;
+use super::super::tables::moving_spindle_from;
 use crate::input::{InputError, InputFile};
 use crate::robot::{Robot, Spindle};
 use crate::simulation::arm::Variant;
@@ -46,7 +46,7 @@ pub(super) fn setup_from(
     let (variant, damping_scale) = (variant_from(&fields.variant)?, damping_scale_from(&fields.damping_scale)?);
     let variant = overrides.variant.unwrap_or(variant);
     let damping_scale = overrides.damping_scale.unwrap_or(damping_scale);
-    let spindle = spindle_from(&fields.spindle.table()?)?;
+    let spindle = moving_spindle_from(&fields.spindle.table()?)?;
     let named = fields.robot.named_file()?;
     let source = Source::new(&named.file, named.bytes)?;
     let robot = moving_robot_from(&source, variant >= Variant::Orthogonal)?;
@@ -68,6 +68,8 @@ pub(in crate::config) fn damping_scale_from(field: &Field<'_>) -> Result<f64, In
     Ok(field.optional(scale)?.unwrap_or(1.0))
 }
 
+/// The key of the feed.
+pub(super) const FEED: &str = "feed_mm_per_min";
 /// The feed may be off the plane normal to the tool axis by so much. deg
 const TILT_DEG: f64 = 1.0;
 /// More than this is no pass of an arm. mm
@@ -77,7 +79,7 @@ const LONGEST_MM: f64 = 1e4;
 /// `feed_mm_per_min` and `ramp_s`.
 fn motion_from(table: &Table<'_>, robot: &Robot, spindle: &Spindle) -> Result<Motion, InputError> {
     let [start, direction, length, feed, ramp] =
-        table.fields(["start_joints_deg", "feed_direction", "length_mm", "feed_mm_per_min", "ramp_s"])?;
+        table.fields(["start_joints_deg", "feed_direction", "length_mm", FEED, "ramp_s"])?;
     let angles: [f64; 6] = start.numbers_where("six angles in deg, of joints 1 to 6 of the robot file", |_| true)?;
     let mut pass =
         Pass { start: angles.map(f64::to_radians), direction: direction.vector3()?, length: LONGEST_MM / 1e3 };

@@ -100,3 +100,23 @@ pub(super) fn check_step(setup: &Setup, cut: &Cut, field: &Field<'_>) -> Result<
     }
     Ok(())
 }
+
+/// More steps than these are not kept in memory.
+const MOST_STEPS: f64 = 5e6;
+/// Nor is a pass that takes longer. s
+const LONGEST: f64 = 2e4;
+
+/// Refuses a pass that takes so long that its steps cannot be kept.
+///
+/// # Errors
+/// [`InputError`] at the feed.
+pub(super) fn check_duration(setup: &Setup, cut: &Cut, feed: &Field<'_>) -> Result<(), InputError> {
+    let duration = setup.motion.duration();
+    let longest = LONGEST.min(MOST_STEPS * cut.step());
+    if duration <= longest {
+        return Ok(());
+    }
+    let problem = format!("makes a pass of {duration:.3e} s, {:.3e} steps", duration / cut.step());
+    Err(feed
+        .error(problem, format!("at most {MOST_STEPS:e} steps and {LONGEST:e} s: a faster feed, or a shorter pass")))
+}

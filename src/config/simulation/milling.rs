@@ -77,9 +77,12 @@ pub(in crate::config) fn milling_from(
         };
         field.error(format!("makes no cutter: {error}"), "the numbers of a real cutter")
     })?;
+    // With runout the cutter cuts wider or less wide than its diameter: a cut of the whole diameter is a slot all the same.
+    let (width, mean) = (radial.positive()? / 1e3, 2.0 * cutter.radius());
+    let radial_depth = if (2.0 * radius.min(cutter.radius())..=2.0 * radius).contains(&width) { mean } else { width };
     let cut = Cut {
         milling: milling.one_of(&[("conventional", Milling::Conventional), ("climb", Milling::Climb)])?,
-        radial_depth: radial.positive()? / 1e3,
+        radial_depth,
         axial_depth: axial.positive()? / 1e3,
         length,
         spindle_speed: rpm_from(&rpm)?,

@@ -17,9 +17,9 @@ use crate::simulation::milling::{Cut, Cutter};
 use crate::simulation::outcome::Look;
 use crate::simulation::setup::Setup;
 use crate::simulation::survey::Plan;
-use arm::{ArmFields, setup_from};
+use arm::{ArmFields, FEED, setup_from};
 pub(super) use arm::{damping_scale_from, variant_from};
-use look::{LookFields, check_step, look_from};
+use look::{LookFields, check_duration, check_step, look_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use std::path::Path;
 pub(super) use survey::deepest_from;
@@ -54,8 +54,21 @@ const STEPS_PER_TURN: u64 = 360;
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
-/// wrong kind or out of range, a robot without masses, a pass that the arm cannot make, a cut that the cutter cannot do.
+/// wrong kind or out of range, a robot without masses, a pass that the arm cannot make, a cut that the cutter cannot do, steps
+/// that are too coarse for the arm or too many.
 pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
+    read(file, overrides, true)
+}
+
+/// The same for a survey of small motions, which makes no steps: they may be as coarse and as many as they like.
+///
+/// # Errors
+/// [`InputError`] as [`read_simulation`], but for the steps.
+pub fn read_survey(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
+    read(file, overrides, false)
+}
+
+fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<SimulationRun, InputError> {
     let source = Source::read(file)?;
     let document = source.parse()?;
     let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability, published] =
@@ -72,6 +85,7 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
             "published",
         ])?;
     let mut inputs = vec![source.as_config()];
+    let feed = pass.table()?.field(FEED);
     let setup = setup_from(&ArmFields { robot, variant, damping_scale, spindle, pass }, overrides, &mut inputs)?;
     let [length, gap, slot] = work.table()?.fields(["length_mm", "gap_mm", "slot_width_mm"])?;
     let length = length.positive()? / 1e3;
@@ -93,7 +107,10 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
         cut.spindle_speed = speed;
     }
     let plan = plan_from(&stability, &setup, &cutter, &cut)?;
-    check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
+    if steps_are_made {
+        check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
+        check_duration(&setup, &cut, &feed)?;
+    }
     let look = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
     Ok(SimulationRun { setup, cutter, cut, gap, look, plan, inputs })
 }

@@ -13,6 +13,13 @@ fn shipped(name: &str) -> String {
     std::fs::read_to_string(root().join("configs").join(name)).unwrap()
 }
 
+/// What the shipped file says of the spindle's body.
+const MASSES: &str = "\
+mass_kg = 44.4                         # Table 4: spindle and its support, in the flange frame
+centre_of_mass_mm = [-4.0, 0.0, 158.0]
+inertia_kg_m2 = { xx = 0.095, yy = 0.106, zz = 0.098, xz = 0.035 }
+";
+
 /// Reads a text as a simulation file beside the shipped robots.
 fn read(text: &str) -> Result<SimulationRun, InputError> {
     let folder = tempfile::tempdir().unwrap();
@@ -81,6 +88,36 @@ fn optional_tables_override_the_defaults() {
     assert!((run.plan.speeds[1] - 20000.0 / 60.0 * TAU).abs() < 1e-9);
 }
 
+/// Also with runout, which makes the mean radius another than half the diameter.
+#[test]
+fn a_cut_of_the_whole_diameter_is_a_slot() {
+    let text = shipped("umons-aluminium.toml").replace("radial_depth_mm = 4.0", "radial_depth_mm = 10.0");
+    for runout in ["[0, 0]", "[6.929, 0.0]", "[-6.929, 0.0]"] {
+        let run = read(&text.replace("teeth = 2", &format!("teeth = 2\nrunout_um = {runout}"))).unwrap();
+        assert!(run.cut.is_slot(&run.cutter), "{runout}");
+    }
+    let run =
+        read(&text.replace("= 10.0\naxial", "= 9.9\naxial").replace("teeth = 2", "teeth = 2\nrunout_um = [7, 0]"))
+            .unwrap();
+    assert!(!run.cut.is_slot(&run.cutter) && run.cut.radial_depth == 9.9e-3);
+}
+
+/// A survey makes no steps, so that a slow pass and a slow spindle are none of its business.
+#[test]
+fn a_survey_does_not_ask_for_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("robots")).unwrap();
+    let robot = "robots/staubli-tx200.toml";
+    std::fs::copy(root().join("configs").join(robot), folder.path().join(robot)).unwrap();
+    let file = folder.path().join("run.toml");
+    let text = shipped("umons-aluminium.toml").replace("window_s", "# window_s");
+    for (from, to) in [("= 3700.0 ", "= 0.1 "), ("spindle_rpm = 18700.0", "spindle_rpm = 50.0")] {
+        std::fs::write(&file, text.replacen(from, to, 1)).unwrap();
+        assert!(read_simulation(&file, &Overrides::default()).is_err());
+        assert!(read_survey(&file, &Overrides::default()).is_ok());
+    }
+}
+
 #[test]
 fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
     let text = shipped("umons-aluminium.toml");
@@ -90,6 +127,12 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         ("# damping_scale = 1.0", "damping_scale = -1", [": damping_scale: ", "found -1", "from 0"]),
         ("mass_kg = 44.4", "mass_kg = 0", [": spindle.mass_kg: ", "found 0", "above 0"]),
         ("mass_kg = 44.4", "# none", [": spindle.mass_kg: ", "missing", "above 0"]),
+        (
+            MASSES,
+            "",
+            [": spindle.mass_kg: ", "is missing: how the arm moves", "mass_kg, centre_of_mass_mm and inertia_kg"],
+        ),
+        ("= 3700.0 ", "= 0.1 ", [": pass.feed_mm_per_min: ", "steps", "found 0.1"]),
         ("yy = 0.106", "yy = 0.4", [": spindle.inertia_kg_m2: ", "triangle", "found { xx"]),
         ("-11.71", "nan", [": pass.start_joints_deg[1]: ", "found nan", "six angles"]),
         ("-11.71", "400", [": pass.start_joints_deg: ", "joint 1 would stand at 400", "posture of its start"]),

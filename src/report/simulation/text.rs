@@ -5,6 +5,7 @@ use super::super::stability::kind_word;
 use super::super::text::aligned;
 use super::{Making, end_words};
 use crate::config::SimulationRun;
+use crate::simulation::coupled::End;
 use crate::simulation::outcome::{Simulation, Statistics};
 use crate::simulation::roughness::Roughness;
 
@@ -30,7 +31,11 @@ pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making)
 fn forces(run: &SimulationRun, found: &Simulation) -> String {
     let [from, to] = found.window.map(|time| fixed(time, 3));
     let Some(forces) = &found.forces else {
-        return format!("no forces: the run ended before {to} s\n\n");
+        let why = match found.run.end {
+            End::Complete => "the pass is too short for statistics",
+            _ => "the run ended before",
+        };
+        return format!("no forces from {from} to {to} s: {why}\n\n");
     };
     let header = ["", "min", "max", "mean", "rms"].map(str::to_owned).to_vec();
     let mut rows = vec![header];
@@ -75,10 +80,12 @@ fn verdict(found: &Simulation) -> String {
         (None, None) => format!("The cut is {calm}.\n"),
     };
     let rate = figures(found.verdict.growth_rate().abs());
-    text.push_str(&if found.verdict.is_stable() {
+    text.push_str(&if found.verdict.is_stable() && found.run.end == End::Complete && !found.is_stable() {
+        format!("Small motions die out, at {rate} per second: a longer ramp or pass tells whether the start is still felt.\n")
+    } else if found.verdict.is_stable() {
         format!("Small motions die out, at {rate} per second.\n")
     } else {
-        let bounded = if found.is_stable() { ", but stay bounded" } else { "" };
+        let bounded = if found.is_stable() { ", but have not become large by the end of the pass" } else { "" };
         format!("Small motions grow ({}), at {rate} per second{bounded}.\n", kind_word(found.verdict.kind()))
     });
     text

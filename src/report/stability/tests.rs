@@ -70,10 +70,25 @@ fn depths_without_a_limit_leave_no_number() {
 fn the_text_says_what_there_is() {
     let (run, survey) = found();
     let text = stability_text(run, survey);
-    for part in ["Staubli TX200, springs", "15.76", "critical depth at 3100 rpm: 0.6", "chatters (flip", "times e over"]
+    for part in
+        ["Staubli TX200, springs", "15.76", "critical depth at 3100 rpm: 0.6", "chatters (flip", " ms (growth rate "]
     {
         assert!(text.contains(part), "{part} in {text}");
     }
+    assert!(text.contains("far more than a million times over the pass of 19.29 s"), "{text}");
+    // Rates of our own: e^(ln 2 / 0.05 s) in 0.5 s is 2^10, and the other way round.
+    let sentence = |rate: f64| {
+        let mut survey = survey.clone();
+        let multiplier = nalgebra::Complex::new(-libm::exp(rate * 0.02), 0.0);
+        survey.depths.verdict = crate::simulation::stability::Verdict { multiplier, period: 0.02 };
+        survey.pass_time = 0.5;
+        stability_text(run, &survey)
+    };
+    let rate = std::f64::consts::LN_2 / 0.05;
+    let grows = "vibrations double every 50.0 ms (growth rate 13.9 1/s), 1024 times over the pass of 0.50 s";
+    assert!(sentence(rate).contains(grows), "{}", sentence(rate));
+    let dies = "is stable: vibrations halve every 50.0 ms (decay rate 13.9 1/s)";
+    assert!(sentence(-rate).contains(dies), "{}", sentence(-rate));
 }
 
 #[test]

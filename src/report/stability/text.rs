@@ -50,17 +50,31 @@ fn sentence(run: &SimulationRun, survey: &Survey) -> String {
     let (rate, depth) = (verdict.growth_rate(), fixed(run.cut.axial_depth * 1e3, 3));
     let how = match verdict.kind() {
         Kind::None => {
-            return format!("the cut of {depth} mm is stable: vibrations die out with {} 1/s\n", figures(-rate));
+            let (time, rate) = (figures(-factor_two(rate)), figures(-rate));
+            return format!(
+                "the cut of {depth} mm is stable: vibrations halve every {time} ms (decay rate {rate} 1/s)\n"
+            );
         }
         Kind::Flip => "flip: every second period alike",
         Kind::Hopf => "Hopf: with a frequency of its own",
     };
+    let growth = libm::exp(rate * survey.pass_time);
+    let times = if growth > MANY { "far more than a million".to_owned() } else { figures(growth) };
     format!(
-        "the cut of {depth} mm chatters ({how}): vibrations grow with {} 1/s, {} times e over the pass of {} s\n",
+        "the cut of {depth} mm chatters ({how}): vibrations double every {} ms (growth rate {} 1/s), {times} times over the pass \
+         of {} s\n",
+        figures(factor_two(rate)),
         figures(rate),
-        figures(rate * survey.pass_time),
         fixed(survey.pass_time, 2)
     )
+}
+
+/// More often than this a growth is not worth a number.
+const MANY: f64 = 1e6;
+
+/// The time in which vibrations of a rate (1/s) become twice as large. ms
+fn factor_two(rate: f64) -> f64 {
+    std::f64::consts::LN_2 / rate * 1e3
 }
 
 /// The joints with at least a third of the largest amplitude.

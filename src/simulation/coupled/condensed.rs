@@ -3,7 +3,8 @@
 //! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is what gravity
 //! and the commanded motion ask for. Stations every few millimetres have M, the slope of gravity and J; between
 //! two, M is that of the middle and J is interpolated. A step of Newmark's method is then linear but for the force, and the tip
-//! moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows, so that the force alone is iterated on, and an arm of eighteen
+//! moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows (and three columns: the force along the tool axis moves the tip in
+//! the plane of the cut as well), so that the force alone is iterated on, and an arm of eighteen
 //! joints costs little more than one of six.
 //!
 //! Play makes springs act or not. For every set of springs that act the step is linear as well; its matrices are made when it
@@ -14,7 +15,7 @@ use crate::simulation::arm::Arm;
 use crate::simulation::integrator::StepError;
 use crate::simulation::milling::Force;
 use crate::simulation::motion::Motion;
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector3};
+use nalgebra::{Matrix2x3, SMatrix, SVector, Vector2, Vector3};
 
 /// Stations are at most so far apart. m
 const SPACING: f64 = 5e-3;
@@ -34,6 +35,8 @@ const MOST_SETS: usize = 12;
 struct Tip<const N: usize> {
     /// Along feed and normal. m/rad
     jacobian: SMatrix<f64, 2, N>,
+    /// Along the tool axis. m/rad
+    axial: SMatrix<f64, 1, N>,
     /// Tip less nominal place less the Jacobian times what the springs have yielded at rest. m
     offset: Vector2<f64>,
 }
@@ -43,7 +46,8 @@ struct Station<const N: usize> {
     mass: SMatrix<f64, N, N>,
     /// Slope of gravity as far as springs feel it; none where they feel nothing.
     gravity: Option<SMatrix<f64, N, N>>,
-    jacobian: SMatrix<f64, 2, N>,
+    /// Along feed, normal and tool axis. m/rad
+    jacobian: SMatrix<f64, 3, N>,
     /// Matrices of a step, by the springs that act.
     factors: Vec<(u32, Factor<N>)>,
 }
@@ -53,9 +57,9 @@ struct Factor<const N: usize> {
     /// (M + h/2 D + h^2/4 K)^-1
     inverse: SMatrix<f64, N, N>,
     /// That times J^T: accelerations of a force at the tip.
-    answer: SMatrix<f64, N, 2>,
-    /// h^2/4 J times that: motion of the tip.
-    tip: Matrix2<f64>,
+    answer: SMatrix<f64, N, 3>,
+    /// h^2/4 J times that: motion of the tip in the plane.
+    tip: Matrix2x3<f64>,
 }
 
 /// Everything that is made before the first step.
@@ -81,20 +85,22 @@ impl<'a, const N: usize> Frozen<'a, N> {
             let q = arm.at_rest(&reference);
             (q - reference, arm.chain.at(&q))
         };
-        let in_plane = |jacobian: SMatrix<f64, 3, N>| {
-            SMatrix::<f64, 2, N>::from_fn(|row, joint| plane.part(&jacobian.column(joint).into_owned())[row])
+        // Rows along feed, normal and tool axis.
+        let turned = |jacobian: SMatrix<f64, 3, N>| {
+            SMatrix::<f64, 3, N>::from_fn(|row, joint| plane.parts(&jacobian.column(joint).into_owned())[row])
         };
         let tips = (0..=count).map(|k| {
             let way = spacing * k as f64;
             let (yielded, posed) = posed(way);
-            let jacobian = in_plane(posed.tip_jacobian());
+            let all = turned(posed.tip_jacobian());
+            let (jacobian, axial) = (all.fixed_rows::<2>(0).into_owned(), all.fixed_rows::<1>(2).into_owned());
             let off = Vector2::from(plane.place(&posed.tip())) - Vector2::from(plane.nominal(motion, way));
-            Tip { jacobian, offset: off - jacobian * yielded }
+            Tip { jacobian, axial, offset: off - jacobian * yielded }
         });
         let stations = (0..count).map(|k| {
             let (_, posed) = posed(spacing * (k as f64 + 0.5));
             let gravity = arm.feels_gravity().then(|| arm.stiffness(&posed, &SVector::zeros()));
-            let jacobian = in_plane(posed.tip_jacobian());
+            let jacobian = turned(posed.tip_jacobian());
             Station { mass: posed.mass_matrix(&arm.chain), gravity, jacobian, factors: Vec::new() }
         });
         let loose: Vec<usize> = (0..N).filter(|joint| arm.drive.backlash[*joint] > 0.0).collect();
@@ -113,7 +119,8 @@ impl<'a, const N: usize> Frozen<'a, N> {
         let share = place - index as f64;
         let (from, to) = (&self.tips[index], &self.tips[index + 1]);
         let jacobian = from.jacobian + (to.jacobian - from.jacobian) * share;
-        (index, Tip { jacobian, offset: from.offset + (to.offset - from.offset) * share })
+        let axial = from.axial + (to.axial - from.axial) * share;
+        (index, Tip { jacobian, axial, offset: from.offset + (to.offset - from.offset) * share })
     }
 
     fn asked(&self, time: f64) -> SVector<f64, N> {
@@ -165,7 +172,7 @@ impl<const N: usize> Station<N> {
         }
         let inverse = matrix.cholesky()?.inverse();
         let answer = inverse * self.jacobian.transpose();
-        let tip = self.jacobian * answer * (step * step / 4.0);
+        let tip = self.jacobian.fixed_rows::<2>(0) * answer * (step * step / 4.0);
         self.factors.push((set, Factor { inverse, answer, tip }));
         self.factors.last().map(|(_, factor)| factor)
     }
@@ -267,15 +274,15 @@ fn stepped<const N: usize>(
             }
         }
         let factor = stations[index].factor(arm, loose, h, set).ok_or(StepError::Singular { time })?;
-        let mut assumed = Vector2::new(force.on_tool[0], force.on_tool[1]);
-        torques += tip.jacobian.transpose() * assumed;
+        let mut assumed = Vector3::from(force.on_tool);
+        torques += tip.jacobian.transpose() * assumed.xy() + tip.axial.transpose() * assumed.z;
         let mut acceleration = factor.inverse * torques;
         let mut place = nominal + tip.jacobian * (u + acceleration * (h * h / 4.0));
         let mut evaluations = 0;
         loop {
             force = process.force(time, place.into());
             evaluations += 1;
-            let found = Vector2::new(force.on_tool[0], force.on_tool[1]);
+            let found = Vector3::from(force.on_tool);
             let change = found - assumed;
             acceleration += factor.answer * change;
             let moved = factor.tip * change;

@@ -133,6 +133,11 @@ impl Plane {
         [self.feed.dot(vector), self.normal.dot(vector)]
     }
 
+    /// A vector along feed, normal and tool axis.
+    fn parts(&self, vector: &Vector3<f64>) -> [f64; 3] {
+        [self.feed.dot(vector), self.normal.dot(vector), self.axis.dot(vector)]
+    }
+
     /// A force of milling in the base frame. N
     fn force(&self, [feed, normal, axis]: [f64; 3]) -> Vector3<f64> {
         self.feed * feed + self.normal * normal + self.axis * axis

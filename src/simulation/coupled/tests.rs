@@ -5,7 +5,8 @@ use crate::cutting::Milling as Way;
 use crate::simulation::arm::{Variant, testing};
 use crate::simulation::milling::{Coefficients, Tooth};
 use crate::simulation::motion::{Pass, Ramp};
-use crate::simulation::outcome::{Statistics, statistics};
+use crate::simulation::outcome::{Look, Simulation, Statistics, statistics};
+use crate::simulation::survey::linear_at;
 use std::f64::consts::TAU;
 
 /// The arm on the published pass of a length (m) at a feed (m/s).
@@ -98,6 +99,28 @@ fn the_condensed_model_is_the_whole_chain() {
     }
 }
 
+/// The force along the tool axis moves the tip in the plane of the cut as well, in both models.
+#[test]
+fn the_axial_force_bends_the_condensed_arm_too() {
+    let setup = setup(Variant::Gravity, 1.0, 3.7 / 60.0, 0.04);
+    let plain = cutter(170.0, 0.0, 661.553e6, 253.458e6);
+    let coefficients = Coefficients { axial: 400e6, ..plain.coefficients() };
+    let pulled = Cutter::new(plain.teeth().to_vec(), plain.helix(), plain.flute(), coefficients).unwrap();
+    let cut = Cut { length: 0.03, ..cut(18_700.0, 90, 8) };
+    let [full, fast, without] = [(&pulled, false), (&pulled, true), (&plain, true)].map(|(cutter, is_fast)| {
+        let job = Job { setup: &setup, cutter, cut: &cut, gap: 0.5e-3 };
+        if is_fast { job.run_fast() } else { job.run() }.unwrap()
+    });
+    let apart = |other: &Run| {
+        let pairs = full.samples.iter().zip(&other.samples);
+        let apart = pairs.map(|(full, other)| {
+            libm::hypot(full.deflection[0] - other.deflection[0], full.deflection[1] - other.deflection[1])
+        });
+        apart.fold(0.0, f64::max)
+    };
+    assert!(apart(&fast) < 0.5e-6 && apart(&without) > 5e-6, "{} {}", apart(&fast), apart(&without));
+}
+
 /// 90 steps a turn have the forces of 360, to 0.2 %.
 #[test]
 fn a_quarter_of_the_steps_is_enough() {
@@ -158,4 +181,17 @@ fn without_work_the_arm_follows_its_path() {
             assert!((full.deflection[axis] - fast.deflection[axis]).abs() < 0.2e-6);
         }
     }
+}
+
+/// What small motions do is told for the middle of the work, wherever on the pass that is.
+#[test]
+fn small_motions_are_those_in_the_middle_of_the_work() {
+    let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
+    let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), Cut { length: 0.01, ..cut(18_700.0, 90, 8) });
+    let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
+    let look = Look { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
+    let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
+    let modes_at = |way: f64| linear_at(&setup, way).unwrap().modes().unwrap();
+    assert_eq!(found.modes, modes_at(cutter.radius() + 0.06 + 0.005));
+    assert_ne!(found.modes, modes_at(0.005));
 }

@@ -188,11 +188,13 @@ impl Milling {
     }
 
     /// Above this height nothing is left behind the tool centre: every place there was passed, within an advance, by an edge at
-    /// its lowest. Infinite in a slot, where the other wall stands, and if the tool did not come from outside the work. m
+    /// its lowest, and up to the top of the work by an edge at its highest. Infinite where work may have been left above the
+    /// tool, as in a slot, and if the tool did not come from outside the work. m
     fn ledge(&self) -> f64 {
         match (self.trail.nodes().first(), self.trail.extents().last()) {
-            (Some(first), Some(extent)) if self.stock.top.is_finite() && first.place[0] < -self.largest => {
-                extent.top - self.smallest + self.advance * self.advance / self.smallest
+            (Some(first), Some(extent)) if first.place[0] < -self.largest => {
+                let cleared = self.smallest - self.advance * self.advance / self.smallest;
+                if self.stock.top <= extent.bottom + cleared { extent.top - cleared } else { f64::INFINITY }
             }
             _ => f64::INFINITY,
         }

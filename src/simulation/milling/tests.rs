@@ -5,6 +5,8 @@ use crate::cutting::{Engagement, Milling as Way};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
+mod strips;
+
 const K: Coefficients = Coefficients { tangential: 661.553e6, radial: 253.458e6, axial: 0.1e9 };
 const RADIUS: f64 = 5e-3;
 
@@ -198,6 +200,7 @@ fn what_is_cut_is_what_is_fed() {
 /// A tool that vibrates as wildly as its way, over time in steps.
 #[derive(Debug, Clone)]
 struct Wild {
+    start: [f64; 2],
     feed: f64,
     amplitude: [f64; 2],
     waves_per_turn: [f64; 2],
@@ -213,7 +216,7 @@ impl Wild {
         let feed = self.feed / self.turn;
         let [x, y] = self.amplitude;
         Node {
-            place: [20e-3 + feed * time + x * sine, RADIUS + y * side_sine],
+            place: [self.start[0] + feed * time + x * sine, self.start[1] + y * side_sine],
             motion: [feed + x * along * cosine, y * across * side_cosine],
         }
     }
@@ -274,7 +277,7 @@ proptest! {
         climb in any::<bool>(),
     ) {
         let turn = 120;
-        let wild = Wild { feed, amplitude, waves_per_turn, phase, turn: turn as f64 };
+        let wild = Wild { start: [20e-3, RADIUS], feed, amplitude, waves_per_turn, phase, turn: turn as f64 };
         let way = if climb { Way::Climb } else { Way::Conventional };
         let cutter = cutter(&[pitch, 360.0 - pitch], &[0.0, runout], 0.0);
         let cut = cut(way, 1, turn);
@@ -322,7 +325,8 @@ fn nothing_is_cut_outside_the_work() {
 #[test]
 fn every_kind_of_instructions_gives_the_same_bits() {
     let (cutter, cut) = aluminium(20, 45);
-    let wild = Wild { feed: 0.2e-3, amplitude: [0.1e-3, 0.2e-3], waves_per_turn: [0.3, 0.7], phase: 0.4, turn: 45.0 };
+    let (amplitude, waves_per_turn) = ([0.1e-3, 0.2e-3], [0.3, 0.7]);
+    let wild = Wild { start: [20e-3, RADIUS], feed: 0.2e-3, amplitude, waves_per_turn, phase: 0.4, turn: 45.0 };
     let runs = Instructions::all().into_iter().map(|instructions| {
         let mut milling = Milling { instructions, ..Milling::new(&cutter, &cut).unwrap() };
         let forces = (0..450).map(|step| {

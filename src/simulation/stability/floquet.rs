@@ -76,7 +76,7 @@ pub struct SemiDiscretisation<'a> {
 /// Intervals between two teeth, at least.
 const INTERVALS_PER_TOOTH: usize = 60;
 /// Intervals in a period of the fastest mode that swings, at least, as far as [`MOST_INTERVALS`] allows.
-const INTERVALS_PER_SWING: f64 = 16.0;
+const INTERVALS_PER_SWING: f64 = 32.0;
 /// Intervals in a turn, at most, unless more are asked for.
 const MOST_INTERVALS: usize = 1200;
 
@@ -267,6 +267,10 @@ impl<'a> Map<'a> {
                 }
             }
             let norm = vector.iter().map(|a| a * a).sum::<f64>().sqrt();
+            if !norm.is_finite() {
+                // Beyond what numbers can hold: certainly not stable.
+                return Complex::new(f64::INFINITY, 0.0);
+            }
             let scale = column.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
             column.push(norm);
             columns.push(column);
