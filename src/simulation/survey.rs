@@ -208,7 +208,7 @@ impl AnyLinear {
     /// # Errors
     /// [`SurveyError::Singular`].
     pub fn plant(&self, frame: &CutFrame) -> Result<Plant, SurveyError> {
-        let directions = [frame.feed, frame.normal];
+        let directions = [frame.feed, frame.normal, frame.axis];
         let plant = match self {
             Self::Six(linear) => Plant::of_arm(linear, directions),
             Self::Eighteen(linear) => Plant::of_arm(linear, directions),

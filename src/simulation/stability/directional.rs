@@ -1,8 +1,8 @@
 //! How the force of milling follows the motion of the tip, at each part of a turn.
 
 use crate::cutting::{Arc, Engagement, EngagementError, Integrals, Milling};
-use crate::simulation::milling::{Cut, Cutter};
-use nalgebra::Matrix2;
+use crate::simulation::milling::{Coefficients, Cut, Cutter};
+use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
 
 /// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`. N/m
@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Directional {
     /// One after the other: teeth of the first part, of the second, ...
-    parts: Vec<Matrix2<f64>>,
+    parts: Vec<Matrix3x2<f64>>,
     teeth: usize,
 }
 
@@ -59,34 +59,36 @@ impl Directional {
     pub(super) fn mean(mut self) -> Self {
         let count = (self.parts.len() / self.teeth) as f64;
         for tooth in 0..self.teeth {
-            let mean = self.parts.iter().skip(tooth).step_by(self.teeth).sum::<Matrix2<f64>>() / count;
+            let mean = self.parts.iter().skip(tooth).step_by(self.teeth).sum::<Matrix3x2<f64>>() / count;
             self.parts.iter_mut().skip(tooth).step_by(self.teeth).for_each(|part| *part = mean);
         }
         self
     }
 
     /// All teeth in one part of a turn.
-    pub(super) fn at(&self, interval: usize) -> &[Matrix2<f64>] {
+    pub(super) fn at(&self, interval: usize) -> &[Matrix3x2<f64>] {
         &self.parts[interval * self.teeth..(interval + 1) * self.teeth]
     }
 }
 
 /// The mean over a turn of what one tooth does, at 1 m depth of cut. N/m^2
-pub(super) fn mean(cutter: &Cutter, cut: &Cut, exit: f64) -> Matrix2<f64> {
+pub(super) fn mean(cutter: &Cutter, cut: &Cut, exit: f64) -> Matrix3x2<f64> {
     matrix(cutter, cut.milling, &Integrals::over(Arc { entry: 0.0, exit })) / TAU
 }
 
-fn matrix(cutter: &Cutter, milling: Milling, sums: &Integrals) -> Matrix2<f64> {
+fn matrix(cutter: &Cutter, milling: Milling, sums: &Integrals) -> Matrix3x2<f64> {
     let tangential = match milling {
         Milling::Climb => cutter.coefficients().tangential,
         Milling::Conventional => -cutter.coefficients().tangential,
     };
-    let radial = cutter.coefficients().radial;
-    let Integrals { sine_squared, cosine_squared, sine_cosine, .. } = *sums;
-    Matrix2::new(
+    let Coefficients { radial, axial, .. } = cutter.coefficients();
+    let Integrals { sine, cosine, sine_squared, cosine_squared, sine_cosine } = *sums;
+    Matrix3x2::new(
         tangential * sine_cosine - radial * sine_squared,
         -tangential * cosine_squared + radial * sine_cosine,
         tangential * sine_squared + radial * sine_cosine,
         -tangential * sine_cosine - radial * cosine_squared,
+        axial * sine,
+        -axial * cosine,
     )
 }

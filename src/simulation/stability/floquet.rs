@@ -4,7 +4,7 @@ use super::directional::{Directional, exit};
 use super::plant::Plant;
 use crate::cutting::EngagementError;
 use crate::simulation::milling::{Cut, Cutter};
-use nalgebra::{Complex, DMatrix, Matrix2, Vector2};
+use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::TAU;
 
 /// How small motions become large ones.
@@ -183,9 +183,9 @@ impl<'a> Map<'a> {
         let [e, w0, w1] = &method.step;
         let c = method.plant.c();
         let at_once = c * w1;
-        let at_once = Matrix2::from_fn(|row, column| at_once[(row, column)]);
+        let at_once = Matrix2x3::from_fn(|row, column| at_once[(row, column)]);
         let implicit = (0..method.period).map(|interval| {
-            let sum: Matrix2<f64> = directional.at(interval).iter().sum();
+            let sum: Matrix3x2<f64> = directional.at(interval).iter().sum();
             (Matrix2::identity() - at_once * sum).try_inverse().unwrap_or_else(Matrix2::identity)
         });
         let kept = method.delays.iter().fold(0.0_f64, |most, delay| most.max(*delay)).ceil() as usize;
@@ -213,9 +213,9 @@ impl<'a> Map<'a> {
             let matrices = self.directional.at(interval);
             // Position in `tip` of the start of the interval.
             let start = self.kept + interval;
-            let (mut before, mut after, mut sum) = (Vector2::zeros(), Vector2::zeros(), Matrix2::zeros());
+            let (mut before, mut after, mut sum) = (Vector3::zeros(), Vector3::zeros(), Matrix3x2::zeros());
             for (matrix, delay) in matrices.iter().zip(&self.method.delays) {
-                if *matrix == Matrix2::zeros() {
+                if *matrix == Matrix3x2::zeros() {
                     continue;
                 }
                 let whole = delay.floor();

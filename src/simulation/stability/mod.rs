@@ -2,8 +2,8 @@
 //!
 //! The tip moves as `x' = A x + B F`, `u = C x` ([`Plant`]), and the force of milling follows the chip, which is what the tip
 //! has moved since the tooth before it passed: `F = b sum_j K_j(t) (u(t) - u(t - tau_j))` for a depth of cut b. The
-//! coefficients `K_j` repeat with the turn, and every tooth has its own delay, so any pitch can be analysed. What a force along
-//! the tool axis (K_a) does in the plane of the cut is left out here; runs over time have it.
+//! coefficients `K_j` repeat with the turn, and every tooth has its own delay, so any pitch can be analysed. A force along
+//! the tool axis moves the tip in the plane of the cut as well.
 //!
 //! - [`SemiDiscretisation`] follows small motions over one period (Insperger and Stépán 2004) and has the multiplier by which
 //!   they grow: stable or not, flip or Hopf, how fast.

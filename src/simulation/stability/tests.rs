@@ -9,6 +9,8 @@ use crate::simulation::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
 
+mod time_domain;
+
 const RADIUS: f64 = 5e-3;
 const MASS: f64 = 0.03993;
 const OMEGA: f64 = 922.0 * TAU;
@@ -134,7 +136,7 @@ fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: u
                 mean += force * nalgebra::RowVector2::new(sine, -cosine) * (depth / 400.0);
             }
         }
-        let fed = &b * DMatrix::from_fn(2, 2, |row, column| mean[(row, column)]);
+        let fed = b.columns(0, 2) * DMatrix::from_fn(2, 2, |row, column| mean[(row, column)]);
         let a = plant.a() + &fed * plant.c();
         let mut all = DMatrix::zeros(n + 2, n + 2);
         all.view_mut((0, 0), (n, n)).copy_from(&(&a * step));
@@ -179,69 +181,6 @@ fn errors_fall_with_the_square_of_the_interval() {
     let [coarse, middle, fine] = [size(180), size(360), size(1440)];
     let ratio = (coarse - fine) / (middle - fine);
     assert!((3.0..6.0).contains(&ratio), "{coarse} {middle} {fine}");
-}
-
-/// Whether motion dies out over time when the tool really mills: in the end the tip comes by the same way from period to period,
-/// to a tenth of the feed of a tooth.
-fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize) -> bool {
-    let cut = Cut { axial_depth: depth, ..*cut };
-    let (turn, dt) = (cut.steps_per_turn, cut.step());
-    let mut milling = Milling::new(cutter, &cut).unwrap();
-    let feed = 0.1e-3 * cutter.teeth().len() as f64 / turn as f64;
-    let (k, c) = (MASS * OMEGA * OMEGA, 2.0 * DAMPING * OMEGA * MASS);
-    let effective = MASS + dt / 2.0 * c + dt * dt / 4.0 * k;
-    let (mut u, mut v, mut a) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-    let turns = 120;
-    let mut course = Vec::with_capacity(turns * turn);
-    // A turn with a rigid tool before, so that the first chips are as all others.
-    for step in 0..turn {
-        milling.remember(Node { place: [0.5 + feed * step as f64, RADIUS], motion: [feed, 0.0] });
-    }
-    for step in turn..turns * turn {
-        let mut force = [0.0; 2];
-        let (mut next_u, mut next_v, mut next_a) = (u, v, a);
-        for _ in 0..6 {
-            for axis in 0..2 {
-                let free_v = v[axis] + dt / 2.0 * a[axis];
-                let free_u = u[axis] + dt * v[axis] + dt * dt / 4.0 * a[axis];
-                let push = if axis == 0 { force[axis] } else { 0.0 };
-                next_a[axis] = (push - c * free_v - k * free_u) / effective;
-                next_v[axis] = free_v + dt / 2.0 * next_a[axis];
-                next_u[axis] = free_u + dt * dt / 4.0 * next_a[axis];
-            }
-            let place = [0.5 + feed * step as f64 + next_u[0], RADIUS + next_u[1]];
-            let found = milling.force(step as f64, place).on_tool;
-            force = [found[0], found[1]];
-        }
-        (u, v, a) = (next_u, next_v, next_a);
-        let place = [0.5 + feed * step as f64 + u[0], RADIUS + u[1]];
-        milling.remember(Node { place, motion: [feed + dt * v[0], dt * v[1]] });
-        course.push(u[0]);
-    }
-    let last = course.len() - 10 * turn..course.len();
-    last.map(|step| (course[step] - course[step - period]).abs()).fold(0.0, f64::max) < 0.01e-3
-}
-
-/// Within 5 % of the depth at which vibration in the time domain no longer dies out: equal and unequal pitch, with and without
-/// helix, where the tool stays in the cut (linear theory knows no other).
-#[test]
-fn the_time_domain_has_the_same_critical_depths() {
-    let plant = benchmark_plant();
-    for (way, immersion, rpm, pitches, helix, slices) in [
-        (Way::Climb, 0.5, 5000.0, [180.0; 2], 0.0, 1),
-        (Way::Climb, 0.5, 5000.0, [180.0; 2], 30.0, 8),
-        (Way::Conventional, 0.5, 10_000.0, [180.0; 2], 0.0, 1),
-        (Way::Climb, 0.1, 11_000.0, [180.0; 2], 0.0, 1),
-        (Way::Conventional, 0.1, 7500.0, [180.0; 2], 0.0, 1),
-        (Way::Climb, 0.6, 8000.0, [160.0, 200.0], 0.0, 1),
-    ] {
-        let cutter = benchmark_cutter(&pitches, helix);
-        let cut = Cut { slices, steps_per_turn: 360, ..cut(way, immersion, rpm) };
-        let period = if pitches[0] == pitches[1] { 180 } else { 360 };
-        let ours = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().critical_depth(20e-3).unwrap();
-        let calm = |depth: f64| calm(&cutter, &cut, depth, period);
-        assert!(calm(0.95 * ours) && !calm(1.05 * ours), "{ours} {way:?} {immersion} {rpm} {pitches:?} {helix}");
-    }
 }
 
 /// With its mean in place of `K(t)`, semi-discretisation solves the very equation that the zero order solves in closed form: one
@@ -294,7 +233,7 @@ fn aluminium_is_calm_and_steel_flips() {
     let arm = Arm::six(&testing::tx200(), &testing::spindle(), Variant::Springs, &testing::start()).unwrap();
     let linear = Linear::of(&arm, &SVector::from(testing::start()), 1.0);
     // The wall is on the right of the feed.
-    let plant = Plant::of_arm(&linear, [Vector3::x(), Vector3::y()]).unwrap();
+    let plant = Plant::of_arm(&linear, [Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
     let (cutter, cut) = umons([170.0, 190.0], 18_700.0, 661.553e6, 253.458e6);
     let aluminium = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap();
     assert!(aluminium.verdict(1.6e-3).is_stable());
@@ -308,7 +247,7 @@ fn aluminium_is_calm_and_steel_flips() {
     assert!((0.6e-3..0.7e-3).contains(&depth) && zero_order > 1.2 * depth, "{depth} {zero_order}");
     // Ten times the damping calms it nearly: it more than doubles the depth.
     let damped = Linear::of(&arm, &SVector::from(testing::start()), 10.0);
-    let damped = Plant::of_arm(&damped, [Vector3::x(), Vector3::y()]).unwrap();
+    let damped = Plant::of_arm(&damped, [Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
     let damped = SemiDiscretisation::new(&damped, &cutter, &cut).unwrap();
     assert!(damped.critical_depth(20e-3).unwrap() > 2.0 * depth);
 }

@@ -4,7 +4,7 @@ use super::directional::{exit, mean};
 use super::plant::Plant;
 use crate::cutting::EngagementError;
 use crate::simulation::milling::{Cut, Cutter};
-use nalgebra::{Complex, Matrix2};
+use nalgebra::{Complex, Matrix2x3, Matrix3x2};
 
 /// The answer of a tool tip at many frequencies, from which the zero-order solution is read at any spindle speed.
 ///
@@ -13,7 +13,7 @@ use nalgebra::{Complex, Matrix2};
 /// here for a given speed, which allows for unequal pitch).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroOrder {
-    answers: Vec<(f64, Matrix2<Complex<f64>>)>,
+    answers: Vec<(f64, Matrix2x3<Complex<f64>>)>,
 }
 
 /// Frequencies in the half width of a resonance.
@@ -81,10 +81,10 @@ impl ZeroOrder {
 
 /// The eigenvalues of what one metre of depth feeds back.
 fn gains(
-    coefficients: &Matrix2<Complex<f64>>,
+    coefficients: &Matrix3x2<Complex<f64>>,
     delays: &[f64],
     omega: f64,
-    answer: &Matrix2<Complex<f64>>,
+    answer: &Matrix2x3<Complex<f64>>,
 ) -> [Complex<f64>; 2] {
     let factor: Complex<f64> = delays
         .iter()
@@ -93,7 +93,7 @@ fn gains(
             Complex::new(1.0 - cosine, sine)
         })
         .sum();
-    let fed = coefficients * answer * factor;
+    let fed = answer * coefficients * factor;
     let (half, determinant) = (fed.trace() / 2.0, fed.determinant());
     let root = square_root(half * half - determinant);
     [half + root, half - root]
