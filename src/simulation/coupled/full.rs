@@ -20,13 +20,14 @@ impl<const N: usize> System<N> for Coupled<'_, N> {
         let (angles, speeds) = self.process.motion.motors(time);
         let posed = self.arm.chain.at(&state.q);
         let place = self.process.plane.place(&posed.tip());
-        let velocity = self.process.plane.part(&posed.tip_velocity(&state.speed));
+        let jacobian = posed.tip_jacobian();
+        let velocity = self.process.plane.part(&(jacobian * state.speed));
         let force = self.process.force(time, place);
         self.last = (place, velocity, force);
         let reference = [&Arm::<N>::spread(&angles), &Arm::<N>::spread(&speeds)];
         let motion = [&state.q, &state.speed, &state.acceleration];
         self.arm.unbalanced(&posed, motion, reference, &mut self.compensation)
-            - posed.tip_torques(&self.process.plane.force(force.on_tool))
+            - jacobian.tr_mul(&self.process.plane.force(force.on_tool))
     }
 
     fn tangent(&mut self, time: f64, state: &State<N>) -> Tangent<N> {

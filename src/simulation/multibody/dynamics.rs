@@ -89,12 +89,12 @@ impl<const N: usize> Posed<N> {
         // To be held against gravity is to be moved upwards.
         let (mut spin_rate, mut velocity_rate) = (Vector3::zeros(), -free_fall);
         let mut loads = [None; N];
+        let levers: [_; N] = std::array::from_fn(|j| (self.origins[j] - pole).cross(&self.axes[j]));
         for j in 0..N {
-            let axis = &self.axes[j];
-            let lever = (self.origins[j] - pole).cross(axis);
+            let (axis, lever) = (&self.axes[j], &levers[j]);
             // The joint's screw moves with the body before it.
             spin_rate += axis * acceleration[j] + spin.cross(axis) * speed[j];
-            velocity_rate += lever * acceleration[j] + (spin.cross(&lever) + velocity.cross(axis)) * speed[j];
+            velocity_rate += lever * acceleration[j] + (spin.cross(lever) + velocity.cross(axis)) * speed[j];
             spin += axis * speed[j];
             velocity += lever * speed[j];
             if let Some(body) = self.spatial_inertia(chain, j, &pole) {
@@ -111,8 +111,7 @@ impl<const N: usize> Posed<N> {
                 moment += m;
                 force += f;
             }
-            let axis = &self.axes[j];
-            torques[j] = axis.dot(&moment) + (self.origins[j] - pole).cross(axis).dot(&force);
+            torques[j] = self.axes[j].dot(&moment) + levers[j].dot(&force);
         }
         torques
     }
