@@ -45,7 +45,7 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert!(number(&document["profile"]["ra_um"]) < number(&document["profile"]["raw"]["rt_um"]));
     let modes = document["modes"].as_array().unwrap();
     let frequencies: Vec<f64> = modes.iter().map(|mode| number(&mode["frequency_hz"])).collect();
-    assert!((frequencies[0] - 15.8).abs() < 0.2 && frequencies.len() >= 6, "{frequencies:?}");
+    assert!((frequencies[0] - 15.76).abs() < 0.0051 && frequencies.len() == 6, "{frequencies:?}");
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(true), Some("complete")));
     assert_eq!(document["fast"].as_bool(), Some(false));
     assert!(number(&document["real_time_factor"]) > 0.0);

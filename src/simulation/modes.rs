@@ -1,8 +1,8 @@
 //! What swings how fast: natural frequencies, damping and shapes of an arm, and how its tip answers to a swinging force.
 //!
 //! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state matrix
-//! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode of natural frequency
-//! `omega = |s|` and damping ratio `zeta`.
+//! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode with damping ratio `zeta`; its natural
+//! frequency is that without damping, near `omega = |s|`.
 
 use super::arm::Arm;
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
@@ -24,14 +24,24 @@ pub struct Linear<const N: usize> {
 /// A way in which an arm swings by itself, or creeps back without swinging.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// Natural frequency |s| / (2 pi). Hz
+    /// |s| / (2 pi). Hz
     pub frequency: f64,
+    /// Natural frequency of the mode of the same number without damping, a little off |s| unless damping goes with mass and
+    /// stiffness; none where the modes are not as many, since some do not swing. Hz
+    pub undamped: Option<f64>,
     /// Share of the critical damping; 1 for what does not swing, negative for what grows.
     pub damping_ratio: f64,
     /// Amplitudes of the joints, the largest 1, where the largest is at its peak.
     pub joints: Vec<f64>,
     /// Amplitude of the tip (m) for those of the joints (rad).
     pub tip: Vector3<f64>,
+}
+
+impl Mode {
+    /// The natural frequency as it is commonly given: without damping, where that is known. Hz
+    pub fn natural_frequency(&self) -> f64 {
+        self.undamped.unwrap_or(self.frequency)
+    }
 }
 
 impl<const N: usize> Linear<N> {
@@ -80,6 +90,10 @@ impl<const N: usize> Linear<N> {
             .filter_map(|s| self.mode(*s))
             .collect();
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        let undamped = self.undamped()?;
+        if modes.len() == undamped.len() {
+            modes.iter_mut().zip(undamped).for_each(|(mode, frequency)| mode.undamped = Some(frequency));
+        }
         Some(modes)
     }
 
@@ -98,7 +112,8 @@ impl<const N: usize> Linear<N> {
         let largest = shape.iter().copied().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))?;
         let joints: Vec<f64> = shape.iter().map(|amplitude| (amplitude / largest).re).collect();
         let tip = self.tip * SVector::<f64, N>::from_column_slice(&joints);
-        Some(Mode { frequency: size / TAU, damping_ratio: if size > 0.0 { -s.re / size } else { 0.0 }, joints, tip })
+        let damping_ratio = if size > 0.0 { -s.re / size } else { 0.0 };
+        Some(Mode { frequency: size / TAU, undamped: None, damping_ratio, joints, tip })
     }
 
     /// `s^2 M + s C + K`.

@@ -57,7 +57,7 @@ pub struct Simulation {
     pub unrest: Option<f64>,
     /// Small motions in the middle of the work.
     pub verdict: Verdict,
-    /// All modes there.
+    /// All modes at the start of the pass.
     pub modes: Vec<Mode>,
     /// The wall that was left.
     pub wall: Profile,
@@ -106,7 +106,7 @@ impl Simulation {
             unrest: unrest(&run, [(window[0] + window[1]) / 2.0, window[1]], job.cut.steps_per_turn),
             window,
             verdict: method.verdict(job.cut.axial_depth),
-            modes: linear.modes()?,
+            modes: linear_at(job.setup, 0.0)?.modes()?,
             wall,
             filtered,
             roughness,

@@ -29,11 +29,11 @@ pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
         let panel = Panel { x, y, x_ticks, y_ticks, x_label: "frequency (Hz)", y_label: "answer (um/N)" };
         panel.draw_grid(canvas)?;
         let mut free_from = 0;
-        for mode in survey.modes.iter().filter(|mode| (ends[0]..=ends[1]).contains(&mode.frequency)) {
-            let at = panel.x.pixel(mode.frequency);
+        for mode in survey.modes.iter().filter(|mode| (ends[0]..=ends[1]).contains(&mode.natural_frequency())) {
+            let at = panel.x.pixel(mode.natural_frequency());
             canvas.line(vec![(at, panel.y.start), (at, panel.y.end)], PALE, 1)?;
             // Labels that would run into each other are left out.
-            let (label, lettering) = (fixed(mode.frequency, 1), Lettering::new(10.0).coloured(INK).centred());
+            let (label, lettering) = (fixed(mode.natural_frequency(), 1), Lettering::new(10.0).coloured(INK).centred());
             let half = lettering.width(&label) / 2;
             if at - half > free_from {
                 canvas.text(&label, (at, 76), lettering)?;

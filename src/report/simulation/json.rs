@@ -84,5 +84,5 @@ fn roughness(roughness: &Roughness) -> Value {
 }
 
 fn mode(mode: &Mode) -> Value {
-    json!({ "frequency_hz": HERTZ.number(mode.frequency), "damping_ratio": SHARE.number(mode.damping_ratio) })
+    json!({ "frequency_hz": HERTZ.number(mode.natural_frequency()), "damping_ratio": SHARE.number(mode.damping_ratio) })
 }

@@ -54,7 +54,7 @@ pub(in crate::report) fn verdict(depths: &Depths) -> Map<String, Value> {
 pub(in crate::report) fn modes(modes: &[Mode]) -> Value {
     let mode = |mode: &Mode| {
         json!({
-            "frequency_hz": HERTZ.number(mode.frequency),
+            "frequency_hz": HERTZ.number(mode.natural_frequency()),
             "damping_ratio": SHARE.number(mode.damping_ratio),
             "joints": mode.joints.iter().map(|amplitude| SHARE.number(*amplitude)).collect::<Vec<_>>(),
             "tip_mm_per_rad": mode.tip.iter().map(|part| Unit::PLACE_MM.number(*part)).collect::<Vec<_>>(),

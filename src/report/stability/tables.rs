@@ -21,7 +21,7 @@ pub fn modes(survey: &Survey) -> Result<Vec<u8>, ReportError> {
     header.extend((0..count).map(|k| joint_name(k, count)));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let rows = survey.modes.iter().zip(1..).map(|(mode, number): (_, usize)| {
-        let mut row = vec![number.to_string(), HERTZ.text(mode.frequency), SHARE.text(mode.damping_ratio)];
+        let mut row = vec![number.to_string(), HERTZ.text(mode.natural_frequency()), SHARE.text(mode.damping_ratio)];
         row.extend(mode.tip.iter().map(|part| TIP_MM.text(*part)));
         row.extend(mode.joints.iter().map(|amplitude| SHARE.text(*amplitude)));
         row

@@ -23,7 +23,12 @@ pub fn stability_text(run: &SimulationRun, survey: &Survey) -> String {
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (mode, number) in survey.modes.iter().zip(1..).take(MODES) {
         let number: usize = number;
-        rows.push(vec![number.to_string(), fixed(mode.frequency, 2), fixed(mode.damping_ratio, 4), moving(mode)]);
+        rows.push(vec![
+            number.to_string(),
+            fixed(mode.natural_frequency(), 2),
+            fixed(mode.damping_ratio, 4),
+            moving(mode),
+        ]);
     }
     text.push_str(&aligned(&rows, &[3]));
     if survey.modes.len() > MODES {

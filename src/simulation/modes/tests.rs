@@ -15,6 +15,12 @@ fn frequencies_of_the_published_arm() {
     for (found, expected) in undamped.iter().zip(expected) {
         assert!((found - expected).abs() < 0.0051, "{found} {expected}");
     }
+    // Of the damped arm, too, as long as all modes swing.
+    for (mode, expected) in linear(1.0).modes().unwrap().iter().zip(&undamped) {
+        assert_eq!(mode.undamped, Some(*expected));
+        assert!(mode.frequency != *expected && (mode.frequency / expected - 1.0).abs() < 0.01, "{mode:?}");
+    }
+    assert!(linear(10.0).modes().unwrap().iter().all(|mode| mode.undamped.is_none()));
     let modes = linear(0.0).modes().unwrap();
     assert_eq!(modes.len(), 6);
     for (mode, expected) in modes.iter().zip(undamped) {
