@@ -6,6 +6,7 @@ use crate::simulation::arm::{Variant, testing};
 use crate::simulation::milling::{Coefficients, Tooth};
 use crate::simulation::motion::{Pass, Ramp};
 use crate::simulation::outcome::{Look, Simulation, Statistics, statistics};
+use crate::simulation::stability::SemiDiscretisation;
 use crate::simulation::survey::linear_at;
 use std::f64::consts::TAU;
 
@@ -183,7 +184,7 @@ fn without_work_the_arm_follows_its_path() {
     }
 }
 
-/// What small motions do is told for the middle of the work, wherever on the pass that is.
+/// What small motions do is told for the middle of the work, wherever on the pass that is; modes are those of the start.
 #[test]
 fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
@@ -191,7 +192,12 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
     let look = Look { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
-    let modes_at = |way: f64| linear_at(&setup, way).unwrap().modes().unwrap();
-    assert_eq!(found.modes, modes_at(cutter.radius() + 0.06 + 0.005));
-    assert_ne!(found.modes, modes_at(0.005));
+    let frame = CutFrame::along(&setup.motion, cut.milling);
+    let verdict_at = |way: f64| {
+        let plant = linear_at(&setup, way).unwrap().plant(&frame).unwrap();
+        SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().verdict(cut.axial_depth)
+    };
+    assert_eq!(found.verdict, verdict_at(cutter.radius() + 0.06 + 0.005));
+    assert_ne!(found.verdict, verdict_at(0.005));
+    assert_eq!(found.modes, linear_at(&setup, 0.0).unwrap().modes().unwrap());
 }
