@@ -167,8 +167,8 @@ fn repeats(cutter: &Cutter) -> usize {
 struct Map<'a> {
     method: &'a SemiDiscretisation<'a>,
     directional: Directional,
-    /// C E and C W_0.
-    seen: [DMatrix<f64>; 2],
+    /// C E, C W_0 and C W_1.
+    seen: [DMatrix<f64>; 3],
     /// For each interval the inverse of `1 - C W_1 sum K_j`.
     implicit: Vec<Matrix2<f64>>,
     kept: usize,
@@ -182,14 +182,14 @@ impl<'a> Map<'a> {
         }
         let [e, w0, w1] = &method.step;
         let c = method.plant.c();
-        let at_once = c * w1;
-        let at_once = Matrix2x3::from_fn(|row, column| at_once[(row, column)]);
+        let seen = [e, w0, w1].map(|part| c * part);
+        let at_once = Matrix2x3::from_fn(|row, column| seen[2][(row, column)]);
         let implicit = (0..method.period).map(|interval| {
             let sum: Matrix3x2<f64> = directional.at(interval).iter().sum();
             (Matrix2::identity() - at_once * sum).try_inverse().unwrap_or_else(Matrix2::identity)
         });
         let kept = method.delays.iter().fold(0.0_f64, |most, delay| most.max(*delay)).ceil() as usize;
-        Self { method, seen: [c * e, c * w0], implicit: implicit.collect(), directional, kept }
+        Self { method, seen, implicit: implicit.collect(), directional, kept }
     }
 
     /// Length of what is mapped: states, then motions of the tip one, two, ... intervals ago.
@@ -230,7 +230,7 @@ impl<'a> Map<'a> {
             // The tip at the end: C (E x + W_0 F_0 + W_1 (after + sum u)).
             let mut seen = &self.seen[0] * &x;
             seen.gemv(1.0, &self.seen[1], &before, 1.0);
-            seen.gemv(1.0, &(c * w1), &after, 1.0);
+            seen.gemv(1.0, &self.seen[2], &after, 1.0);
             let end = self.implicit[interval] * Vector2::new(seen[0], seen[1]);
             after += sum * end;
             next.gemv(1.0, e, &x, 0.0);

@@ -23,10 +23,10 @@ fn benchmark_plant() -> Plant {
     Plant::new(a, b, DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0])).unwrap()
 }
 
-/// Its two teeth, K_t = 600 MPa and K_n = 200 MPa.
+/// Its two teeth, K_t = 600 MPa and K_n = 200 MPa; a force along the tool axis, which does nothing to a tool that does not lean.
 fn benchmark_cutter(pitches_deg: &[f64], helix_deg: f64) -> Cutter {
     let teeth = pitches_deg.iter().map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
-    let coefficients = Coefficients { tangential: 6e8, radial: 2e8, axial: 0.0 };
+    let coefficients = Coefficients { tangential: 6e8, radial: 2e8, axial: 2e8 };
     Cutter::new(teeth.collect(), helix_deg.to_radians(), 0.05, coefficients).unwrap()
 }
 

@@ -85,15 +85,6 @@ impl Trail {
             for (place, motion) in [(last.place, last.motion), (node.place, node.motion.map(|motion| -motion))] {
                 own = own.joined(at([0, 1].map(|axis| place[axis] + motion[axis] / 3.0)));
             }
-        }
-        self.extents.push(self.extents.last().map_or(own, |all| all.joined(own)));
-        match self.stretches.last_mut().filter(|_| !self.nodes.len().is_multiple_of(self.stretch)) {
-            Some(stretch) => *stretch = stretch.joined(own),
-            None => self.stretches.push(own),
-        }
-        let recent = self.stretches.iter().rev().take(2).copied().reduce(Extent::joined);
-        self.recents.extend(recent);
-        if let Some(last) = self.nodes.last() {
             let part = |axis: usize| {
                 let leap = node.place[axis] - last.place[axis];
                 let (start, end) = (last.motion[axis], node.motion[axis]);
@@ -103,6 +94,13 @@ impl Trail {
             let (second, third) = ([second_x, second_y], [third_x, third_y]);
             self.legs.push(Leg { place: last.place, motion: last.motion, second, third });
         }
+        self.extents.push(self.extents.last().map_or(own, |all| all.joined(own)));
+        match self.stretches.last_mut().filter(|_| !self.nodes.len().is_multiple_of(self.stretch)) {
+            Some(stretch) => *stretch = stretch.joined(own),
+            None => self.stretches.push(own),
+        }
+        let recent = self.stretches.iter().rev().take(2).copied().reduce(Extent::joined);
+        self.recents.extend(recent);
         self.nodes.push(node);
     }
 
