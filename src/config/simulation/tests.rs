@@ -22,6 +22,13 @@ inertia_kg_m2 = { xx = 0.095, yy = 0.106, zz = 0.098, xz = 0.035 }
 
 /// Reads a text as a simulation file beside the shipped robots.
 fn read(text: &str) -> Result<SimulationRun, InputError> {
+    read_by(read_simulation, text)
+}
+
+fn read_by(
+    reader: fn(&Path, &Overrides) -> Result<SimulationRun, InputError>,
+    text: &str,
+) -> Result<SimulationRun, InputError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("robots")).unwrap();
     for name in ["staubli-tx200.toml", "kuka-kr270-2.toml"] {
@@ -30,7 +37,7 @@ fn read(text: &str) -> Result<SimulationRun, InputError> {
     }
     let file = folder.path().join("run.toml");
     std::fs::write(&file, text).unwrap();
-    read_simulation(&file, &Overrides::default())
+    reader(&file, &Overrides::default())
 }
 
 #[test]
@@ -105,16 +112,11 @@ fn a_cut_of_the_whole_diameter_is_a_slot() {
 /// A survey makes no steps, so that a slow pass and a slow spindle are none of its business.
 #[test]
 fn a_survey_does_not_ask_for_steps() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::create_dir(folder.path().join("robots")).unwrap();
-    let robot = "robots/staubli-tx200.toml";
-    std::fs::copy(root().join("configs").join(robot), folder.path().join(robot)).unwrap();
-    let file = folder.path().join("run.toml");
     let text = shipped("umons-aluminium.toml").replace("window_s", "# window_s");
     for (from, to) in [("= 3700.0 ", "= 0.1 "), ("spindle_rpm = 18700.0", "spindle_rpm = 50.0")] {
-        std::fs::write(&file, text.replacen(from, to, 1)).unwrap();
-        assert!(read_simulation(&file, &Overrides::default()).is_err());
-        assert!(read_survey(&file, &Overrides::default()).is_ok());
+        let text = text.replacen(from, to, 1);
+        assert!(read(&text).is_err());
+        assert!(read_by(read_survey, &text).is_ok());
     }
 }
 
