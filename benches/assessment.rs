@@ -5,9 +5,9 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
-use stead::assessment::map::{Elbow, Map};
-use stead::assessment::study::{Study, assess};
-use stead::config::read_assessment;
+use stead_assessment::map::{Elbow, Map};
+use stead_assessment::study::{Study, assess};
+use stead_format::read_assessment;
 
 fn main() {
     divan::main();

@@ -8,10 +8,10 @@
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
-use stead::config::read_run;
-use stead::placement::certify::{State, Watch, best};
-use stead::placement::control::Unwatched;
-use stead::placement::place::place;
+use stead_format::read_run;
+use stead_placement::certify::{State, Watch, best};
+use stead_placement::control::Unwatched;
+use stead_placement::place::place;
 
 /// Run, gap in per cent, and the time allowed for the certificate on two cores. s
 const FLOORS: [(&str, f64, f64); 4] = [

@@ -8,7 +8,7 @@ use divan::{Bencher, black_box};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
-use stead::assessment::circle::{Circles, least_squares, maximum_inscribed, minimum_circumscribed, minimum_zone};
+use stead_assessment::circle::{Circles, least_squares, maximum_inscribed, minimum_circumscribed, minimum_zone};
 
 fn main() {
     divan::main();

@@ -8,11 +8,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use stead::config::{read_identification, read_plan};
-use stead::identification::plan::{Request, plan};
-use stead::identification::synthetic::{Cell, sheet};
-use stead::identification::{Problem, identify};
-use stead::robot::Pose;
+use stead_calibration::identification::plan::{Request, plan};
+use stead_calibration::identification::synthetic::{Cell, sheet};
+use stead_calibration::identification::{Problem, identify};
+use stead_format::{read_identification, read_plan};
+use stead_model::robot::Pose;
 
 fn main() {
     divan::main();

@@ -5,10 +5,10 @@
 use divan::{Bencher, black_box};
 use nalgebra::{SMatrix, SVector, Vector3};
 use std::path::Path;
-use stead::config::{Overrides, SimulationRun, read_simulation};
-use stead::simulation::arm::{AnyArm, Arm, Compensation, Variant};
-use stead::simulation::integrator::{Newmark, Settings, State, System, Tangent};
-use stead::simulation::survey::{depths, linear_at, survey};
+use stead_format::{Overrides, SimulationRun, read_simulation};
+use stead_simulation::arm::{AnyArm, Arm, Compensation, Variant};
+use stead_simulation::integrator::{Newmark, Settings, State, System, Tangent};
+use stead_simulation::survey::{depths, linear_at, survey};
 
 fn main() {
     divan::main();
@@ -77,7 +77,7 @@ fn a_thousand_steps(bencher: Bencher<'_, '_>, variant: Variant) {
 fn depths_at_one_speed(bencher: Bencher<'_, '_>, variant: Variant) {
     let run = shipped(variant);
     let linear = linear_at(&run.setup, 0.0).expect("the shipped robot has masses");
-    let frame = stead::simulation::survey::CutFrame::new(Vector3::x(), Vector3::z(), run.cut.milling);
+    let frame = stead_simulation::survey::CutFrame::new(Vector3::x(), Vector3::z(), run.cut.milling);
     let plant = linear.plant(&frame).expect("the mass matrix is positive definite");
     bencher.bench_local(|| depths(&plant, &run.cutter, black_box(&run.cut), run.plan.deepest));
 }

@@ -13,11 +13,11 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
-use stead::lanes::Instructions;
-use stead::placement::kernel::{Flips, Kernel, States};
-use stead::placement::redundancy::band::{self, Step};
-use stead::placement::redundancy::{Extremum, Planner};
-use stead::robot::PostureClass;
+use stead_model::robot::PostureClass;
+use stead_numerics::simd::Instructions;
+use stead_placement::kernel::{Flips, Kernel, States};
+use stead_placement::redundancy::band::{self, Step};
+use stead_placement::redundancy::{Extremum, Planner};
 
 fn main() {
     divan::main();

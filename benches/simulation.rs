@@ -8,11 +8,11 @@
 use divan::{Bencher, black_box};
 use std::path::Path;
 use std::time::Instant;
-use stead::config::{Overrides, SimulationRun, read_simulation};
-use stead::simulation::arm::Variant;
-use stead::simulation::coupled::{Job, Run};
-use stead::simulation::milling::Milling;
-use stead::simulation::surface::Node;
+use stead_format::{Overrides, SimulationRun, read_simulation};
+use stead_simulation::arm::Variant;
+use stead_simulation::coupled::{Job, Run};
+use stead_simulation::milling::Milling;
+use stead_simulation::surface::Node;
 
 fn main() {
     for variant in Variant::ALL {

@@ -10,8 +10,8 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
-use stead::placement::redundancy::{Extremum, Planner};
-use stead::placement::table::{Lane, Table};
+use stead_placement::redundancy::{Extremum, Planner};
+use stead_placement::table::{Lane, Table};
 
 fn main() {
     let problem = problem();

@@ -15,9 +15,9 @@ use std::env;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
-use stead::config::read_robot;
-use stead::identification::synthetic::{Cell, Shot, sheet};
-use stead::robot::{Compensator, Compliance, Pose};
+use stead_calibration::identification::synthetic::{Cell, Shot, sheet};
+use stead_format::read_robot;
+use stead_model::robot::{Compensator, Compliance, Pose};
 
 /// Distinct angles of joint 2. deg
 const ANGLES_DEG: [f64; 5] = [15.0, 45.0, 75.0, 105.0, 135.0];

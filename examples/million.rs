@@ -12,10 +12,10 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
-use stead::config::read_run;
-use stead::placement::place::score;
-use stead::placement::problem::{Placement, Problem};
-use stead::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_format::read_run;
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_placement::place::score;
+use stead_placement::problem::{Placement, Problem};
 
 /// Distance between neighbours. m
 const SPACING: f64 = 1e-4;

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use std::env;
 use std::error::Error;
 use std::path::Path;
-use stead::config::read_run;
-use stead::placement::appraiser::Appraiser;
-use stead::placement::genetic::{Individual, distinct, rank};
-use stead::placement::outcome::Goal;
-use stead::placement::problem::Interval;
-use stead::placement::redundancy::Planner;
-use stead::placement::refine::refine;
-use stead::placement::table::Table;
+use stead_format::read_run;
+use stead_placement::appraiser::Appraiser;
+use stead_placement::genetic::{Individual, distinct, rank};
+use stead_placement::outcome::Goal;
+use stead_placement::problem::Interval;
+use stead_placement::redundancy::Planner;
+use stead_placement::refine::refine;
+use stead_placement::table::Table;
 
 /// Basins of the grid that are refined, for each goal.
 const REFINED: usize = 16;

@@ -9,10 +9,10 @@
 use std::env;
 use std::error::Error;
 use std::path::Path;
-use stead::config::read_run;
-use stead::placement::control::Unwatched;
-use stead::placement::place::place;
-use stead::placement::settings::{PostureSearch, SearchSettings};
+use stead_format::read_run;
+use stead_placement::control::Unwatched;
+use stead_placement::place::place;
+use stead_placement::settings::{PostureSearch, SearchSettings};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();

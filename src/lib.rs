@@ -42,17 +42,12 @@
 //! fixed order, and transcendental functions come from `libm` or from [`lanes`], not from the
 //! C library of the machine.
 
-pub mod assessment;
-pub mod cli;
-pub mod compensation;
-pub mod config;
-pub mod cutting;
-pub mod identification;
-pub mod input;
-pub mod lanes;
-pub mod placement;
-pub mod report;
-pub mod robot;
-pub mod simulation;
-pub mod stiffness;
-pub mod task;
+pub use stead_assessment as assessment;
+pub use stead_calibration::{compensation, identification};
+pub use stead_format as config;
+pub use stead_format::input;
+pub use stead_model::{cutting, robot, stiffness, task};
+pub use stead_numerics::simd as lanes;
+pub use stead_placement as placement;
+pub use stead_report as report;
+pub use stead_simulation as simulation;

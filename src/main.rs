@@ -1,7 +1,9 @@
-//! The `stead` command: see [`stead::cli`].
+//! Starts the command line and returns its exit code.
+
+mod cli;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    stead::cli::main()
+    cli::main()
 }

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended};
+use crate::common::{Bench, Ended};
 
 const STUDY: &str = "configs/klimchik-2017.toml";
 const COMPATIBLE: &str = "configs/klimchik-2017-table-compatible.toml";

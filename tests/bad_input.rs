@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended, RUN};
+use crate::common::{Bench, Ended, RUN};
 
 const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";
 const TASK: &str = "tasks/five-segments.csv";

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended};
+use crate::common::{Bench, Ended};
 use std::f64::consts::TAU;
 
 const FILE: &str = "points.csv";

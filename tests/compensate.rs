@@ -2,15 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended};
+use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
 use std::path::Path;
-use stead::config::{read_robot, read_run};
-use stead::placement::problem::{Placement, Problem};
-use stead::robot::angles::wrap;
-use stead::stiffness::equilibrium::{Load, equilibrium};
+use stead_format::{read_robot, read_run};
+use stead_model::robot::angles::wrap;
+use stead_model::stiffness::equilibrium::{Load, equilibrium};
+use stead_placement::problem::{Placement, Problem};
 
 const CONFIG: &str = "configs/compensate.toml";
 const PLAN: &str = "plan/best.csv";

@@ -4,9 +4,9 @@
 
 use serde_json::Value;
 use std::path::Path;
-use stead::config::read_run;
-use stead::placement::problem::Problem;
-use stead::placement::redundancy::{Extremum, Planner, fine::Tube};
+use stead_format::read_run;
+use stead_placement::problem::Problem;
+use stead_placement::redundancy::{Extremum, Planner, fine::Tube};
 
 /// The mean of the final plan at a placement, m.
 fn mean(planner: &Planner<'_>, pose: &[f64; 4], extremum: Extremum) -> f64 {

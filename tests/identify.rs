@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended};
+use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
-use stead::identification::Configuration;
-use stead::identification::synthetic::{Cell, sheet};
-use stead::robot::{Compensator, Compliance, Pose};
+use stead_calibration::identification::Configuration;
+use stead_calibration::identification::synthetic::{Cell, sheet};
+use stead_model::robot::{Compensator, Compliance, Pose};
 
 const CONFIG: &str = "configs/identify-example.toml";
 const SHEET: &str = "tasks/identify-example.csv";
@@ -104,19 +102,19 @@ fn the_robot_file_is_one_that_can_be_read_again() {
     let bench = bench();
     assert_eq!(fit(&bench, &[]).code, Some(0));
     bench.write("arm.toml", &bench.read("out/robot-identified.toml"));
-    let robot = stead::config::read_robot(&bench.path("arm.toml")).unwrap();
+    let robot = stead_format::read_robot(&bench.path("arm.toml")).unwrap();
     let Compliance::Compensated { alone, compensator } = robot.joints()[1].compliance else {
         panic!("{:?}", robot.joints()[1]);
     };
     assert!((alone * 1e6 - 0.3).abs() < 0.01 && compensator.a == 0.75);
     // The covariance goes on into the score of a placement.
-    bench.replace(common::RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
+    bench.replace(crate::common::RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
     let place = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258", "--json"];
-    let score = || bench.stead(&[&["score", common::RUN], &place[..]].concat()).json()["best"].clone();
+    let score = || bench.stead(&[&["score", crate::common::RUN], &place[..]].concat()).json()["best"].clone();
     let plain = score();
     let (mean, deviation) = (plain["mean_mm"].as_f64().unwrap(), plain["mean_std_mm"].as_f64().unwrap());
     assert!(deviation > 1e-4 * mean && deviation < 0.1 * mean, "{plain}");
-    bench.replace(common::RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.0\nconfidence = 2.0");
+    bench.replace(crate::common::RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.0\nconfidence = 2.0");
     assert!(score()["mean_mm"].as_f64().unwrap() > mean);
     // What stead has written it can start from: the compensator's geometry is that of the robot file now.
     let config = bench.read(CONFIG).replace("robots/kuka-kr270-2.toml", "../arm.toml");
@@ -286,7 +284,7 @@ fn sheets_that_tell_too_little_are_refused() {
 
 /// The example's sheet as it would be under vertical loads, without noise.
 fn hang_loads(bench: &Bench) {
-    let run = stead::config::read_identification(&bench.path(CONFIG)).unwrap();
+    let run = stead_format::read_identification(&bench.path(CONFIG)).unwrap();
     let alpha = (-20.0_f64).to_radians();
     let compensator = Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha, free_length: 0.6 };
     let mut laws = TRUTH.map(|urad| Compliance::from(urad / 1e6));

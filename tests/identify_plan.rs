@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended};
+use crate::common::{Bench, Ended};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::path::Path;
-use stead::identification::synthetic::{Cell, Shot, sheet};
-use stead::robot::{Compensator, Compliance, Pose};
+use stead_calibration::identification::synthetic::{Cell, Shot, sheet};
+use stead_model::robot::{Compensator, Compliance, Pose};
 
 const CONFIG: &str = "configs/identify-plan-example.toml";
 const SHEET: &str = "results/identify-plan-example/sheet.csv";
@@ -96,7 +94,7 @@ fn fill(bench: &Bench) {
     let compensator = Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha, free_length: 0.6 };
     let mut laws = [0.54, 0.3, 0.42, 2.79, 3.48, 2.074].map(|urad| Compliance::from(urad / 1e6));
     laws[1] = Compliance::Compensated { alone: 0.3e-6, compensator };
-    let robot = stead::config::read_robot(&bench.path("configs/robots/kuka-kr270-2.toml")).unwrap();
+    let robot = stead_format::read_robot(&bench.path("configs/robots/kuka-kr270-2.toml")).unwrap();
     let cell = Cell {
         tracker_from_base: Pose {
             rotation: Matrix3::new(-0.6, -0.8, 0.0, 0.8, -0.6, 0.0, 0.0, 0.0, 1.0),
@@ -173,9 +171,9 @@ fn from_a_plan_over_a_filled_sheet_to_a_robot_whose_deflections_are_known_as_wel
     again.assert_says(&["sheet.csv: is a sheet with readings in it", "--out"]);
 
     bench.write("arm.toml", &bench.read("out/robot-identified.toml"));
-    bench.replace(common::RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
+    bench.replace(crate::common::RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
     let place = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258", "--json"];
-    let score = bench.stead(&[&["score", common::RUN], &place[..]].concat()).json();
+    let score = bench.stead(&[&["score", crate::common::RUN], &place[..]].concat()).json();
     let (mean, deviation) = (number(&score["best"]["mean_mm"]), number(&score["best"]["mean_std_mm"]));
     assert!(deviation > 1e-4 * mean && deviation < 0.05 * mean, "{score}");
 }

@@ -13,9 +13,9 @@ use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
-use stead::config::read_robot;
-use stead::robot::angles::wrap;
-use stead::robot::{Posture, Robot};
+use stead_format::read_robot;
+use stead_model::robot::angles::wrap;
+use stead_model::robot::{Posture, Robot};
 
 fn arm() -> Robot {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/robots/kuka-kr270-2.toml");

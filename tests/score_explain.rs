@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, Ended, RUN};
+use crate::common::{Bench, Ended, RUN};
 use serde_json::Value;
 use std::process::Stdio;
 

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
 
-mod common;
-
-use common::{Bench, RUN};
+use crate::common::{Bench, RUN};
 use serde_json::Value;
 
 const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";

@@ -1,8 +1,8 @@
 //! The published case, for the benchmarks of the placement.
 
 use std::path::Path;
-use stead::config::read_run;
-use stead::placement::problem::Problem;
+use stead_format::read_run;
+use stead_placement::problem::Problem;
 
 /// The problem of the shipped run.
 pub fn problem() -> Problem {

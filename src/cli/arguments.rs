@@ -1,13 +1,13 @@
 //! What may be said on the command line.
 
-use crate::assessment::roundness::Sector;
-use crate::config::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE, Overrides};
-use crate::placement::problem::Placement;
-use crate::placement::settings::CertificateSettings;
-use crate::robot::angles::yaw_from_q4;
-use crate::simulation::arm::Variant;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use stead_assessment::roundness::Sector;
+use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE, Overrides};
+use stead_model::robot::angles::yaw_from_q4;
+use stead_placement::problem::Placement;
+use stead_placement::settings::CertificateSettings;
+use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
 #[derive(Debug, Parser)]
@@ -267,7 +267,7 @@ impl PlaceArguments {
     pub fn placement(&self) -> Placement {
         let yaw = match (self.turn.q4, self.turn.yaw_deg) {
             (Some(q4), _) => yaw_from_q4(q4),
-            (None, yaw) => crate::robot::angles::wrap(yaw.unwrap_or(0.0).to_radians()),
+            (None, yaw) => stead_model::robot::angles::wrap(yaw.unwrap_or(0.0).to_radians()),
         };
         Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
     }

@@ -3,11 +3,11 @@
 use super::arguments::AssessOptions;
 use super::progress::Steps;
 use super::{Failure, on_threads, out_folder, say};
-use crate::assessment::study::assess;
-use crate::config::read_assessment;
-use crate::report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use crate::report::json::Timing;
 use std::time::Instant;
+use stead_assessment::study::assess;
+use stead_format::read_assessment;
+use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
+use stead_report::json::Timing;
 
 pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let mut run = read_assessment(&options.config)?;

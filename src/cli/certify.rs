@@ -2,13 +2,13 @@
 
 use super::progress::Watcher;
 use super::{Failure, on_threads, say};
-use crate::config::Run;
-use crate::placement::certify::{self, Bound, Unfit, Watch};
-use crate::placement::control::Control;
-use crate::placement::outcome::{CANCELLED, Case, Goal, Outcome};
-use crate::placement::settings::CertificateSettings;
-use crate::report::certificate::{Certificate, Proof, ending};
 use std::time::{Duration, Instant};
+use stead_format::Run;
+use stead_placement::certify::{self, Bound, Unfit, Watch};
+use stead_placement::control::Control;
+use stead_placement::outcome::{CANCELLED, Case, Goal, Outcome};
+use stead_placement::settings::CertificateSettings;
+use stead_report::certificate::{Certificate, Proof, ending};
 
 /// What goes into every bound.
 struct Job<'a> {

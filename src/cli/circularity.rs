@@ -2,14 +2,14 @@
 
 use super::arguments::CircularityOptions;
 use super::{Failure, files_written, print, say};
-use crate::assessment::circle::CircleError;
-use crate::assessment::roundness::{Roundness, RoundnessError, assess};
-use crate::config::{PointFile, read_points};
-use crate::input::InputError;
-use crate::report::number::figures;
-use crate::report::output::Folder;
-use crate::report::{circularity, json};
 use std::path::Path;
+use stead_assessment::circle::CircleError;
+use stead_assessment::roundness::{Roundness, RoundnessError, assess};
+use stead_format::input::InputError;
+use stead_format::{PointFile, read_points};
+use stead_report::number::figures;
+use stead_report::output::Folder;
+use stead_report::{circularity, json};
 
 pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let file = read_points(&options.points)?;
@@ -50,8 +50,8 @@ fn located(path: &Path, file: &PointFile, error: RoundnessError) -> InputError {
         RoundnessError::Left { count, cause } => (cause, Some(count)),
     };
     let columns = match file.measured {
-        crate::assessment::roundness::Measured::Planar(_) => "x_mm,y_mm",
-        crate::assessment::roundness::Measured::Spatial(_) => "x_mm,y_mm,z_mm",
+        stead_assessment::roundness::Measured::Planar(_) => "x_mm,y_mm",
+        stead_assessment::roundness::Measured::Spatial(_) => "x_mm,y_mm,z_mm",
     };
     let first = file.lines.first().copied().unwrap_or(1);
     let (line, found, allowed) = match cause {

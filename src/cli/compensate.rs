@@ -2,10 +2,10 @@
 
 use super::arguments::CompensateOptions;
 use super::{Failure, out_folder, print, say};
-use crate::compensation::compensate;
-use crate::config::read_compensation;
-use crate::report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
-use crate::report::json;
+use stead_calibration::compensation::compensate;
+use stead_format::read_compensation;
+use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
+use stead_report::json;
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = read_compensation(&options.config, options.reality.as_deref())?;

@@ -3,9 +3,9 @@
 use super::arguments::ExplainOptions;
 use super::score::mention_cell;
 use super::{Failure, print, say};
-use crate::config::read_run;
-use crate::placement::feasibility::explain;
-use crate::report::{evaluation, json};
+use stead_format::read_run;
+use stead_placement::feasibility::explain;
+use stead_report::{evaluation, json};
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;

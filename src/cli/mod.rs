@@ -17,18 +17,18 @@ mod score;
 mod simulate;
 mod stability;
 
-use crate::assessment::study::AssessError;
-use crate::compensation::NotCompensated;
-use crate::input::InputError;
-use crate::placement::place::NothingFeasible;
-use crate::report::json;
-use crate::report::output::{Folder, ReportError};
 use arguments::{Arguments, Command};
 use clap::Parser;
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Display, Path};
 use std::process::ExitCode;
+use stead_assessment::study::AssessError;
+use stead_calibration::compensation::NotCompensated;
+use stead_format::input::InputError;
+use stead_placement::place::NothingFeasible;
+use stead_report::json;
+use stead_report::output::{Folder, ReportError};
 
 /// Why a command ends without its result.
 #[derive(Debug, thiserror::Error)]

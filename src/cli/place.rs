@@ -5,14 +5,14 @@ use super::certify::{certified, warn_unfit};
 use super::progress::Watcher;
 use super::score::{mention_cancellation, path_stability};
 use super::{Failure, files_written, on_threads, out_folder, print, say};
-use crate::config::read_run_to_certify;
-use crate::placement::control::Control;
-use crate::placement::place::place;
-use crate::report::certificate::{certificate_json, certificate_text, write_certificate};
-use crate::report::json::{self, Timing};
-use crate::report::{Context, evaluation, text, write_placement};
 use serde_json::Value;
 use std::time::Instant;
+use stead_format::read_run_to_certify;
+use stead_placement::control::Control;
+use stead_placement::place::place;
+use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
+use stead_report::json::{self, Timing};
+use stead_report::{Context, evaluation, text, write_placement};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let run = read_run_to_certify(&options.config, options.certify)?;

@@ -1,14 +1,14 @@
 //! Progress bars on a terminal, and Ctrl-C.
 
-use crate::placement::certify;
-use crate::placement::control::{Control, Progress};
-use crate::placement::outcome::Goal;
-use crate::report::certificate::{Ended, MOST_GAP_PERCENT};
-use crate::report::number::figures;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use stead_placement::certify;
+use stead_placement::control::{Control, Progress};
+use stead_placement::outcome::Goal;
+use stead_report::certificate::{Ended, MOST_GAP_PERCENT};
+use stead_report::number::figures;
 
 /// Watches a placement job: draws its progress if standard error is a terminal, and stops it at Ctrl-C.
 pub(super) struct Watcher {

@@ -2,13 +2,13 @@
 
 use super::arguments::ScoreOptions;
 use super::{Failure, on_threads, print, say};
-use crate::config::read_run;
-use crate::placement::outcome::{CANCELLED, Plan, PlanPoint};
-use crate::placement::place::score;
-use crate::placement::problem::{Criterion, Placement, Problem};
-use crate::report::stability::PathStability;
-use crate::report::{evaluation, json};
-use crate::simulation::chatter::{Chatter, Station};
+use stead_format::read_run;
+use stead_placement::outcome::{CANCELLED, Plan, PlanPoint};
+use stead_placement::place::score;
+use stead_placement::problem::{Criterion, Placement, Problem};
+use stead_report::stability::PathStability;
+use stead_report::{evaluation, json};
+use stead_simulation::chatter::{Chatter, Station};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;

@@ -2,11 +2,11 @@
 
 use super::arguments::SimulateOptions;
 use super::{Failure, out_folder_named};
-use crate::config::{Overrides, read_simulation};
-use crate::report::simulation::{Making, simulation_text, timed_json, write_simulation};
-use crate::simulation::coupled::Job;
-use crate::simulation::outcome::Simulation;
 use std::time::Instant;
+use stead_format::{Overrides, read_simulation};
+use stead_report::simulation::{Making, simulation_text, timed_json, write_simulation};
+use stead_simulation::coupled::Job;
+use stead_simulation::outcome::Simulation;
 
 pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let run = read_simulation(&options.config, &Overrides::from(&options.model))?;

@@ -2,9 +2,9 @@
 
 use super::arguments::StabilityOptions;
 use super::{Failure, on_threads, out_folder_named};
-use crate::config::{Overrides, read_survey};
-use crate::report::stability::{stability_json, stability_text, write_stability};
-use crate::simulation::survey::survey;
+use stead_format::{Overrides, read_survey};
+use stead_report::stability::{stability_json, stability_text, write_stability};
+use stead_simulation::survey::survey;
 
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
     let run = read_survey(&options.config, &Overrides::from(&options.model))?;

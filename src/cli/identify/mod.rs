@@ -4,15 +4,15 @@ mod plan;
 
 use super::arguments::{IdentifyCommand, IdentifyFitOptions};
 use super::{Failure, out_folder, say};
-use crate::config::{IdentifyRun, read_identification};
-use crate::identification::law::LawError;
-use crate::identification::model::{Layout, Parameter};
-use crate::identification::normal::Unseen;
-use crate::identification::setup::SetupError;
-use crate::identification::{IdentifyError, identify};
-use crate::input::InputError;
-use crate::report::identification::{identify_json, identify_text, write_identified};
-use crate::report::words::compliance_name;
+use stead_calibration::identification::law::LawError;
+use stead_calibration::identification::model::{Layout, Parameter};
+use stead_calibration::identification::normal::Unseen;
+use stead_calibration::identification::setup::SetupError;
+use stead_calibration::identification::{IdentifyError, identify};
+use stead_format::input::InputError;
+use stead_format::{IdentifyRun, read_identification};
+use stead_report::identification::{identify_json, identify_text, write_identified};
+use stead_report::words::compliance_name;
 
 pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
     match command {

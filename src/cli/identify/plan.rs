@@ -3,11 +3,11 @@
 use super::super::arguments::IdentifyPlanOptions;
 use super::super::progress::Steps;
 use super::super::{Failure, on_threads, out_folder, say};
-use crate::config::{PlanRun, read_plan};
-use crate::identification::plan::{PlanError, plan};
-use crate::input::InputError;
-use crate::report::identification::plan::{SHEET, is_form, plan_json, plan_text, write_plan};
 use std::path::Path;
+use stead_calibration::identification::plan::{PlanError, plan};
+use stead_format::input::InputError;
+use stead_format::{PlanRun, read_plan};
+use stead_report::identification::plan::{SHEET, is_form, plan_json, plan_text, write_plan};
 
 pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let run = read_plan(&options.config, options.seed)?;

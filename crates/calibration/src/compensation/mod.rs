@@ -1,0 +1,143 @@
+//! Compensating the deflection: the path to command so that the loaded tool follows the path that is wanted.
+//!
+//! Under a wrench the tool comes to rest beside the pose that was commanded. For every point of a plan, [`compensate`] looks
+//! for the commanded pose t* at which the loaded tool rests at the target t_0 (Klimchik et al. 2017, eq. 26),
+//! `t_0 = f(t*)`, by the iteration of eq. 27, `t* <- t* + alpha (t_0 - f(t*))`. Errors of orientation are corrected with
+//! those of position, as rotation vectors. What f says is the [`Model`]'s; the wrench keeps its directions in space, and
+//! posture and turns are those of the plan.
+//!
+//! A correction is about as large as the deflection, and over so small a way the deflection hardly changes: with `alpha = 1`
+//! each iteration takes another factor of about deflection over arm length off the error. A smaller alpha leaves
+//! `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is never taken for
+//! a result.
+//!
+//! Then the commands are played: on the same arm, or on another one of the same geometry, which stands for reality. There
+//! the arm always comes to rest in its exact static equilibrium. What remains is the share of the deflection that the model
+//! does not know.
+
+mod iteration;
+mod outcome;
+
+#[cfg(test)]
+mod tests;
+
+pub use outcome::{Compensated, Deflection, Figures, NotCompensated, Outcome, Reason, reduction};
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use stead_model::robot::{Pose, Posture, Robot, Spindle};
+
+/// Everything that a compensation depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compensation {
+    /// The arm as the corrections know it.
+    pub robot: Robot,
+    /// The arm that the corrected commands are played on, of the same geometry ([`other_geometry`]).
+    pub reality: Robot,
+    /// The spindle as mounted.
+    pub spindle: Spindle,
+    /// The points of the plan, in order.
+    pub stations: Vec<Station>,
+    /// How the corrections are found.
+    pub settings: Settings,
+}
+
+/// One point of a plan: where the tool is to be under which wrench.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Number of its segment, from 1.
+    pub segment: usize,
+    /// The target t_0: the tool frame (7, at the tool centre point) in the base frame.
+    pub base_from_tool: Pose<f64>,
+    /// The posture of the arm.
+    pub posture: Posture,
+    /// The joint angles of the plan, which tell the turns. rad
+    pub joints: [f64; 6],
+    /// Force on the tool at the tool centre point in the base frame. N
+    pub force: Vector3<f64>,
+    /// Moment on the tool about the tool centre point in the base frame. N m
+    pub moment: Vector3<f64>,
+    /// The direction in which a deflection spoils the wall, to the left of the feed, of unit length in the base frame.
+    pub normal: Vector3<f64>,
+}
+
+/// What the corrections take for the deflection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
+    Equilibrium,
+    /// The displacement linear in the load ([`stead_model::stiffness::displacement`]), as in the score of a placement.
+    Linear,
+}
+
+/// How the corrections are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Alpha of eq. 27: the share of the error that one iteration corrects, above 0. Up to 1 the corrections approach the
+    /// solution from one side; beyond they overshoot, and from 2 on they cannot converge.
+    pub alpha: f64,
+    /// An error of position up to this counts as none. m
+    pub tolerance: f64,
+    /// The length by which an error of orientation (rad) is compared with the tolerance. m
+    pub characteristic_length: f64,
+    /// Iterations at the most.
+    pub most_iterations: usize,
+    /// What f of eq. 26 is.
+    pub model: Model,
+}
+
+impl Default for Settings {
+    /// Undamped, to 1e-6 mm, with the exact equilibrium; rotations are weighed by 1 m.
+    fn default() -> Self {
+        Self { alpha: 1.0, tolerance: 1e-9, characteristic_length: 1.0, most_iterations: 50, model: Model::Equilibrium }
+    }
+}
+
+/// Corrects every point of a plan, and plays the corrected commands. The result does not depend on the number of threads.
+///
+/// # Errors
+/// [`NotCompensated`] with the points that cannot be corrected and the reason for each.
+pub fn compensate(job: &Compensation) -> Result<Outcome, NotCompensated> {
+    let points: Vec<Result<Compensated, Reason>> =
+        job.stations.par_iter().map(|station| iteration::compensated(job, station)).collect();
+    let (mut done, mut failed) = (Vec::with_capacity(points.len()), Vec::new());
+    for (point, result) in points.into_iter().enumerate() {
+        match result {
+            Ok(compensated) => done.push(compensated),
+            Err(reason) => failed.push((point, reason)),
+        }
+    }
+    if failed.is_empty() {
+        Ok(Outcome { points: done })
+    } else {
+        Err(NotCompensated { failed, of: job.stations.len() })
+    }
+}
+
+/// The first row entry in which two arms have another geometry.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("joint {joint}: {field} is {found} and not {expected}")]
+pub struct OtherGeometry {
+    /// Number of the joint, from 1.
+    pub joint: usize,
+    /// `alpha` (rad), `a` or `d` (m).
+    pub field: &'static str,
+    /// What the one arm has.
+    pub expected: f64,
+    /// What the other has.
+    pub found: f64,
+}
+
+/// Lengths (m) and angles (rad) that differ by no more than this are the same.
+const SAME: f64 = 1e-9;
+
+/// Whether `found` has another geometry than `expected`; limits and compliances may differ.
+pub fn other_geometry(expected: &Robot, found: &Robot) -> Option<OtherGeometry> {
+    let pairs = expected.joints().iter().zip(found.joints()).zip(1..);
+    let entries =
+        pairs.flat_map(|((a, b), joint)| {
+            [("alpha", a.alpha, b.alpha), ("a", a.a, b.a), ("d", a.d, b.d)]
+                .map(|(field, expected, found)| OtherGeometry { joint, field, expected, found })
+        });
+    entries.into_iter().find(|entry| (entry.expected - entry.found).abs() > SAME)
+}

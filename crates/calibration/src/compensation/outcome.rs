@@ -1,0 +1,168 @@
+//! What comes of a compensation: corrected points with what remains, or the points that cannot be corrected and why.
+
+use nalgebra::Vector3;
+use std::fmt;
+use stead_model::robot::{Pose, Unreachable};
+use stead_model::stiffness::Displacement;
+
+/// Where the loaded tool rests, seen from the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deflection {
+    /// From the target to the tool centre point, in the base frame. m
+    pub linear: Vector3<f64>,
+    /// Rotation vector from the target to the tool, in the base frame. rad
+    pub angular: Vector3<f64>,
+    /// Part to the left of the feed, with its sign: what spoils the wall. m
+    pub normal: f64,
+}
+
+/// One corrected point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compensated {
+    /// Number of its segment, from 1.
+    pub segment: usize,
+    /// Where the tool is to be: the tool frame in the base frame.
+    pub target: Pose<f64>,
+    /// What is to be commanded, likewise.
+    pub command: Pose<f64>,
+    /// From the target to the command: translation, and rotation vector in the base frame. m, rad
+    pub correction: Displacement<f64>,
+    /// The joint angles of the command, in the posture and turns of the plan and within the limits. rad
+    pub joints: [f64; 6],
+    /// Deflection in reality with the target commanded.
+    pub before: Deflection,
+    /// Deflection in reality with the correction.
+    pub after: Deflection,
+    /// Iterations of eq. 27 that it took.
+    pub iterations: usize,
+}
+
+/// A corrected path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The points, in order; at least one.
+    pub points: Vec<Compensated>,
+}
+
+/// Mean and largest value over the points of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figures {
+    /// Mean. m
+    pub mean: f64,
+    /// Largest value. m
+    pub max: f64,
+}
+
+impl Outcome {
+    /// Figures of a magnitude over the points.
+    pub fn figures(&self, value: impl Fn(&Compensated) -> f64) -> Figures {
+        let values = || self.points.iter().map(&value);
+        Figures { mean: values().sum::<f64>() / self.points.len() as f64, max: values().fold(0.0, f64::max) }
+    }
+
+    /// Deflections before and after.
+    pub fn deflections(&self) -> [Figures; 2] {
+        [self.figures(|point| point.before.linear.norm()), self.figures(|point| point.after.linear.norm())]
+    }
+
+    /// Magnitudes of their parts normal to the feed, before and after.
+    pub fn normal_parts(&self) -> [Figures; 2] {
+        [self.figures(|point| point.before.normal.abs()), self.figures(|point| point.after.normal.abs())]
+    }
+
+    /// The most iterations that a point took.
+    pub fn iterations(&self) -> usize {
+        self.points.iter().map(|point| point.iterations).max().unwrap_or(0)
+    }
+}
+
+/// The share by which the mean became smaller; none where there was nothing to reduce.
+pub fn reduction([before, after]: [Figures; 2]) -> Option<f64> {
+    (before.mean > 0.0).then(|| 1.0 - after.mean / before.mean)
+}
+
+/// Why a point cannot be corrected.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// The correction leads out of reach.
+    #[error("the correction leads out of reach: {0}")]
+    Reach(Unreachable),
+    /// The corrected command is beyond a joint limit.
+    #[error("corrected, joint {joint} would be {:.6} deg beyond its limit", by.to_degrees())]
+    JointLimit {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// By how much. rad
+        by: f64,
+    },
+    /// The arm of the model has no equilibrium under the load.
+    #[error("the arm gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    GivesWay {
+        /// The share of the load up to which there is one.
+        share: f64,
+    },
+    /// The arm that stands for reality has none.
+    #[error("the arm of reality gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    RealityGivesWay {
+        /// The share of the load up to which there is one.
+        share: f64,
+    },
+    /// An iteration made the error larger.
+    #[error(
+        "iteration {iterations} diverges: the error goes from {:.3e} to {:.3e} mm; a smaller alpha may help",
+        from * 1e3,
+        to * 1e3
+    )]
+    Grows {
+        /// Which iteration, from 1.
+        iterations: usize,
+        /// The error before it. m
+        from: f64,
+        /// The error after it. m
+        to: f64,
+    },
+    /// All iterations were used up.
+    #[error("after {iterations} iterations the error is still {:.3e} mm; more iterations, or an alpha nearer to 1, may help", error * 1e3)]
+    NotSettled {
+        /// How many.
+        iterations: usize,
+        /// The error left. m
+        error: f64,
+    },
+}
+
+impl Reason {
+    /// Whether two reasons are the same but for numbers.
+    fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::JointLimit { joint: a, .. }, Self::JointLimit { joint: b, .. }) => a == b,
+            _ => std::mem::discriminant(self) == std::mem::discriminant(other),
+        }
+    }
+}
+
+/// A path that cannot be corrected all along.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NotCompensated {
+    /// The points that cannot, from 0 and ascending, each with the reason; at least one.
+    pub failed: Vec<(usize, Reason)>,
+    /// Number of all points.
+    pub of: usize,
+}
+
+impl fmt::Display for NotCompensated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {} points cannot be compensated:", self.failed.len(), self.of)?;
+        let runs = self.failed.chunk_by(|(a, left), (b, right)| a + 1 == *b && left.is_like(right));
+        for run in runs {
+            let [(first, reason), .., (last, _)] = run else {
+                run.iter().try_for_each(|(point, reason)| write!(f, "\n  point {point}: {reason}"))?;
+                continue;
+            };
+            write!(f, "\n  points {first} to {last}: at point {first}, {reason}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for NotCompensated {}

@@ -1,0 +1,254 @@
+use super::*;
+use nalgebra::vector;
+use proptest::prelude::*;
+use stead_model::robot::Frames;
+use stead_model::robot::testing::{kr270, odd_arms, spindle};
+use stead_model::stiffness::equilibrium::{Load, displaced, equilibrium};
+use stead_model::stiffness::rotation::rotation_vector;
+
+/// The station at which an arm stands with joint angles `theta`, under a wrench.
+fn station(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> Station {
+    let [fx, fy, fz, mx, my, mz] = wrench;
+    Station {
+        segment: 1,
+        base_from_tool: robot.forward(theta).then(&spindle().flange_from_tool),
+        posture: Posture::of(robot, theta),
+        joints: *theta,
+        force: vector![fx, fy, fz],
+        moment: vector![mx, my, mz],
+        normal: vector![0.6, 0.0, 0.8],
+    }
+}
+
+fn job(robot: &Robot, reality: &Robot, stations: Vec<Station>) -> Compensation {
+    Compensation {
+        robot: robot.clone(),
+        reality: reality.clone(),
+        spindle: spindle(),
+        stations,
+        settings: Settings::default(),
+    }
+}
+
+/// The same arm with all compliances larger by a factor.
+fn softer(robot: &Robot, factor: f64) -> Robot {
+    let compliances = robot.constant_compliances().unwrap();
+    robot.with_compliances(compliances.map(|c| c * factor)).unwrap()
+}
+
+/// An arm in the middle of its workspace.
+const MIDDLE: [f64; 6] = [0.3, 0.9, -2.1, 0.4, 1.1, 5.0];
+const CUT: [f64; 6] = [120.0, -340.0, 210.0, 3.0, -8.0, 5.0];
+/// A moment that the arm bears, and that a thousand times as large makes it give way.
+const TWIST: [f64; 6] = [0.0, 0.0, 0.0, 1e3, 0.0, 0.0];
+
+/// Whether the joint angles follow from the pose without singularities.
+fn is_regular(robot: &Robot, theta: &[f64; 6]) -> bool {
+    let frames = Frames::new(robot, theta);
+    frames.jacobian(&frames.wrist_centre()).singular_values().min() > 0.05
+}
+
+proptest! {
+    #[test]
+    fn the_corrected_command_comes_to_rest_at_the_target(
+        theta in prop::array::uniform6(-3.0..3.0_f64), wrench in prop::array::uniform6(-500.0..500.0_f64), arm in 0..32_usize
+    ) {
+        let robot = &odd_arms()[arm];
+        prop_assume!(is_regular(robot, &theta));
+        let station = station(robot, &theta, wrench);
+        let done = compensate(&job(robot, robot, vec![station])).unwrap();
+        let point = &done.points[0];
+        // An oracle that knows nothing of the iteration: the equilibrium of the commanded joint angles.
+        let load = Load { point: spindle().flange_from_tool.translation, force: station.force, moment: station.moment };
+        let rest = robot.forward(&equilibrium(robot, &point.joints, &load).unwrap()).then(&spindle().flange_from_tool);
+        prop_assert!((rest.translation - station.base_from_tool.translation).norm() <= 1e-9);
+        let turn = rotation_vector(&(rest.rotation * station.base_from_tool.rotation.transpose()));
+        prop_assert!(turn.norm() <= 1e-9, "{}", turn);
+        prop_assert!(point.after.linear.norm() <= 1e-9 && point.iterations >= 1);
+        // The joint angles are those of the command, near those of the plan.
+        let commanded = robot.forward(&point.joints).then(&spindle().flange_from_tool);
+        prop_assert!((commanded.translation - point.command.translation).norm() < 1e-11);
+        prop_assert!((commanded.rotation - point.command.rotation).norm() < 1e-11);
+        prop_assert!(point.joints.iter().zip(theta).all(|(a, b)| (a - b).abs() < 0.3));
+        prop_assert_eq!(Posture::of(robot, &point.joints), station.posture);
+    }
+
+    #[test]
+    fn before_is_the_deflection_of_the_plan(
+        theta in prop::array::uniform6(-3.0..3.0_f64), wrench in prop::array::uniform6(-500.0..500.0_f64), arm in 0..32_usize
+    ) {
+        let robot = &odd_arms()[arm];
+        prop_assume!(is_regular(robot, &theta));
+        let station = station(robot, &theta, wrench);
+        let point = compensate(&job(robot, robot, vec![station])).unwrap().points[0];
+        let load = Load { point: spindle().flange_from_tool.translation, force: station.force, moment: station.moment };
+        let truth = displaced(robot, &theta, &load).unwrap();
+        prop_assert!((point.before.linear - truth.linear).norm() < 1e-9);
+        prop_assert!((point.before.angular - truth.angular).norm() < 1e-9);
+        prop_assert_eq!(point.before.normal, point.before.linear.dot(&station.normal));
+    }
+}
+
+/// Error left after a number of iterations, with a share of the load. m
+fn left(robot: &Robot, model: Model, iterations: usize, share: f64) -> f64 {
+    let mut job = job(robot, robot, vec![station(robot, &MIDDLE, CUT.map(|w| w * share))]);
+    job.settings = Settings { tolerance: 1e-18, most_iterations: iterations, model, ..job.settings };
+    match compensate(&job).unwrap_err().failed[0].1 {
+        Reason::NotSettled { error, .. } => error,
+        reason => panic!("{reason}"),
+    }
+}
+
+#[test]
+fn each_iteration_gains_one_order_in_the_load() {
+    // A soft arm, so that the errors after three iterations are far above rounding.
+    let robot = softer(&kr270(), 10.0);
+    for model in [Model::Equilibrium, Model::Linear] {
+        for iterations in 0..3_u8 {
+            let ratio = left(&robot, model, iterations.into(), 1.0) / left(&robot, model, iterations.into(), 0.5);
+            let expected = f64::from(2_u8 << iterations);
+            assert!((ratio / expected - 1.0).abs() < 0.03, "{model:?} {iterations}: {ratio} {expected}");
+        }
+    }
+}
+
+#[test]
+fn damping_leaves_its_share() {
+    let robot = kr270();
+    let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)]);
+    job.settings.alpha = 0.5;
+    let damped = compensate(&job).unwrap();
+    // Half of the error each time: from about 1 mm to 1e-6 mm in 20 iterations.
+    let expected = libm::log2(damped.points[0].before.linear.norm() / 1e-9).ceil();
+    assert!((damped.iterations() as f64 - expected).abs() <= 1.0, "{} {expected}", damped.iterations());
+    job.settings.alpha = 1.0;
+    let full = compensate(&job).unwrap();
+    assert!(full.iterations() <= 3);
+    assert!((full.points[0].command.translation - damped.points[0].command.translation).norm() < 2e-9);
+}
+
+#[test]
+fn what_the_model_does_not_know_remains() {
+    let robot = kr270();
+    let stations = vec![station(&robot, &MIDDLE, CUT), station(&robot, &[-0.4, 1.2, -1.7, 0.1, 0.8, -0.3], CUT)];
+    for known in [0.8, 0.5, 1.0 / 1.1] {
+        let done = compensate(&job(&robot, &softer(&robot, 1.0 / known), stations.clone())).unwrap();
+        let found = reduction(done.deflections()).unwrap();
+        assert!((found - known).abs() < 0.002, "{found} {known}");
+        for point in &done.points {
+            let unknown = point.before.linear * (1.0 - known);
+            assert!((point.after.linear - unknown).norm() < 5e-3 * unknown.norm());
+            assert!((point.after.angular - point.before.angular * (1.0 - known)).norm() < 5e-3 * unknown.norm());
+        }
+    }
+}
+
+#[test]
+fn the_linear_model_leaves_what_is_of_second_order() {
+    let robot = kr270();
+    let after = |share: f64| {
+        let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT.map(|w| w * share))]);
+        job.settings.model = Model::Linear;
+        let point = compensate(&job).unwrap().points[0];
+        (point.after.linear.norm(), point.before.linear.norm())
+    };
+    let ((full, before), (half, _)) = (after(1.0), after(0.5));
+    assert!(full > 1e-8 && full < 0.01 * before, "{full} {before}");
+    assert!((full / half / 4.0 - 1.0).abs() < 0.02, "{full} {half}");
+}
+
+#[test]
+fn without_a_load_nothing_is_to_do() {
+    let robot = kr270();
+    let done = compensate(&job(&robot, &robot, vec![station(&robot, &MIDDLE, [0.0; 6])])).unwrap();
+    assert_eq!(done.iterations(), 0);
+    assert_eq!(done.points[0].command, done.points[0].target);
+    // What is left is rounding of the kinematics, not a deflection.
+    assert!(done.deflections().iter().all(|figures| figures.max < 1e-14));
+}
+
+fn reason(job: &Compensation) -> Reason {
+    let failed = compensate(job).unwrap_err();
+    assert_eq!((failed.failed.len(), failed.of), (1, 1));
+    failed.failed[0].1
+}
+
+#[test]
+fn an_arm_that_gives_way_has_no_result() {
+    let robot = kr270();
+    let heavy = job(&robot, &robot, vec![station(&robot, &MIDDLE, TWIST.map(|w| w * 1e3))]);
+    assert!(matches!(reason(&heavy), Reason::GivesWay { share } if share < 1.0));
+    // The model holds and corrects, and reality does not.
+    let only_there = job(&robot, &softer(&robot, 1e3), vec![station(&robot, &MIDDLE, TWIST)]);
+    assert!(matches!(reason(&only_there), Reason::RealityGivesWay { share } if share < 1.0));
+}
+
+#[test]
+fn a_diverging_iteration_is_no_result() {
+    let robot = kr270();
+    let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)]);
+    // Beyond 2 each iteration overshoots by more than it started with.
+    job.settings.alpha = 2.5;
+    assert!(matches!(reason(&job), Reason::Grows { iterations: 1, from, to } if to > 1.4 * from && to < 1.6 * from));
+    job.settings.alpha = 2.0;
+    assert!(matches!(reason(&job), Reason::Grows { .. } | Reason::NotSettled { .. }), "{}", reason(&job));
+    job.settings = Settings { alpha: 0.1, most_iterations: 20, ..Settings::default() };
+    assert!(matches!(reason(&job), Reason::NotSettled { iterations: 20, error } if error > 1e-9));
+    // So soft that the linear deflection is a turn of the arm: its direction changes faster than it is corrected.
+    let soft = softer(&robot, 300.0);
+    let mut job = self::job(&soft, &soft, vec![station(&soft, &MIDDLE, CUT)]);
+    job.settings.model = Model::Linear;
+    assert!(matches!(reason(&job), Reason::Grows { .. } | Reason::Reach(_)), "{}", reason(&job));
+}
+
+#[test]
+fn limits_and_reach_hold_for_the_corrected_command() {
+    let robot = kr270();
+    let mut joints = robot.joints().clone();
+    // Just wide enough for the plan; the correction turns joint 1 against its deflection.
+    let done = compensate(&job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)])).unwrap();
+    let step = done.points[0].joints[0] - MIDDLE[0];
+    assert!(step.abs() > 1e-5);
+    if step > 0.0 {
+        joints[0].max = MIDDLE[0] + 0.25 * step;
+    } else {
+        joints[0].min = MIDDLE[0] + 0.25 * step;
+    }
+    let narrow = Robot::new("narrow", joints).unwrap();
+    let Reason::JointLimit { joint: 1, by } = reason(&job(&narrow, &narrow, vec![station(&narrow, &MIDDLE, CUT)]))
+    else {
+        panic!("joint 1 is within its limits");
+    };
+    assert!((by - 0.75 * step.abs()).abs() < 1e-6 * step.abs() + 1e-9, "{by} {step}");
+
+    // Stretched but for a tenth of a millimetre, and pulled back by the load: the command would have to be farther out.
+    let stretched = [0.3, 0.5, -robot.geometry().forearm_angle - 0.01, 0.4, 1.1, 0.5];
+    let there = station(&robot, &stretched, [-900.0, -300.0, -300.0, 0.0, 0.0, 0.0]);
+    let soft = softer(&robot, 5.0);
+    assert!(matches!(reason(&job(&soft, &soft, vec![there])), Reason::Reach(_)));
+}
+
+#[test]
+fn failures_are_told_in_runs_of_points() {
+    let robot = kr270();
+    let good = station(&robot, &MIDDLE, CUT);
+    let heavy = station(&robot, &MIDDLE, TWIST.map(|w| w * 1e3));
+    let stations = vec![heavy, good, heavy, heavy, heavy, good];
+    let message = compensate(&job(&robot, &robot, stations)).unwrap_err().to_string();
+    let lines: Vec<&str> = message.lines().collect();
+    assert_eq!(lines[0], "4 of 6 points cannot be compensated:");
+    assert!(lines[1].starts_with("  point 0: the arm gives way"), "{message}");
+    assert!(lines[2].starts_with("  points 2 to 4: at point 2, the arm gives way"), "{message}");
+    assert_eq!(lines.len(), 3);
+}
+
+#[test]
+fn another_geometry_is_found_and_other_compliances_and_limits_are_not() {
+    let robot = kr270();
+    assert_eq!(other_geometry(&robot, &softer(&robot, 2.0)), None);
+    let mut joints = robot.joints().clone();
+    joints[0].max = 3.0;
+    joints[3].d = 1.101;
+    let other = other_geometry(&robot, &Robot::new("x", joints).unwrap()).unwrap();
+    assert_eq!((other.joint, other.field, other.expected, other.found), (4, "d", 1.1, 1.101));
+}

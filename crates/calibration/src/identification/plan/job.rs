@@ -1,0 +1,299 @@
+//! The job as a whole.
+
+use super::super::law::{Law, LawError};
+use super::super::model::{Layout, Parameter, Response};
+use super::super::setup::{SetupError, estimate};
+use super::super::sheet::Sheet;
+use super::super::synthetic::Shot;
+use super::basis::{Basis, Information, NUMBERS};
+use super::blind::{Blind, Hardly, blind, hardly};
+use super::candidates::{Drawn, Refused, candidates, tests};
+use super::exchange::{Criterion, choose, random_set, worths};
+use super::expected::{ArmBar, Bar, bars, covariance, normal_of, seen, sheet_of, spring_bars};
+use super::order::{ordered, travel};
+use super::request::{Request, Test, Tests};
+use nalgebra::{Matrix3, Vector6};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_model::robot::{Frames, Pose};
+
+/// A set of configurations to measure, and what it will tell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Joint angles and loads, in the order in which to measure.
+    pub shots: Vec<Shot>,
+    /// The sheet of these, with what the starting arm would show; base and tracker frame are the same.
+    pub sheet: Sheet,
+    /// Every compliance with its expected error.
+    pub bars: Vec<Bar>,
+    /// The numbers of joint and compensator likewise, where the starting robot has a compensator.
+    pub spring: Vec<ArmBar>,
+    /// What sets are worth: root of the mean square error of the deflection of the tip over the tests. m
+    pub scores: Scores,
+    /// Root of the mean square of that deflection itself, by the starting arm. m
+    pub deflection: f64,
+    /// Where the deflection of the tip is to be known.
+    pub tests: Vec<Test>,
+    /// What no candidate shows, or this set does not.
+    pub blind: Vec<Blind>,
+    /// What is hardly seen.
+    pub hardly: Vec<Hardly>,
+    /// Candidates the set was chosen from.
+    pub candidates: usize,
+    /// Configurations drawn to have these.
+    pub draws: usize,
+    /// Configurations that were not allowed, and why.
+    pub refused: Refused,
+    /// The joint that turns furthest, summed over the ways from one configuration to the next. rad
+    pub travel: f64,
+}
+
+/// What sets are worth. m
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scores {
+    /// The plan.
+    pub planned: f64,
+    /// The best of the random sets, infinite where none tells everything.
+    pub best_random: f64,
+    /// The median of the random sets.
+    pub median_random: f64,
+    /// How many random sets there are.
+    pub random_sets: usize,
+    /// How many of those do not tell everything that the candidates tell.
+    pub blind_sets: usize,
+}
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// Too few configurations are allowed.
+    #[error(
+        "of {draws} random configurations only {found} are allowed, where {wanted} are wanted: {} would leave the volume, {} come \
+         too near to the base, {} deflect too far",
+        refused.volume, refused.radius, refused.deflection
+    )]
+    TooFewCandidates {
+        /// How many are allowed.
+        found: usize,
+        /// How many are needed.
+        wanted: usize,
+        /// How many were drawn.
+        draws: usize,
+        /// Why the others are not.
+        refused: Refused,
+    },
+    /// No test pose is allowed.
+    #[error("no random test pose is allowed by the volume and the largest deflection")]
+    NoTest,
+    /// Fewer equations than unknowns.
+    #[error("{equations} deflection components do not tell {unknowns} compliances")]
+    TooFew {
+        /// Components read.
+        equations: usize,
+        /// Compliances sought.
+        unknowns: usize,
+    },
+    /// Base transform and reference points cannot be told.
+    #[error("{0}")]
+    Setup(#[from] SetupError),
+    /// A compensator cannot be told from so few angles.
+    #[error("{0}")]
+    Law(#[from] LawError),
+    /// There is nothing that the loads show.
+    #[error("the loads show no compliance at all")]
+    NothingSeen,
+    /// No set of this size tells all that the candidates tell.
+    #[error("no set of {0} of the candidates was found that tells every compliance")]
+    NothingTold(usize),
+    /// The caller wanted no more.
+    #[error("stopped before there was a plan")]
+    Stopped,
+}
+
+/// Plans the measurements. `progress` is told how many starts of how many are done, and says whether to go on.
+///
+/// The plan is at least as good as the best of the random sets: that is one of the starts.
+///
+/// # Errors
+/// [`PlanError`] when there is no plan.
+pub fn plan(request: &Request, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Plan, PlanError> {
+    check_counts(request)?;
+    let size = request.configurations;
+    let pool = Pool::new(request)?;
+    let random = RandomSets::new(&pool);
+    let starts = random.starts(request.starts.saturating_sub(1));
+    let (done, of) = (AtomicUsize::new(0), starts.len() + 1);
+    let watch = |more: usize| progress(done.fetch_add(more, Ordering::Relaxed) + more, of);
+    let chosen = choose(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(PlanError::Stopped)?;
+    let planned = pool.covariance(&chosen.set).filter(|_| chosen.worth.is_finite());
+    let planned = planned.ok_or(PlanError::NothingTold(size))?;
+
+    let shots = ordered(&chosen.set.iter().map(|index| pool.drawn.shots[*index]).collect::<Vec<_>>());
+    let sheet = sheet_of(request, &shots);
+    check_setup(request, &sheet)?;
+    let (layout, normal) = normal_of(request, &sheet);
+    let (alone, unseen) = seen(&layout, &normal);
+    let mut blind_spots = pool.blind.clone();
+    for spot in blind(request, &shots, &layout, &unseen) {
+        if !blind_spots.iter().any(|known| known.is_same(&spot)) {
+            blind_spots.push(spot);
+        }
+    }
+    let spreads: Vec<Information> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
+    let best_random = random.best.and_then(|best| pool.covariance(&random.sets[best]));
+    let mut bars = bars(request, &pool.basis, &pool.free, &planned, &spreads, best_random.as_ref());
+    bars.iter_mut().for_each(|bar| bar.deviation = own_deviation(request, bar, &layout, &alone));
+    Ok(Plan {
+        travel: travel(&shots),
+        hardly: hardly(request, &shots, &bars),
+        shots,
+        sheet,
+        bars,
+        spring: spring_bars(request, &planned),
+        scores: random.scores(chosen.worth),
+        deflection: deflection(request, &pool.tests),
+        tests: pool.tests,
+        blind: blind_spots,
+        candidates: pool.drawn.shots.len(),
+        draws: pool.drawn.draws,
+        refused: pool.drawn.refused,
+    })
+}
+
+/// What there is to choose from, and by what.
+struct Pool<'a> {
+    request: &'a Request,
+    drawn: Drawn,
+    tests: Vec<Test>,
+    basis: Basis<'a>,
+    informations: Vec<Information>,
+    /// The numbers of the arm that the candidates tell all together.
+    free: [bool; NUMBERS],
+    /// What they do not.
+    blind: Vec<Blind>,
+    criterion: Criterion,
+}
+
+impl<'a> Pool<'a> {
+    fn new(request: &'a Request) -> Result<Self, PlanError> {
+        let size = request.configurations;
+        let drawn = candidates(request);
+        if drawn.shots.len() < size {
+            let (found, draws, refused) = (drawn.shots.len(), drawn.draws, drawn.refused);
+            return Err(PlanError::TooFewCandidates { found, wanted: size, draws, refused });
+        }
+        let tests = match &request.tests {
+            Tests::Given(tests) => tests.clone(),
+            Tests::Drawn(count) => tests(request, *count),
+        };
+        if tests.is_empty() {
+            return Err(PlanError::NoTest);
+        }
+        let basis = Basis::new(&request.robot, request.varying);
+        let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.shots));
+        let (seen, unseen) = normal.tellable();
+        let free = basis.free(&seen);
+        if !free.contains(&true) {
+            return Err(PlanError::NothingSeen);
+        }
+        let blind = blind(request, &drawn.shots, &layout, &unseen);
+        let informations: Vec<Information> =
+            drawn.shots.par_iter().map(|shot| basis.information(request, shot)).collect();
+        let criterion = Criterion::new(&basis.quality(request, &tests), &free, &informations, size);
+        Ok(Self { request, drawn, tests, basis, informations, free, blind, criterion })
+    }
+
+    /// Covariance of the numbers of the arm from a set; nothing where it does not tell them.
+    fn covariance(&self, set: &[usize]) -> Option<Information> {
+        let sum = set.iter().fold(Information::zeros(), |sum, index| sum + self.informations[*index]);
+        covariance(&sum, &self.free)
+    }
+}
+
+/// Random sets and what they are worth.
+struct RandomSets {
+    sets: Vec<Vec<usize>>,
+    worths: Vec<f64>,
+    best: Option<usize>,
+}
+
+impl RandomSets {
+    fn new(pool: &Pool<'_>) -> Self {
+        let (request, of) = (pool.request, pool.informations.len());
+        let draw = |draw| random_set(request.seed, draw, request.configurations, of);
+        let sets: Vec<Vec<usize>> = (0..request.random_sets).into_par_iter().map(draw).collect();
+        let worths = worths(&pool.criterion, &pool.informations, &sets);
+        let best = (0..sets.len()).min_by(|a, b| worths[*a].total_cmp(&worths[*b]));
+        Self { sets, worths, best }
+    }
+
+    /// The best of them, and others in their order.
+    fn starts(&self, count: usize) -> Vec<Vec<usize>> {
+        let others = (0..self.sets.len()).filter(|set| Some(*set) != self.best);
+        self.best.into_iter().chain(others).take(count).map(|set| self.sets[set].clone()).collect()
+    }
+
+    fn scores(&self, planned: f64) -> Scores {
+        let mut ascending = self.worths.clone();
+        ascending.sort_by(f64::total_cmp);
+        let root = |worth: Option<&f64>| libm::sqrt(*worth.unwrap_or(&f64::INFINITY));
+        Scores {
+            planned: libm::sqrt(planned),
+            best_random: root(ascending.first()),
+            median_random: root(ascending.get(ascending.len() / 2)),
+            random_sets: ascending.len(),
+            blind_sets: ascending.iter().filter(|worth| worth.is_infinite()).count(),
+        }
+    }
+}
+
+/// The standard deviation that a fit reports for a compliance on its own, where the set has its angle.
+fn own_deviation(request: &Request, bar: &Bar, layout: &Layout, alone: &[(Parameter, f64)]) -> Option<f64> {
+    let is_it = |parameter: Parameter| {
+        layout.joint(parameter) == bar.joint
+            && match (bar.angle, layout.angle(parameter)) {
+                (Some(a), Some(b)) => (a - b).abs() <= request.angle_tolerance.max(1e-9),
+                (a, b) => a.is_none() && b.is_none(),
+            }
+    };
+    alone.iter().find(|(parameter, _)| is_it(*parameter)).map(|(_, deviation)| *deviation)
+}
+
+/// Refuses what cannot be told by counting.
+fn check_counts(request: &Request) -> Result<(), PlanError> {
+    let (size, levels) = (request.configurations, request.levels.len());
+    let equations = 3 * size * request.points.len();
+    let unknowns = match request.varying {
+        Some((joint, Law::Spring(_))) if size.min(levels) < 3 => {
+            return Err(LawError::TooFewAngles { found: size.min(levels), joint: joint + 1 }.into());
+        }
+        Some((_, Law::Spring(_))) => 8,
+        _ => 6,
+    };
+    if equations < unknowns {
+        return Err(PlanError::TooFew { equations, unknowns });
+    }
+    let setup = 6 + 3 * request.points.len();
+    if equations < setup {
+        return Err(SetupError::TooFew { equations, unknowns: setup }.into());
+    }
+    Ok(())
+}
+
+/// Refuses a set from whose unloaded readings tracker and reference points could not be found.
+fn check_setup(request: &Request, sheet: &Sheet) -> Result<(), PlanError> {
+    let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| request.robot.forward(&c.theta)).collect();
+    estimate(sheet, &flanges, &vec![true; sheet.readings.len()], Some(&Matrix3::identity()))?;
+    Ok(())
+}
+
+/// Root of the mean square of the deflection in the tests.
+fn deflection(request: &Request, tests: &[Test]) -> f64 {
+    let square = |test: &Test| {
+        let frames = Frames::new(&request.robot, &test.theta);
+        let tip = frames.base_from_flange.point(&request.tip);
+        let response = Response::new(&frames, &tip, &tip, &test.force, &test.moment);
+        (response.linear * Vector6::from(request.robot.compliances_at(&test.theta))).norm_squared()
+    };
+    libm::sqrt(tests.iter().map(square).sum::<f64>() / tests.len().max(1) as f64)
+}

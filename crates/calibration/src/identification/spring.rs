@@ -1,0 +1,101 @@
+//! A compensator's spring: how the stiffness of its joint hangs on its unknowns, and their first estimate.
+
+use super::normal::{Normal, Solution};
+use nalgebra::{DMatrix, Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
+
+/// Where the two ends of a compensator's spring are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry {
+    /// Distance of the spring's one end from the joint axis. m
+    pub a: f64,
+    /// Distance of its other end from the joint axis. m
+    pub l: f64,
+    /// Angle between the two ends, less half a turn, at joint angle zero. rad
+    pub alpha: f64,
+}
+
+impl Geometry {
+    /// Stiffness of the joint per (K_theta, K_GC, s_0 K_GC) at an angle in rad (Klimchik et al. 2017, eq. 22, corrected).
+    pub fn row(&self, angle: f64) -> Vector3<f64> {
+        let (sine, cosine) = libm::sincos(angle + self.alpha);
+        let product = self.a * self.l;
+        let square = self.a * self.a + self.l * self.l + 2.0 * product * cosine;
+        let length = libm::sqrt(square);
+        Vector3::new(1.0, -product * cosine, product / length * (cosine + product / square * sine * sine))
+    }
+}
+
+/// Eq. 21 with the inverse of the covariance of the stiffnesses as weights; `joints` says which of the others are free.
+pub(super) fn spring_start(
+    normal: &Normal,
+    joints: [bool; 6],
+    seen: &Solution,
+    rows: &[Vector3<f64>],
+) -> Option<Vector3<f64>> {
+    let mut matrix = Matrix3::zeros();
+    let mut rhs = Vector3::zeros();
+    let mut coupling = Matrix3x6::zeros();
+    let mut coupling_rhs = Vector6::zeros();
+    for ((group, row), compliance) in normal.groups.iter().zip(rows).zip(&seen.groups) {
+        if *compliance <= 0.0 {
+            continue;
+        }
+        // d(compliance) = -compliance^2 d(stiffness).
+        let weighted = row * (compliance * compliance);
+        matrix += weighted * weighted.transpose() * group.diagonal;
+        rhs += weighted * (group.diagonal * compliance);
+        coupling += weighted * group.coupling.transpose();
+        coupling_rhs += group.coupling * *compliance;
+    }
+    // What is held is known, as far as the weights go.
+    let is_free = |joint: usize| joints[joint] && normal.varying != Some(joint);
+    let shared = DMatrix::from_fn(6, 6, |a, b| {
+        if is_free(a) && is_free(b) { normal.shared[(a, b)] } else { f64::from(u8::from(a == b)) }
+    });
+    (0..6).filter(|joint| !is_free(*joint)).for_each(|joint| {
+        coupling.fill_column(joint, 0.0);
+        coupling_rhs[joint] = 0.0;
+    });
+    let shared = Matrix6::from_iterator(scaled_inverse(&shared)?.iter().copied());
+    let matrix = matrix - coupling * shared * coupling.transpose();
+    let rhs = rhs - coupling * shared * coupling_rhs;
+    let inverse = scaled_inverse(&DMatrix::from_iterator(3, 3, matrix.iter().copied()))?;
+    Some(Matrix3::from_iterator(inverse.iter().copied()) * rhs)
+}
+
+/// The inverse of a symmetric matrix that is positive definite after scaling its diagonal to one, well enough.
+pub(super) fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    const LEAST: f64 = 1e-7;
+    let size = matrix.nrows();
+    let scale: Vec<f64> = matrix.diagonal().iter().map(|value| 1.0 / libm::sqrt(*value)).collect();
+    let scaled = DMatrix::from_fn(size, size, |a, b| (matrix[(a, b)] + matrix[(b, a)]) / 2.0 * scale[a] * scale[b]);
+    if !scaled.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let factor = scaled.cholesky()?;
+    if factor.l().diagonal().min() < LEAST {
+        return None;
+    }
+    let inverse = factor.inverse();
+    Some(DMatrix::from_fn(size, size, |a, b| (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use stead_model::robot::Compensator;
+
+    proptest! {
+        #[test]
+        fn rows_give_the_stiffness_of_the_compensator(
+            angle in -3.0..3.0_f64, alpha in -3.0..3.0_f64, a in 0.5..1.0_f64, l in 0.1..0.4_f64, free_length in 0.1..1.0_f64
+        ) {
+            let compensator = Compensator { spring_stiffness: 3e5, a, l, alpha, free_length };
+            let row = Geometry { a, l, alpha }.row(angle);
+            let unknowns = Vector3::new(2e6, 3e5, 3e5 * free_length);
+            let expected = 2e6 + compensator.stiffness(angle);
+            prop_assert!((row.dot(&unknowns) - expected).abs() < 1e-9 * 2e6);
+        }
+    }
+}

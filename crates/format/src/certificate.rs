@@ -1,0 +1,91 @@
+//! The table `[certificate]` of a run file, and what a certificate asks of the rest of it.
+
+use super::reader::{Field, Table};
+use crate::input::InputError;
+use stead_placement::certify::{Unfit, certifiable};
+use stead_placement::problem::Problem;
+use stead_placement::settings::CertificateSettings;
+
+/// Which gaps can be asked for, on the command line as well.
+pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";
+
+pub(super) fn certificate_from(table: &Table<'_>) -> Result<CertificateSettings, InputError> {
+    let [gap, limit] = table.fields(["gap_percent", "time_limit_s"])?;
+    let percent = gap.number_where(GAPS_ALLOWED, |percent| CertificateSettings::gap(percent).is_some())?;
+    Ok(CertificateSettings { gap: percent / 100.0, time_limit: limit.optional(Field::positive)? })
+}
+
+/// Refuses a cell whose tables would not fit in memory; other reasons against a certificate are left to the job, which places
+/// the workpiece without one.
+pub(super) fn check_size(cell: &Field<'_>, problem: &Problem) -> Result<(), InputError> {
+    match certifiable(problem) {
+        Err(unfit @ Unfit::TooLarge(_, allowed)) => {
+            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", allowed as f64 / 1e9);
+            Err(InputError::new(cell.source.file(), unfit.to_string())
+                .at_line(cell.line())
+                .in_field("cell")
+                .allowed(allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{RUN, assert_refused, folder, read_text as read};
+    use super::super::{read_run, read_run_to_certify};
+    use super::*;
+
+    #[test]
+    fn a_certificate_is_asked_for_in_per_cent() {
+        assert_eq!(read(RUN).unwrap().certificate, None);
+        let text = format!("{RUN}[certificate]\ngap_percent = 0.5\n");
+        assert_eq!(read(&text).unwrap().certificate, Some(CertificateSettings { gap: 0.005, time_limit: None }));
+        let settings = read(&format!("{text}time_limit_s = 20\n")).unwrap().certificate.unwrap();
+        assert_eq!(settings.time_limit, Some(20.0));
+        assert_eq!(read(&text.replace("0.5", "0.0001")).unwrap().certificate.unwrap().gap, 1e-6);
+    }
+
+    #[test]
+    fn the_command_line_has_the_last_word_on_the_gap() {
+        let folder = folder();
+        let file = folder.path().join("run.toml");
+        std::fs::write(&file, format!("{RUN}[certificate]\ngap_percent = 0.5\ntime_limit_s = 20\n")).unwrap();
+        let asked = |gap| read_run_to_certify(&file, gap).unwrap().certificate;
+        assert_eq!(asked(None), read_run(&file).unwrap().certificate);
+        assert_eq!(asked(Some(0.02)), Some(CertificateSettings { gap: 0.02, time_limit: Some(20.0) }));
+        std::fs::write(&file, RUN).unwrap();
+        assert_eq!(asked(None), None);
+        assert_eq!(asked(Some(0.02)), Some(CertificateSettings { gap: 0.02, time_limit: None }));
+    }
+
+    #[test]
+    fn gaps_that_mean_nothing_are_refused() {
+        for bad in ["0", "-0.5", "0.00009", "1e-9", "100", "1e300"] {
+            let table = format!("[certificate]\ngap_percent = {bad}\n[cell]");
+            let found = format!("found {bad};");
+            assert_refused(
+                "[cell]",
+                &table,
+                &["run.toml:7: certificate.gap_percent: is out of range", &found, "0.0001"],
+            );
+        }
+        let table = "[certificate]\ntime_limit_s = 3\n[cell]";
+        assert_refused("[cell]", table, &["run.toml:6: certificate.gap_percent: is missing"]);
+        let table = "[certificate]\ngap_percent = 1\ntime_limit_s = 0\n[cell]";
+        assert_refused("[cell]", table, &["run.toml:8: certificate.time_limit_s: is out of range", "found 0;"]);
+        let table = "[certificate]\ngap_percent = nan\n[cell]";
+        assert_refused("[cell]", table, &["run.toml:7: certificate.gap_percent: is not a finite number"]);
+    }
+
+    #[test]
+    fn a_cell_too_large_for_the_tables_is_refused_only_where_a_certificate_is_asked_for() {
+        let large = RUN.replace("x_mm = [-300, 300]", "x_mm = [-300000, 300000]");
+        assert_eq!(read(&large).unwrap().certificate, None);
+        let message = read(&format!("{large}[certificate]\ngap_percent = 1\n")).unwrap_err().to_string();
+        for part in ["run.toml:6: cell: the cell is so large that tables would take ", " GB", "; allowed: a cell whose"]
+        {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+    }
+}

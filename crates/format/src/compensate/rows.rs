@@ -1,0 +1,137 @@
+//! The rows of a plan file, as `stead place` writes them: one for each path point.
+
+use crate::input::InputError;
+use crate::input::table::{Row, Table};
+use nalgebra::Vector3;
+use std::path::Path;
+use stead_model::robot::Posture;
+use stead_model::task::ToolPath;
+
+/// One row of a plan, in SI units and radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PlanRow {
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// Tool centre point in the base frame. m
+    pub position: Vector3<f64>,
+    /// Free angle about the tool axis. rad
+    pub beta: f64,
+    /// Posture.
+    pub posture: Posture,
+    /// Joint angles, turns included. rad
+    pub joints: [f64; 6],
+    /// Force in the base frame. N
+    pub force: Vector3<f64>,
+    /// Deflection in the base frame, where the file has it. m
+    pub deflection: Option<Vector3<f64>>,
+}
+
+/// Where the columns are that a row is read from.
+struct Columns {
+    point: usize,
+    segment: usize,
+    position: [usize; 3],
+    beta: usize,
+    posture: usize,
+    joints: [usize; 6],
+    force: [usize; 3],
+    deflection: Option<[usize; 3]>,
+}
+
+pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
+pub(super) const JOINTS: [&str; 6] =
+    ["theta1_deg", "theta2_deg", "theta3_deg", "theta4_deg", "theta5_deg", "theta6_deg"];
+pub(super) const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
+const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection_z_mm"];
+
+/// Reads the rows of a plan for a tool path; columns that are not needed are passed over.
+///
+/// # Errors
+/// [`InputError`] naming line and column: a missing or doubled column, a value of the wrong kind, points that are not those of
+/// the path in their order.
+pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Vec<PlanRow>, InputError> {
+    let mut table = Table::new(file, bytes)?;
+    let columns = columns(file, &table)?;
+    let count = path.points().len();
+    let mut rows = Vec::with_capacity(count);
+    let mut last_line = 1;
+    while let Some(row) = table.next_row()? {
+        let index = rows.len();
+        if index == count {
+            let problem = format!("the plan has more points than the {count} of the task");
+            return Err(row.fail(columns.point, &problem, &format!("points 0 to {}", count - 1)));
+        }
+        number_is(&row, columns.point, index)?;
+        number_is(&row, columns.segment, path.segment_of(index) + 1)?;
+        rows.push(plan_row(&row, &columns)?);
+        last_line = row.line();
+    }
+    if rows.len() < count {
+        return Err(InputError::new(file, format!("the plan ends before the task, which has {count} points"))
+            .at_line(last_line)
+            .in_field("point")
+            .found(format!("{} points", rows.len()))
+            .allowed(format!("points 0 to {}, those of the task of the run", count - 1)));
+    }
+    Ok(rows)
+}
+
+fn columns(file: &Path, table: &Table<'_>) -> Result<Columns, InputError> {
+    let column = |name: &str| {
+        let allowed = format!(
+            "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",
+            POSITION.join(", "),
+            JOINTS.join(", "),
+            FORCE.join(", ")
+        );
+        let fail = |problem: &str| InputError::new(file, problem).at_line(1).in_field(name).allowed(allowed);
+        match table.column(name) {
+            None => Err(fail("missing column").found(format!("'{}'", table.header().collect::<Vec<_>>().join(",")))),
+            Some(_) if table.is_doubled(name) => Err(fail("this column is there twice")),
+            Some(column) => Ok(column),
+        }
+    };
+    let three = |[x, y, z]: [&str; 3]| -> Result<[usize; 3], InputError> { Ok([column(x)?, column(y)?, column(z)?]) };
+    let mut joints = [0; 6];
+    for (slot, name) in joints.iter_mut().zip(JOINTS) {
+        *slot = column(name)?;
+    }
+    let has_deflection = DEFLECTION.iter().any(|name| table.column(name).is_some());
+    Ok(Columns {
+        point: column("point")?,
+        segment: column("segment")?,
+        position: three(POSITION)?,
+        beta: column("beta_deg")?,
+        posture: column("posture")?,
+        joints,
+        force: three(FORCE)?,
+        deflection: if has_deflection { Some(three(DEFLECTION)?) } else { None },
+    })
+}
+
+fn number_is(row: &Row<'_>, column: usize, expected: usize) -> Result<(), InputError> {
+    if row.text(column).parse() == Ok(expected) {
+        return Ok(());
+    }
+    Err(row.fail(column, "not the number that the task has here", &format!("{expected}, as in the task of the run")))
+}
+
+fn plan_row(row: &Row<'_>, columns: &Columns) -> Result<PlanRow, InputError> {
+    let vector = |[x, y, z]: [usize; 3]| -> Result<Vector3<f64>, InputError> {
+        Ok(Vector3::new(row.number(x)?, row.number(y)?, row.number(z)?))
+    };
+    let posture = row.text(columns.posture).parse().ok().and_then(Posture::from_number);
+    let mut joints = [0.0; 6];
+    for (angle, column) in joints.iter_mut().zip(columns.joints) {
+        *angle = row.number(column)?.to_radians();
+    }
+    Ok(PlanRow {
+        line: row.line(),
+        position: vector(columns.position)? / 1e3,
+        beta: row.number(columns.beta)?.to_radians(),
+        posture: posture.ok_or_else(|| row.fail(columns.posture, "not a posture", "a whole number from 1 to 8"))?,
+        joints,
+        force: vector(columns.force)?,
+        deflection: columns.deflection.map(|columns| vector(columns).map(|mm| mm / 1e3)).transpose()?,
+    })
+}

@@ -1,0 +1,216 @@
+//! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
+
+use crate::input::InputError;
+use crate::input::table::{Row, Table};
+use nalgebra::Vector3;
+use std::path::Path;
+use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
+
+/// What a task file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The geometry.
+    pub path: ToolPath,
+    /// The wrenches, where the file has force columns.
+    pub wrenches: Option<Vec<Wrench>>,
+    /// Line of each point in the file, from 1.
+    pub lines: Vec<usize>,
+}
+
+const REQUIRED: [&str; 10] =
+    ["segment", "x_mm", "y_mm", "z_mm", "feed_x", "feed_y", "feed_z", "axis_x", "axis_y", "axis_z"];
+const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
+const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
+
+/// Reads a tool path: columns `segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z`, optionally
+/// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
+/// `moment_x_nm,moment_y_nm,moment_z_nm`, in any order, all in the workpiece frame.
+///
+/// # Errors
+/// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value that is
+/// no finite number, or a point that breaks a rule of [`ToolPath::new`].
+pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
+    let bytes =
+        std::fs::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")).in_field("task"))?;
+    parse_csv(file, &bytes)
+}
+
+/// As [`read_csv`], from the bytes of a file already read; `file` is its name in messages.
+///
+/// # Errors
+/// As [`read_csv`].
+pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
+    let mut table = Table::new(file, bytes)?;
+    let columns = Columns::find(file, &table)?;
+    let mut points = Vec::new();
+    let mut wrenches = columns.force.map(|_| Vec::new());
+    let mut lines = Vec::new();
+    while let Some(row) = table.next_row()? {
+        let segment = segment(&row, columns.required[0])?;
+        let at = |k: usize| vector(&row, [columns.required[k], columns.required[k + 1], columns.required[k + 2]]);
+        points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }));
+        if let (Some(wrenches), Some(force)) = (wrenches.as_mut(), columns.force) {
+            let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| vector(&row, moment))?;
+            wrenches.push(Wrench { force: vector(&row, force)?, moment });
+        }
+        lines.push(row.line());
+    }
+    let path = ToolPath::new(points).map_err(|e| locate(file, &lines, &e))?;
+    Ok(Imported { path, wrenches, lines })
+}
+
+/// Where each column of the contract stands in this file.
+struct Columns {
+    required: [usize; 10],
+    force: Option<[usize; 3]>,
+    moment: Option<[usize; 3]>,
+}
+
+impl Columns {
+    fn find(file: &Path, table: &Table<'_>) -> Result<Self, InputError> {
+        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT);
+        let fail = |column: &str, problem: &str| {
+            InputError::new(file, problem)
+                .at_line(1)
+                .in_field(column)
+                .allowed(all().copied().collect::<Vec<_>>().join(","))
+        };
+        for name in table.header() {
+            if !all().any(|known| *known == name) {
+                let nearest = all().max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));
+                let hint = nearest.map(|n| format!(" (nearest known one: {n})")).unwrap_or_default();
+                return Err(fail(name, &format!("unknown column{hint}")));
+            }
+            if table.is_doubled(name) {
+                return Err(fail(name, "this column is there twice"));
+            }
+        }
+        let place = |name: &str| table.column(name);
+        let mut required = [0; 10];
+        for (slot, name) in required.iter_mut().zip(REQUIRED) {
+            *slot = place(name).ok_or_else(|| fail(name, "missing column"))?;
+        }
+        let group = |names: [&'static str; 3]| -> Result<Option<[usize; 3]>, InputError> {
+            let places = names.map(place);
+            match places {
+                [Some(x), Some(y), Some(z)] => Ok(Some([x, y, z])),
+                [None, None, None] => Ok(None),
+                _ => {
+                    let missing = names[places.iter().position(Option::is_none).unwrap_or(0)];
+                    Err(fail(missing, "missing column: the three components go together"))
+                }
+            }
+        };
+        let (force, moment) = (group(FORCE)?, group(MOMENT)?);
+        if moment.is_some() && force.is_none() {
+            return Err(fail(FORCE[0], "missing column: moments need forces beside them"));
+        }
+        Ok(Self { required, force, moment })
+    }
+}
+
+fn vector(row: &Row<'_>, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
+    Ok(Vector3::new(row.number(columns[0])?, row.number(columns[1])?, row.number(columns[2])?))
+}
+
+fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
+    row.text(column).parse().map_err(|_| row.fail(column, "not a segment number", "whole numbers from 1"))
+}
+
+/// A broken rule of the path, at its line of the file.
+fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
+    let (point, field, found, allowed) = match error {
+        TaskError::Empty | TaskError::Wrenches { .. } => {
+            return InputError::new(file, error.to_string()).allowed("at least one row under the header");
+        }
+        TaskError::NotFinite { point, field } => (*point, *field, None, "finite numbers".to_owned()),
+        TaskError::NotUnit { point, field, length } => {
+            (*point, *field, Some(format!("length {length:.6}")), format!("length 1 within {UNIT_TOLERANCE}"))
+        }
+        TaskError::FeedAlongAxis { point, angle_deg } => (
+            *point,
+            "feed",
+            Some(format!("{angle_deg:.2} deg")),
+            format!("at least {} deg from the tool axis", stead_model::task::MIN_FEED_TO_AXIS_DEG),
+        ),
+        TaskError::Repeated { point } => (*point, "x_mm,y_mm,z_mm", None, "each point at a new place".to_owned()),
+        TaskError::SegmentOrder { point, before, found } => {
+            let allowed = match before {
+                0 => "1 at the start".to_owned(),
+                n => format!("{n} or {}", n + 1),
+            };
+            (*point, "segment", Some(found.to_string()), allowed)
+        }
+    };
+    let located = InputError::new(file, error.to_string())
+        .at_line(lines.get(point).copied().unwrap_or(0))
+        .in_field(field)
+        .allowed(allowed);
+    match found {
+        Some(found) => located.found(found),
+        None => located,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    const HEADER: &str =
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n";
+
+    fn read(text: &str) -> Result<Imported, InputError> {
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        read_csv(file.path())
+    }
+
+    #[test]
+    fn reads_units_and_lines() {
+        let task = read(&format!("{HEADER}1,10,20,30,1,0,0,0,0,1,5,6,7\n1,11,20,30,1,0,0,0,0,1,5,6,7\n")).unwrap();
+        assert_eq!(task.lines, [2, 3]);
+        assert_eq!(task.path.points()[0].position, Vector3::new(0.01, 0.02, 0.03));
+        assert_eq!(task.wrenches.unwrap()[1].force, Vector3::new(5.0, 6.0, 7.0));
+        let bare = read("segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z\n1,1,2,3,1,0,0,0,0,1\n");
+        assert_eq!(bare.unwrap().wrenches, None);
+    }
+
+    #[test]
+    fn names_line_column_value_and_what_is_allowed() {
+        for (text, parts) in [
+            (format!("{HEADER}1,10,nan,30,1,0,0,0,0,1,5,6,7\n"), [":2:", "y_mm", "'nan'", "finite"]),
+            (format!("{HEADER}1,10,20,30,1,0,0,0,0,1,5,6,inf\n"), [":2:", "force_z_n", "'inf'", "finite"]),
+            (HEADER.replace("y_mm", "y_m"), [":1:", "y_m:", "nearest known one: y_mm", "allowed"]),
+            (HEADER.replace("feed_y,", ""), [":1:", "feed_y", "missing column", "allowed"]),
+            (HEADER.replace("force_y_n,", ""), [":1:", "force_y_n", "missing column", "go together"]),
+            (HEADER.to_owned(), ["no points", "allowed", "at least one row", ""]),
+            (format!("{HEADER}2,10,20,30,1,0,0,0,0,1,5,6,7\n"), [":2:", "segment", "found 2", "1 at the start"]),
+            (format!("{HEADER}1,10,20,30,1,0,0,0,0,2,5,6,7\n"), [":2:", "axis", "length 2", "length 1"]),
+            (format!("{HEADER}1,10,20,30,1,0,0\n"), [":2:", "found 7 values", "allowed: 13 values", ""]),
+            (HEADER.replace(',', ";"), [":1:", "found ';'", "allowed", "separated by commas"]),
+            (HEADER.replace(',', "\t"), [":1:", "found '\\t'", "allowed", "separated by commas"]),
+            (format!("{HEADER}x,10,20,30,1,0,0,0,0,1,5,6,7\n"), [":2:", "segment", "'x'", "whole numbers"]),
+        ] {
+            let message = read(&text).map(|_| ()).unwrap_err().to_string();
+            for part in parts {
+                assert!(message.contains(part), "{part} in {message}");
+            }
+        }
+    }
+
+    #[test]
+    fn lines_are_those_of_an_editor_whatever_ends_them() {
+        let good = ["1,10,20,30,1,0,0,0,0,1,5,6,7", "1,11,20,30,1,0,0,0,0,1,5,6,7", "1,12,20,30,1,0,0,0,0,1,5,6,7"];
+        for end in ["\n", "\r\n", "\r"] {
+            let blank = end.repeat(3);
+            // The mark at the start is what spreadsheets put there.
+            let text = ["\u{feff}", HEADER.trim_end(), end, good[0], end, good[1], &blank, good[2], end].concat();
+            assert_eq!(read(&text).unwrap().lines, [2, 3, 6], "{end:?}");
+            let bad = text.replace("1,12,20,30", "1,12,2O,30");
+            assert!(read(&bad).map(drop).unwrap_err().to_string().contains(":6: y_mm: "), "{end:?}");
+            let short = text.replace("1,12,20,30", "1,12,20");
+            assert!(read(&short).map(drop).unwrap_err().to_string().contains(":6: this row"), "{end:?}");
+        }
+    }
+}

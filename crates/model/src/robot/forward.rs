@@ -1,0 +1,154 @@
+//! Forward kinematics: where the joint axes and the flange are for given joint angles, and the geometric Jacobian.
+
+use super::Robot;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+use stead_numerics::scalar::Scalar;
+
+/// A rigid transform `a_from_b`: takes coordinates in b to coordinates in a.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose<T: Scalar> {
+    /// Rotation from b to a.
+    pub rotation: Matrix3<T>,
+    /// Origin of b in a. m
+    pub translation: Vector3<T>,
+}
+
+impl<T: Scalar> Pose<T> {
+    /// The transform that leaves everything where it is.
+    pub fn identity() -> Self {
+        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
+    }
+
+    /// `a_from_b.then(b_from_c)` is `a_from_c`.
+    pub fn then(&self, other: &Self) -> Self {
+        Self {
+            rotation: self.rotation * other.rotation,
+            translation: self.rotation * other.translation + self.translation,
+        }
+    }
+
+    /// The inverse transform, `b_from_a`.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.transpose();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
+
+    /// Coordinates in a of a point given in b. m
+    pub fn point(&self, point: &Vector3<T>) -> Vector3<T> {
+        self.rotation * point + self.translation
+    }
+}
+
+impl Pose<f64> {
+    /// The same transform in another number type, with derivatives of zero.
+    pub fn cast<T: Scalar>(&self) -> Pose<T> {
+        Pose { rotation: self.rotation.map(T::constant), translation: cast(&self.translation) }
+    }
+}
+
+/// A vector in another number type, with derivatives of zero.
+pub fn cast<T: Scalar>(vector: &Vector3<f64>) -> Vector3<T> {
+    vector.map(T::constant)
+}
+
+/// The joint frames of an arm in one configuration, in base coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frames<T: Scalar> {
+    /// Unit vectors of the six joint axes.
+    pub axes: [Vector3<T>; 6],
+    /// A point on each joint axis: the origin of the frame fixed to the joint. m
+    pub origins: [Vector3<T>; 6],
+    /// Frame 6 in the base frame.
+    pub base_from_flange: Pose<T>,
+}
+
+impl<T: Scalar> Frames<T> {
+    /// The frames for joint angles `theta` in rad, limits not looked at.
+    pub fn new(robot: &Robot, theta: &[T; 6]) -> Self {
+        let mut pose = Pose::<T>::identity();
+        let mut axes = [Vector3::zeros(); 6];
+        let mut origins = [Vector3::zeros(); 6];
+        for (j, joint) in robot.joints().iter().enumerate() {
+            let (sa, ca) = robot.geometry().twist_sin_cos(j, joint.alpha);
+            let (sa, ca) = (T::constant(sa), T::constant(ca));
+            let (st, ct) = theta[j].sin_cos();
+            let rotation = Matrix3::new(ct, -st, T::zero(), st * ca, ct * ca, -sa, st * sa, ct * sa, ca);
+            let d = T::constant(joint.d);
+            let step = Pose { rotation, translation: Vector3::new(T::constant(joint.a), -sa * d, ca * d) };
+            pose = pose.then(&step);
+            axes[j] = pose.rotation.column(2).into_owned();
+            origins[j] = pose.translation;
+        }
+        Self { axes, origins, base_from_flange: pose }
+    }
+
+    /// Where axes 4, 5 and 6 meet. m
+    pub fn wrist_centre(&self) -> Vector3<T> {
+        self.origins[3]
+    }
+
+    /// Linear and angular velocity of a body point at `point` (m, base frame) per unit speed of joint `j` (from 0).
+    pub fn twist(&self, j: usize, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        (self.axes[j].cross(&(point - self.origins[j])), self.axes[j])
+    }
+
+    /// The geometric Jacobian at `point` (m, base frame): rows are linear velocity (m/s) and angular velocity (rad/s),
+    /// columns are the joints, base first.
+    pub fn jacobian(&self, point: &Vector3<T>) -> SMatrix<T, 6, 6> {
+        let mut jacobian = SMatrix::<T, 6, 6>::zeros();
+        for j in 0..6 {
+            let (linear, angular) = self.twist(j, point);
+            jacobian.fixed_view_mut::<3, 1>(0, j).copy_from(&linear);
+            jacobian.fixed_view_mut::<3, 1>(3, j).copy_from(&angular);
+        }
+        jacobian
+    }
+}
+
+impl Robot {
+    /// Frame 6 in the base frame for joint angles `theta` in rad, limits not looked at.
+    pub fn forward<T: Scalar>(&self, theta: &[T; 6]) -> Pose<T> {
+        Frames::new(self, theta).base_from_flange
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{kr270, odd_arms};
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn stretched_arm_reaches_the_sum_of_its_lengths() {
+        let robot = kr270();
+        let theta = [0.0, 0.0, -robot.geometry().forearm_angle, 0.0, 0.0, 0.0];
+        let wrist = Frames::new(&robot, &theta).wrist_centre();
+        let expected = 0.35 + 1.25 + libm::hypot(0.055, 1.1);
+        assert!((wrist - Vector3::new(expected, 0.0, 0.0)).norm() < 1e-12, "{wrist}");
+    }
+
+    proptest! {
+        #[test]
+        fn jacobian_agrees_with_differences_of_the_forward_kinematics(
+            theta in prop::array::uniform6(-3.0..3.0_f64), arm in 0..32_usize
+        ) {
+            let robot = &odd_arms()[arm];
+            let tool = Vector3::new(0.1, -0.2, 0.3);
+            let tip = |theta: &[f64; 6]| robot.forward(theta).point(&tool);
+            let frames = Frames::new(robot, &theta);
+            let jacobian = frames.jacobian(&tip(&theta));
+            let h = 1e-6;
+            for j in 0..6 {
+                let (mut up, mut down) = (theta, theta);
+                up[j] += h;
+                down[j] -= h;
+                let linear = (tip(&up) - tip(&down)) / (2.0 * h);
+                prop_assert!((jacobian.fixed_view::<3, 1>(0, j) - linear).norm() < 1e-8);
+                let spin = (robot.forward(&up).rotation - robot.forward(&down).rotation) / (2.0 * h)
+                    * frames.base_from_flange.rotation.transpose();
+                let angular = Vector3::new(spin.m32, spin.m13, spin.m21);
+                prop_assert!((jacobian.fixed_view::<3, 1>(3, j) - angular).norm() < 1e-8);
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! How the search looks at a placement: through a table where the task allows one, else by the planner.
+//!
+//! Whatever goes on from the search is looked at by the planner in any case.
+
+use super::control::Control;
+use super::genetic::{Individual, rank};
+use super::outcome::{Generation, Goal};
+use super::redundancy::{self, Extremum, Planner, Worth};
+use super::table::{self, Lane, Table};
+use rayon::prelude::*;
+use stead_model::robot::{Posture, angles::wrap};
+
+/// A planner, and the table before it.
+#[derive(Debug, Clone)]
+pub struct Appraiser<'a> {
+    planner: &'a Planner<'a>,
+    table: Option<&'a Table<'a>>,
+    lane: Lane,
+}
+
+/// Scratch space of one thread.
+#[derive(Debug)]
+pub struct Workspace {
+    planner: Option<redundancy::Workspace>,
+    table: Option<table::Workspace>,
+}
+
+/// What goes on from a search.
+#[derive(Debug)]
+pub struct Settled {
+    /// The candidates, best first by the planner.
+    pub basins: Vec<Individual>,
+    /// Placements looked at to find them.
+    pub looks: usize,
+    /// Whether the table misled the search, so that it is better repeated without.
+    pub misled: bool,
+}
+
+/// What the table promises of a placement is believed if the planner finds it within this share.
+const BELIEVED: f64 = 1e-3;
+/// Where the best the planner finds is farther than this share from the best that the table promised, or where there is none,
+/// the table misled the search: it leaves out the steps and turns of the joints.
+const MISLED: f64 = 0.02;
+/// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an upright
+/// tool.
+const SAME: [f64; 3] = [0.005, 0.005, 0.02];
+
+/// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
+fn apart<'s>(
+    table: &Table<'_>,
+    sorted: Vec<(&'s Individual, Individual)>,
+    most: usize,
+) -> Vec<(&'s Individual, Individual)> {
+    let mut kept: Vec<([f64; 3], (&Individual, Individual))> = Vec::new();
+    for (start, end) in sorted {
+        let place = table.reduced(&end.pose);
+        let is_same = |(known, other): &([f64; 3], (&Individual, Individual))| {
+            other.1.scheme == end.scheme
+                && (known[0] - place[0]).abs() < SAME[0]
+                && (known[1] - place[1]).abs() < SAME[1]
+                && wrap(known[2] - place[2]).abs() < SAME[2]
+        };
+        if kept.len() < most && !kept.iter().any(is_same) {
+            kept.push((place, (start, end)));
+        }
+    }
+    kept.into_iter().map(|(_, pair)| pair).collect()
+}
+
+/// Candidates of a search that are polished on the table and planned for every basin asked for.
+const CANDIDATES: usize = 3;
+
+impl<'a> Appraiser<'a> {
+    /// Looks through the table, if there is one; it must be for the planner's problem.
+    pub fn new(planner: &'a Planner<'a>, table: Option<&'a Table<'a>>) -> Self {
+        Self { planner, table, lane: Lane::of(planner) }
+    }
+
+    /// The same, looking through the table on a grid of beta that many times finer than the planner's.
+    pub fn looking_closer(mut self, parts: usize) -> Self {
+        self.lane = Lane::new(self.planner.problem(), self.planner.grid().beta_count * parts);
+        self
+    }
+
+    /// The planner.
+    pub fn planner(&self) -> &'a Planner<'a> {
+        self.planner
+    }
+
+    /// The table, if there is one.
+    pub fn table(&self) -> Option<&'a Table<'a>> {
+        self.table
+    }
+
+    /// Space for one thread.
+    pub fn workspace(&self) -> Workspace {
+        match self.table {
+            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.lane)) },
+            None => Workspace { planner: Some(self.planner.workspace()), table: None },
+        }
+    }
+
+    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under its best plan on the planner's grid, with
+    /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
+    pub fn worth(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
+        match (self.table, &mut workspace.table) {
+            (Some(table), Some(space)) => table.worth(pose, &self.lane, scheme, space),
+            _ => self.planned_worth(pose, scheme, workspace),
+        }
+    }
+
+    /// The same by the planner.
+    pub fn planned_worth(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
+        let space = workspace.planner.get_or_insert_with(|| self.planner.workspace());
+        self.planner.worth(pose, Extremum::Smallest, scheme, space)
+    }
+
+    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are
+    /// polished first, those that end at the same place are taken once, and where the planner does not find what the table
+    /// promised, the start may go on instead.
+    pub fn settle(&self, sorted: Vec<Individual>, goal: Goal, most: usize, control: &dyn Control) -> Settled {
+        let Some(table) = self.table else {
+            let mut basins = sorted;
+            basins.truncate(most);
+            return Settled { basins, looks: 0, misled: false };
+        };
+        let polished: Vec<(Individual, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
+            .par_iter()
+            .map_init(|| self.workspace(), |workspace, start| self.polish(table, start, goal, control, workspace))
+            .collect();
+        let mut looks: usize = polished.iter().map(|(_, looks)| looks).sum();
+        let mut ends: Vec<(&Individual, Individual)> =
+            sorted.iter().zip(polished).map(|(start, (end, _))| (start, end)).collect();
+        ends.sort_by(|a, b| rank(goal, a.1.worth, b.1.worth));
+        let ends = apart(table, ends, most);
+        let promised = ends.first().and_then(|(_, end)| end.worth.mean());
+        let planned: Vec<(Individual, usize)> = ends
+            .par_iter()
+            .map_init(
+                || self.workspace(),
+                |workspace, (start, end)| {
+                    let mut plan = |from: &Individual| Individual {
+                        worth: self.planned_worth(&from.pose, from.scheme.as_deref(), workspace),
+                        ..from.clone()
+                    };
+                    let planned = plan(end);
+                    let is_as_promised = match (planned.worth.mean(), end.worth.mean()) {
+                        (Some(found), Some(promised)) => (found - promised).abs() < BELIEVED * promised,
+                        _ => false,
+                    };
+                    if is_as_promised {
+                        return (planned, 1);
+                    }
+                    let start = plan(start);
+                    (if rank(goal, start.worth, planned.worth).is_lt() { start } else { planned }, 2)
+                },
+            )
+            .collect();
+        looks += planned.iter().map(|(_, looks)| looks).sum::<usize>();
+        let mut settled: Vec<Individual> = planned.into_iter().map(|(individual, _)| individual).collect();
+        settled.sort_by(|a, b| rank(goal, a.worth, b.worth));
+        // What the planner refuses goes on only where there is nothing else.
+        if let Some(first) = settled.iter().position(|i| i.worth.mean().is_none()) {
+            settled.truncate(first.max(1));
+        }
+        let found = settled.first().and_then(|individual| individual.worth.mean());
+        let misled = match (promised, found) {
+            (Some(promised), Some(found)) => (found - promised).abs() > MISLED * promised,
+            _ => true,
+        };
+        Settled { basins: settled, looks, misled }
+    }
+
+    /// A candidate polished on the table, and the number of placements looked at.
+    fn polish(
+        &self,
+        table: &Table<'_>,
+        start: &Individual,
+        goal: Goal,
+        control: &dyn Control,
+        workspace: &mut Workspace,
+    ) -> (Individual, usize) {
+        match &mut workspace.table {
+            Some(space) if !control.should_stop() => {
+                let scheme = start.scheme.as_deref();
+                let (pose, worth, looks) = table.polish(&start.pose, goal, scheme, &self.lane, space);
+                (Individual { pose, worth, ..start.clone() }, looks)
+            }
+            _ => (start.clone(), 0),
+        }
+    }
+
+    /// States what the planner says of the best of every generation in place of what the table said of it.
+    pub fn check(&self, history: &mut [Generation], best: &[Individual], goal: Goal) {
+        if self.table.is_none() {
+            return;
+        }
+        let is_new = |k: &usize| *k == 0 || best[*k].pose != best[*k - 1].pose;
+        let new: Vec<usize> = (0..best.len()).filter(is_new).collect();
+        let worths: Vec<Worth> = new
+            .par_iter()
+            .map_init(
+                || self.workspace(),
+                |workspace, k| self.planned_worth(&best[*k].pose, best[*k].scheme.as_deref(), workspace),
+            )
+            .collect();
+        let mut known: Option<Worth> = None;
+        let mut checked = new.iter().zip(worths).peekable();
+        for (k, figures) in history.iter_mut().enumerate() {
+            if let Some((_, worth)) = checked.next_if(|(place, _)| **place == k)
+                && known.is_none_or(|known| rank(goal, worth, known).is_lt())
+            {
+                known = Some(worth);
+            }
+            figures.best = known.and_then(Worth::mean);
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
+
+use super::super::frontier::{End, State};
+use super::*;
+use crate::certify::cost::CORNERS;
+use crate::certify::relaxed::{relaxed_value, score};
+use crate::certify::table::{Known, Node};
+use crate::problem::{Interval, Placement};
+use crate::redundancy::{Extremum, Planner};
+use crate::testing::five_segments;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::PI;
+use stead_model::robot::PostureClass;
+
+fn bounded(problem: &Problem) -> Bounded {
+    let (bounded, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
+    let (extent, _) = bounded.table.grid();
+    Bounded { table: Table::new(extent, STEPS, LEVELS), ..bounded }
+}
+
+/// A placement of a region; the azimuth is that of the middle of the paper's cell.
+fn placed(problem: &Problem, [radius, height, turn]: [f64; 3]) -> Placement {
+    let root = problem.robot.geometry().root_in_base;
+    let azimuth = -PI / 2.0;
+    let (sine, cosine) = libm::sincos(azimuth);
+    Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z: root.z + height, yaw: turn + azimuth }
+}
+
+fn somewhere(random: &mut ChaCha8Rng, size: f64) -> Region {
+    let mut from = |a: f64, b: f64| a + (b - a) * random.random::<f64>();
+    let middle = [from(1.66, 2.24), from(-0.6, -0.22), from(-PI, PI)];
+    let half = [0.009, 0.0125, 0.0157].map(|h| h * size * from(0.5, 1.0));
+    Region { middle, half }
+}
+
+/// Corner k of a box, in the order of [`Pointwise::most`].
+fn corner(region: &Region, k: usize) -> [f64; 3] {
+    std::array::from_fn(|i| region.middle[i] + region.half[i] * if k >> i & 1 == 1 { 1.0 } else { -1.0 })
+}
+
+/// Over many cells, how often a corner of a box has no heading in a cell that costs as little as is said, or one that costs
+/// more; what is known of the cell may be tampered with.
+fn violations(tamper: impl Fn(&mut Known)) -> (usize, usize) {
+    let problem = five_segments();
+    let bounded = bounded(&problem);
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let (mut looked, mut wrong) = (0, 0);
+    while looked < 300 {
+        let size = [1.2, 0.6, 0.3][looked % 3];
+        let region = somewhere(&mut random, size);
+        let Some(over) = Over::new(&bounded, &region) else { continue };
+        let point = random.random_range(0..over.points.len());
+        let cell = random.random_range(0..bounded.table.headings(over.level));
+        let class = PostureClass::ALL[random.random_range(0..4)];
+        let pointwise = over.points[point].as_ref().unwrap();
+        let (at, off) = bounded.table.nearest(over.level, pointwise.placed.r, pointwise.placed.z).unwrap();
+        let Node::Known(mut known) = *bounded.table.node(&bounded.arm, over.level, at, cell, class) else { continue };
+        tamper(&mut known);
+        if !known.sure {
+            continue;
+        }
+        looked += 1;
+        let half_cell = PI / bounded.table.headings(over.level) as f64;
+        let heading = bounded.table.heading(over.level, cell);
+        let [chosen, all] = [true, false].map(|choice| pointwise.most(&known, off, half_cell, &region, choice));
+        for k in 0..CORNERS {
+            let place = corner(&region, k);
+            let p = placed(&problem, place);
+            let pose = [p.x, p.y, p.z, p.yaw];
+            let chi = bounded.points[point].over(&Region { middle: place, half: [0.0; 3] }).unwrap().chi;
+            let costs: Vec<f64> = (0..=40)
+                .map(|k| heading + half_cell * (f64::from(k) / 20.0 - 1.0) - chi)
+                .map(|beta| score(&problem, &pose, point, class, beta))
+                .collect();
+            let (least, most) = costs.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(*c), b.max(*c)));
+            // A zero between two of the headings is not met: what neighbours differ by.
+            let missed = costs.windows(2).map(|c| (c[0] - c[1]).abs()).filter(|d| d.is_finite()).fold(0.0, f64::max);
+            wrong += usize::from(least - missed > chosen[k] || most > all[k] * (1.0 + 1e-9));
+        }
+    }
+    (looked, wrong)
+}
+
+#[test]
+fn cells_cost_no_more_than_is_said() {
+    assert_eq!(violations(|_| {}), (300, 0));
+}
+
+#[test]
+fn tampered_cells_are_noticed() {
+    assert!(violations(|known| known.rest = [0.0; 3]).1 > 0);
+    assert!(violations(|known| known.sure = true).1 > 0);
+}
+
+#[test]
+fn boxes_are_worth_no_more_than_is_said() {
+    let problem = five_segments();
+    let bounded = bounded(&problem);
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let (mut tight, mut nothing) = (0, 0);
+    for k in 0..9 {
+        let region = somewhere(&mut random, [0.6, 0.2, 0.1][k % 3]);
+        let over = Over::new(&bounded, &region).unwrap();
+        let (sum, seen) = over.above(&Seen::nothing(&bounded), 0.0);
+        let (again, _) = over.above(&seen, f64::MAX);
+        let bound = sum / over.points.len() as f64;
+        let place = std::array::from_fn(|i| region.middle[i] + region.half[i] * random.random_range(-1.0..1.0));
+        match relaxed_value(&problem, &placed(&problem, place)) {
+            Some(value) => {
+                assert!(value <= bound && value * over.points.len() as f64 <= again, "{value} {bound} {region:?}");
+                tight += usize::from(bound < 1.1 * value);
+            }
+            None => nothing += usize::from(bound == f64::NEG_INFINITY),
+        }
+    }
+    assert!(tight >= 1, "{tight} {nothing}");
+}
+
+#[test]
+fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
+    let mut problem = five_segments();
+    problem.redundancy.max_beta_rate = 1e9;
+    let planner = Planner::new(&problem);
+    for yaw in [-2.6, 1.4] {
+        let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
+        let pose = [placement.x, placement.y, placement.z, placement.yaw];
+        let relaxed = relaxed_value(&problem, &placement);
+        let plan = planner.worth(&pose, Extremum::Smallest, None, &mut planner.workspace()).mean();
+        match (relaxed, plan) {
+            (Some(relaxed), Some(plan)) => assert!(relaxed <= plan && plan < 1.05 * relaxed, "{relaxed} {plan}"),
+            (relaxed, plan) => assert!(plan.is_none(), "{relaxed:?} {plan:?}"),
+        }
+    }
+}
+
+struct Patience(usize);
+
+impl Watch for Patience {
+    fn goes_on(&mut self, _: &State) -> bool {
+        self.0 = self.0.saturating_sub(1);
+        self.0 > 0
+    }
+}
+
+/// A small cell about the worst placement, with that placement.
+fn corner_of_the_cell() -> (Problem, Placement) {
+    let mut problem = five_segments();
+    let interval = |min, max| Interval { min, max };
+    problem.cell.position = [interval(-0.3, -0.29), interval(-2.24, -2.23), interval(-0.22, -0.214)];
+    problem.cell.yaw = interval((-156.0_f64).to_radians(), (-146.0_f64).to_radians());
+    (problem, Placement { x: -0.3, y: -2.24, z: -0.214, yaw: (-151.3731_f64).to_radians() })
+}
+
+#[test]
+fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
+    let (problem, placement) = corner_of_the_cell();
+    let value = relaxed_value(&problem, &placement).unwrap();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| worst(&problem, value, 5e-3, &mut Patience(usize::MAX)).unwrap())
+    };
+    let one = run(1);
+    assert_eq!(one.end, End::Reached, "{} {}", one.bound, one.nodes);
+    assert!(one.bound >= value && one.gap() <= 5e-3 && one.open.is_empty());
+    assert_eq!(one, run(3));
+}
+
+#[test]
+fn what_is_ended_early_is_a_bound_all_the_same() {
+    let (problem, placement) = corner_of_the_cell();
+    let value = relaxed_value(&problem, &placement).unwrap();
+    let found = worst(&problem, 0.5 * value, 1e-3, &mut Patience(12)).unwrap();
+    assert_eq!(found.end, End::Stopped);
+    assert!(found.bound >= value && !found.open.is_empty());
+}
+
+#[test]
+#[ignore = "the whole of the paper's cell: a quarter of a minute in release"]
+fn the_worst_of_the_papers_cell_is_certified() {
+    let problem = five_segments();
+    let (_, placement) = corner_of_the_cell();
+    let value = relaxed_value(&problem, &placement).unwrap();
+    let found = worst(&problem, value, 1e-3, &mut Patience(usize::MAX)).unwrap();
+    assert_eq!(found.end, End::Reached);
+    assert!(found.bound >= value && found.gap() <= 1e-3);
+}

@@ -1,0 +1,136 @@
+//! The main job: where to put the workpiece.
+//!
+//! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
+//! - [`criterion`]: the score of one state, the ordinary evaluator; [`kernel`]: the same for a whole batch of states.
+//! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
+//! - [`table`]: scores of upright tools sampled once over the cell; [`appraiser`]: a look at a placement, by table or planner.
+//! - [`genetic`]: the global search; [`refine`]: gradients from its basins to the optimum.
+//! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
+//! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`control`]: progress out, a wish to stop in.
+//!
+//! Where the paper (Caro et al. 2013) leaves a choice or has a misprint, this room does as follows. Eq. 8 is a plain
+//! rotation about z. The compliance is `J K_theta^-1 J^T` without a complementary term. kappa_F carries the factor 1/6 that
+//! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
+//! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
+
+pub mod appraiser;
+pub mod certify;
+pub mod control;
+pub mod criterion;
+pub mod feasibility;
+pub mod genetic;
+pub mod kernel;
+pub mod outcome;
+pub mod place;
+pub mod problem;
+pub mod redundancy;
+pub mod refine;
+pub mod settings;
+pub mod table;
+pub mod transfer;
+
+#[cfg(any(test, feature = "testing"))]
+pub mod testing {
+    //! The problem of Caro 2013 for the tests of this crate and of those above.
+    #![allow(clippy::unwrap_used)]
+    use super::problem::*;
+    use nalgebra::{DMatrix, Vector3};
+    use std::f64::consts::PI;
+    use stead_model::robot::testing::{kr270, spindle};
+    use stead_model::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
+    use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+
+    /// The five-segment task in the paper's cell, with no joint speeds.
+    pub fn five_segments() -> Problem {
+        let interval = |min, max| Interval { min, max };
+        Problem {
+            robot: kr270(),
+            spindle: spindle(),
+            task: stead_model::task::testing::five_segments(),
+            cell: Cell {
+                position: [interval(-0.3, 0.3), interval(-2.24, -1.64), interval(-0.602, -0.214)],
+                yaw: interval(-PI, PI),
+            },
+            constraints: Constraints { min_inverse_condition: 0.2, characteristic_length: 0.682, max_deflection: None },
+            criterion: Criterion::default(),
+            redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
+        }
+    }
+
+    /// The five segments with forces in every direction.
+    pub fn slanted() -> Problem {
+        let mut problem = five_segments();
+        let force = |point: usize| {
+            let (sine, cosine) = libm::sincos(point as f64);
+            Vector3::new(90.0 * sine, 40.0 * cosine, 60.0 * libm::sin(0.3 * point as f64))
+        };
+        let wrenches = (0..105).map(|point| Wrench { force: force(point), moment: Vector3::zeros() }).collect();
+        problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
+        problem
+    }
+
+    /// The five segments on a workpiece that hangs, the tool from below: the other sense of the heading.
+    pub fn hanging() -> Problem {
+        let mut problem = five_segments();
+        let turned = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
+        let path = problem.task.path();
+        let points = path.points().iter().enumerate().map(|(k, point)| {
+            let point =
+                PathPoint { position: turned(point.position), feed: turned(point.feed), axis: turned(point.axis) };
+            (path.segment_of(k) as u32 + 1, point)
+        });
+        let turned_path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+        let wrenches = problem.task.wrenches().iter().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
+        problem.cell.position[2] = Interval { min: 1.0, max: 1.4 };
+        problem.task = Task::new(turned_path, wrenches).unwrap();
+        problem
+    }
+
+    /// The same problem with other laws of compliance at some joints (from 0).
+    pub fn with_laws(mut problem: Problem, laws: &[(usize, Compliance)]) -> Problem {
+        let mut joints = problem.robot.joints().clone();
+        for (joint, law) in laws {
+            joints[*joint].compliance = *law;
+        }
+        problem.robot = Robot::new("laws", joints).unwrap();
+        problem
+    }
+
+    /// The same problem with every parameter of the robot's laws known to about `share` of its value, in correlated errors.
+    pub fn with_uncertainty(mut problem: Problem, share: f64) -> Problem {
+        let mut values = Vec::new();
+        for (j, joint) in problem.robot.joints().iter().enumerate() {
+            match joint.compliance {
+                Compliance::Constant(value) => values.push((Parameter::Compliance(j), value)),
+                Compliance::Range { at_min, at_max } => {
+                    values.extend([(Parameter::ComplianceAtMin(j), at_min), (Parameter::ComplianceAtMax(j), at_max)]);
+                }
+                Compliance::Compensated { alone, compensator } => values.extend([
+                    (Parameter::Compliance(j), alone),
+                    (Parameter::SpringStiffness(j), compensator.spring_stiffness),
+                    (Parameter::FreeLength(j), compensator.free_length),
+                ]),
+            }
+        }
+        let (parameters, values): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
+        let count = values.len();
+        // Rows of unit size that point in different directions.
+        let factor = DMatrix::from_fn(count, count, |k, r| libm::sin((7 * k + 3 * r + k * r) as f64));
+        let factor = DMatrix::from_fn(count, count, |k, r| share * values[k] * factor[(k, r)] / factor.row(k).norm());
+        let uncertainty = Uncertainty::new(parameters, &factor * factor.transpose()).unwrap();
+        problem.robot = problem.robot.with_uncertainty(uncertainty).unwrap();
+        problem
+    }
+
+    /// A joint beside a compensator of the size of a KR270's, strong enough to be seen; `alpha` in rad, `alone` in
+    /// rad/(N m).
+    pub fn compensated(alpha: f64, alone: f64) -> Compliance {
+        let compensator = Compensator { spring_stiffness: 3e6, a: 0.7, l: 0.18, alpha, free_length: 0.46 };
+        Compliance::Compensated { alone, compensator }
+    }
+
+    /// The five-segment task with a compensator at joint 2.
+    pub fn five_segments_compensated() -> Problem {
+        with_laws(five_segments(), &[(1, compensated(0.2, 1e-6 / 3.32))])
+    }
+}

@@ -1,0 +1,221 @@
+//! What the placement job returns: plain data, in SI units and radians, for the reports to read.
+
+use super::problem::Placement;
+use super::table::{Accuracy, Shape, Unsuited};
+use nalgebra::Vector3;
+use stead_model::robot::Posture;
+
+/// One path point of a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanPoint {
+    /// Index of the path point, from 0.
+    pub point: usize,
+    /// Number of its segment, from 1.
+    pub segment: usize,
+    /// Tool centre point in the robot base frame. m
+    pub position: Vector3<f64>,
+    /// Free angle about the tool axis, in (-pi, pi]. rad
+    pub beta: f64,
+    /// Posture, the same all along a segment.
+    pub posture: Posture,
+    /// Real joint angles, inside the limits, turns included. rad
+    pub joints: [f64; 6],
+    /// 1/kappa_F.
+    pub inverse_condition: f64,
+    /// Force on the tool in the robot base frame. N
+    pub force: Vector3<f64>,
+    /// Deflection of the tool centre point in the robot base frame. m
+    pub deflection: Vector3<f64>,
+    /// Part of the deflection along the feed. m
+    pub feed_part: f64,
+    /// Part to the left of the feed, with its sign; its absolute value is c_i. m
+    pub normal_part: f64,
+    /// Part along the tool axis, positive towards the robot. m
+    pub axial_part: f64,
+    /// What the point counts: |normal part|, what force errors can add to it, and what it counts for its deviation. m
+    pub score: f64,
+    /// Standard deviation of the normal part, where the robot's uncertainty is known. m
+    pub deviation: Option<f64>,
+}
+
+/// A redundancy plan with its posture scheme, for one placement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// All path points.
+    pub points: Vec<PlanPoint>,
+    /// Posture of each segment.
+    pub postures: Vec<Posture>,
+    /// f_MQC: mean of the scores (Caro 2013, eq. 13). m
+    pub mean: f64,
+    /// Largest score. m
+    pub max: f64,
+    /// Standard deviation of the mean of |normal part|, where the robot's uncertainty is known: the points err together, so
+    /// that it does not shrink with their number. m
+    pub mean_deviation: Option<f64>,
+}
+
+/// One of the four cases of Table III.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// 1: best placement, best plan. 2: best placement, worst plan. 3: worst placement, best plan. 4: worst placement,
+    /// worst plan.
+    pub number: u8,
+    /// The placement.
+    pub placement: Placement,
+    /// The plan.
+    pub plan: Plan,
+    /// Times of the moves between segments and of the whole cut.
+    pub cycle: Cycle,
+}
+
+/// How long the cut takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// Time in the cut: path length over feed. s
+    pub cutting: f64,
+    /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
+    pub transfers: Vec<Transfer>,
+}
+
+/// A joint move from the end of one segment to the start of the next, from rest to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transfer {
+    /// Number of the segment before the move, from 1.
+    pub after_segment: usize,
+    /// Duration; `None` where a joint that moves has no speed in the robot file. s
+    pub duration: Option<f64>,
+    /// Largest joint travel of the move. rad
+    pub travel: f64,
+}
+
+/// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
+/// nothing. m
+pub const CANCELLED: f64 = 1e-9;
+
+/// Mean deflection of a case (from 0) over that of the first; `None` where the first is a cancellation.
+pub fn ratio(cases: &[Case; 4], index: usize) -> Option<f64> {
+    (cases[0].plan.mean > CANCELLED).then(|| cases[index].plan.mean / cases[0].plan.mean)
+}
+
+impl Cycle {
+    /// Cutting and moves together; `None` where a move's time is not known. s
+    pub fn total(&self) -> Option<f64> {
+        self.transfers.iter().try_fold(self.cutting, |sum, transfer| Some(sum + transfer.duration?))
+    }
+}
+
+/// Which way a search goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Goal {
+    /// The placement with the smallest mean deflection under its best plan.
+    Best,
+    /// The placement with the largest mean deflection under its best plan (case 3: careless placement, careful plan).
+    Worst,
+}
+
+/// State of one genetic search after one generation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Generation {
+    /// Which search.
+    pub goal: Goal,
+    /// Number of the generation; 0 is the random start.
+    pub generation: usize,
+    /// Best mean deflection so far in the sense of the goal; `None` while nothing feasible was found. m
+    pub best: Option<f64>,
+    /// Mean of the mean deflections of the feasible individuals. m
+    pub average: Option<f64>,
+    /// Feasible individuals.
+    pub feasible: usize,
+    /// Individuals.
+    pub population: usize,
+    /// Placements evaluated so far.
+    pub evaluations: usize,
+}
+
+/// Why a state (point and beta) has no allowed posture: the constraint broken by the posture that comes nearest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Blocked {
+    /// No posture reaches the point.
+    Reach,
+    /// A joint limit; the joint from 1.
+    JointLimit(u8),
+    /// Too near to a singularity.
+    Conditioning,
+    /// More deflection than c_max.
+    Deflection,
+}
+
+/// Deflection over path point and beta (the paper's Fig. 7 and 9): for every grid state the smallest score over the
+/// allowed postures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeflectionMap {
+    /// Number of grid values of beta; the k-th is `-pi + 2 pi k / beta_count`.
+    pub beta_count: usize,
+    /// For each path point the row of its `beta_count` states: a score (m), or why there is none.
+    pub rows: Vec<Vec<Result<MapCell, Blocked>>>,
+}
+
+/// An allowed state of a [`DeflectionMap`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapCell {
+    /// The smallest score over the allowed postures. m
+    pub score: f64,
+    /// The posture that has it.
+    pub posture: Posture,
+}
+
+/// How one gradient refinement went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// Which search it finishes.
+    pub goal: Goal,
+    /// Where it started, from the genetic search.
+    pub start: Placement,
+    /// Mean deflection at the start. m
+    pub start_mean: f64,
+    /// Where it ended.
+    pub end: Placement,
+    /// Mean deflection at the end, never worse than at the start. m
+    pub end_mean: f64,
+    /// Rounds of refining and planning anew.
+    pub rounds: usize,
+    /// Convex subproblems solved.
+    pub iterations: usize,
+    /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit of
+    /// the variables (see [`super::refine`]).
+    pub kkt_residual: f64,
+    /// How each round ended, in words.
+    pub statuses: Vec<String>,
+}
+
+/// What a search looked through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tabled {
+    /// What was sampled where.
+    pub shape: Shape,
+    /// How far it is from the ordinary evaluator.
+    pub accuracy: Accuracy,
+}
+
+/// The result of the placement job.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Cases 1 to 4.
+    pub cases: [Case; 4],
+    /// The table that the searches looked through, or why there is none; `None` where none was asked for.
+    pub tabled: Option<Result<Tabled, Unsuited>>,
+    /// Both genetic searches, generation by generation.
+    pub convergence: Vec<Generation>,
+    /// Refinements from the best distinct basins of both searches.
+    pub refinements: Vec<Refinement>,
+    /// Deflection map at the best placement.
+    pub map_best: DeflectionMap,
+    /// Deflection map at the worst placement.
+    pub map_worst: DeflectionMap,
+    /// Placements evaluated.
+    pub evaluations: usize,
+    /// States (path point, beta, all postures) evaluated.
+    pub states: usize,
+    /// Whether the user stopped the search before its end.
+    pub interrupted: bool,
+}

@@ -1,0 +1,317 @@
+//! The placement job: search, refine, plan, map.
+
+use super::appraiser::Appraiser;
+use super::control::{Control, Progress};
+use super::criterion::{normal_part_by_parameters, state};
+use super::feasibility::{Finding, deflection_map, diagnose};
+use super::genetic::{self, Found, Individual};
+use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement, Tabled};
+use super::problem::{Placement, Problem};
+use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
+use super::refine::{Solution, planned, refine};
+use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::table::{Table, Unsuited};
+use super::transfer::cycle;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_model::robot::{Posture, angles::wrap};
+
+/// Why a placement job has no result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NothingFeasible {
+    /// The placement that comes nearest: of all tried the one with the fewest blocked points.
+    pub placement: Placement,
+    /// Whether it was the only one asked for, or the nearest of a search.
+    pub searched: bool,
+    /// Which constraint fails at which points there.
+    pub findings: Vec<Finding>,
+}
+
+impl std::fmt::Display for NothingFeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Placement { x, y, z, .. } = self.placement;
+        if self.searched {
+            write!(f, "no feasible placement was found; the nearest is")?;
+        } else {
+            write!(f, "nothing is feasible at")?;
+        }
+        write!(
+            f,
+            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, Q4 = {:.4} (yaw {:.2} deg):",
+            x * 1e3,
+            y * 1e3,
+            z * 1e3,
+            self.placement.q4(),
+            self.placement.yaw.to_degrees()
+        )?;
+        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
+        if self.searched {
+            write!(f, "\na search may miss a small feasible region: more population and generations look closer")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for NothingFeasible {}
+
+/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
+///
+/// The result depends on the arguments alone, not on the number of threads. When `control` asks to stop, the search ends
+/// with its present generation, refinement is left out, and [`Outcome::interrupted`] is set.
+///
+/// # Errors
+/// [`NothingFeasible`] when the search met no feasible placement.
+pub fn place(
+    problem: &Problem,
+    settings: &SearchSettings,
+    transfer: &TransferSettings,
+    control: &dyn Control,
+) -> Result<Outcome, NothingFeasible> {
+    let planner = Planner::new(problem);
+    let table = match settings.tables {
+        Tables::Auto | Tables::Always => Some(Table::new(problem)),
+        Tables::Never => None,
+    };
+    let mut tabled = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(Tabled { shape: *table.shape(), accuracy: table.accuracy() }),
+        Err(unsuited) => Err(unsuited.clone()),
+    });
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&Table<'_>>| {
+        let appraiser = Appraiser::new(&planner, table);
+        [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.misled && !f.interrupted) && !control.should_stop() {
+        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
+    // A search that met nothing feasible goes on from what the other met.
+    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.worth.mean().is_some())) {
+        [true, true] => {}
+        [true, false] => found[1].basins = found[0].basins.clone(),
+        [false, true] => found[0].basins = found[1].basins.clone(),
+        [false, false] => {
+            let nearest = &found[0].basins[0];
+            return Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true));
+        }
+    }
+    let planner = Planner::finer(problem);
+    let (solutions, refinements) = finish(&Appraiser::new(&planner, table.as_ref()).looking_closer(2), &found, control)
+        .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
+    control.report(Progress::Finishing);
+    let [best, worst] = &solutions;
+    let case = |number, solution: &Refined, extremum| {
+        let plans = match extremum {
+            Extremum::Smallest => Ok(solution.solution.plans.clone()),
+            Extremum::Largest => worst_plan(&planner, &solution.solution.pose, solution.scheme.as_deref()),
+        };
+        // A pose with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+        let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
+        Case {
+            number,
+            placement: solution.solution.placement(),
+            plan: detailed(problem, &solution.solution.pose, &plans),
+            cycle: cycle(problem, transfer, &plans),
+        }
+    };
+    Ok(Outcome {
+        cases: [
+            case(1, best, Extremum::Smallest),
+            case(2, best, Extremum::Largest),
+            case(3, worst, Extremum::Smallest),
+            case(4, worst, Extremum::Largest),
+        ],
+        tabled,
+        convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
+        refinements,
+        map_best: deflection_map(problem, &best.solution.pose),
+        map_worst: deflection_map(problem, &worst.solution.pose),
+        evaluations,
+        states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
+        interrupted: found.iter().any(|f| f.interrupted) || control.should_stop(),
+    })
+}
+
+/// What one given placement is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Score {
+    /// The placement.
+    pub placement: Placement,
+    /// The best plan.
+    pub best: Plan,
+    /// The worst plan.
+    pub worst: Plan,
+}
+
+/// Plans one given placement, best and worst.
+///
+/// # Errors
+/// [`NothingFeasible`] when it has no plan.
+pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, NothingFeasible> {
+    let planner = Planner::finer(problem);
+    let pose = [placement.x, placement.y, placement.z, placement.yaw];
+    let mut workspace = planner.workspace();
+    let tube = fine::Tube::full(planner.grid());
+    let (Some(best), Ok(worst)) =
+        (planned(&planner, &pose, None, tube, &mut workspace), worst_plan(&planner, &pose, None))
+    else {
+        return Err(nothing(&planner, &pose, None, false));
+    };
+    Ok(Score {
+        placement: *placement,
+        best: detailed(problem, &pose, &best.plans),
+        worst: detailed(problem, &pose, &worst),
+    })
+}
+
+/// A refined solution with the scheme it was held to.
+struct Refined {
+    solution: Solution,
+    scheme: Option<Vec<Posture>>,
+}
+
+/// Basins whose means differ by less than this (relative) are equal: the one that the search ranked higher is taken, so
+/// that rounding does not choose between mirror images.
+const TIE: f64 = 1e-5;
+
+/// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
+/// polished on a table: refinement gains less from there.
+const HOPELESS: f64 = 0.03;
+
+/// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
+/// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
+fn finish(
+    appraiser: &Appraiser<'_>,
+    found: &[Found; 2],
+    control: &dyn Control,
+) -> Option<([Refined; 2], Vec<Refinement>)> {
+    let jobs: Vec<(Goal, usize, &Individual)> = [Goal::Best, Goal::Worst]
+        .into_iter()
+        .zip(found)
+        .flat_map(|(goal, f)| f.basins.iter().enumerate().map(move |(rank, individual)| (goal, rank, individual)))
+        .collect();
+    let done = AtomicUsize::new(0);
+    let run = |jobs: &[(Goal, usize, &Individual)], of: usize| -> Vec<(Goal, Refined, Option<Refinement>)> {
+        let refined = |(goal, _, individual): &(Goal, usize, &Individual)| {
+            let refined = refine_one(appraiser, *goal, individual, control);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            control.report(Progress::Refined { goal: *goal, done, of });
+            refined.map(|(refined, report)| (*goal, refined, report))
+        };
+        jobs.par_iter().filter_map(refined).collect()
+    };
+    let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
+    let mut results = run(&ahead, jobs.len());
+    let hopeful = |(goal, _, individual): &(Goal, usize, &Individual)| {
+        let first = results.iter().find(|(known, ..)| known == goal).map(|(_, refined, _)| refined.solution.mean());
+        match (appraiser.table(), first, individual.worth.mean()) {
+            (Some(_), Some(first), Some(mean)) => match goal {
+                Goal::Best => mean * (1.0 - HOPELESS) < first,
+                Goal::Worst => mean * (1.0 + HOPELESS) > first,
+            },
+            _ => true,
+        }
+    };
+    let others: Vec<_> = others.into_iter().filter(hopeful).collect();
+    let of = ahead.len() + others.len();
+    results.extend(run(&others, of));
+    // In the order of the searches: a stable sort.
+    results.sort_by_key(|(goal, ..)| usize::from(*goal == Goal::Worst));
+    let mut refinements = Vec::new();
+    let mut chosen: [Option<Refined>; 2] = [None, None];
+    for (goal, refined, report) in results {
+        refinements.extend(report);
+        let slot = &mut chosen[usize::from(goal == Goal::Worst)];
+        let better = slot.as_ref().is_none_or(|known| match goal {
+            Goal::Best => refined.solution.mean() < known.solution.mean() * (1.0 - TIE),
+            Goal::Worst => refined.solution.mean() > known.solution.mean() * (1.0 + TIE),
+        });
+        if better {
+            *slot = Some(refined);
+        }
+    }
+    let [Some(best), Some(worst)] = chosen else { return None };
+    Some(([best, worst], refinements))
+}
+
+/// Refines one basin, or only plans it where the job is to stop.
+fn refine_one(
+    appraiser: &Appraiser<'_>,
+    goal: Goal,
+    individual: &Individual,
+    control: &dyn Control,
+) -> Option<(Refined, Option<Refinement>)> {
+    let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
+    let (solution, report) = if control.should_stop() {
+        let planner = appraiser.planner();
+        let tube = fine::Tube::full(planner.grid());
+        (planned(planner, pose, scheme, tube, &mut planner.workspace())?, None)
+    } else {
+        let (solution, report) = refine(appraiser, pose, goal, scheme)?;
+        (solution, Some(report))
+    };
+    Some((Refined { solution, scheme: individual.scheme.clone() }, report))
+}
+
+fn worst_plan(
+    planner: &Planner<'_>,
+    pose: &[f64; 4],
+    scheme: Option<&[Posture]>,
+) -> Result<Vec<SegmentPlan>, super::redundancy::NoPlan> {
+    let tube = fine::Tube::full(planner.grid());
+    planner.plan_fine(pose, Extremum::Largest, scheme, tube, &mut planner.workspace())
+}
+
+fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> NothingFeasible {
+    let none = planner.plan(pose, Extremum::Smallest, scheme, &mut planner.workspace());
+    let findings = none.err().map(|none| diagnose(planner.problem(), pose, scheme, &none)).unwrap_or_default();
+    let [x, y, z, yaw] = *pose;
+    NothingFeasible { placement: Placement { x, y, z, yaw }, searched, findings }
+}
+
+/// A plan with everything that there is to say of each point, from the ordinary evaluator.
+fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
+    let [x, y, z, yaw] = *pose;
+    let base_from_workpiece = Placement { x, y, z, yaw }.base_from_workpiece();
+    let mut points = Vec::with_capacity(problem.task.points().len());
+    let known = problem.robot.uncertainty();
+    let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
+    for (segment, plan) in plans.iter().enumerate() {
+        for (place, point) in plan.points.clone().enumerate() {
+            let Ok(s) = state(problem, point, pose, plan.betas[place], plan.posture) else { continue };
+            let sign = if s.normal_part < 0.0 { -1.0 } else { 1.0 };
+            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, pose, &s.joints)) {
+                *sum += sign * slope;
+            }
+            points.push(PlanPoint {
+                point,
+                segment: segment + 1,
+                position: base_from_workpiece.point(&problem.task.points()[point].position),
+                beta: wrap(plan.betas[place]),
+                posture: plan.posture,
+                joints: plan.joints[place],
+                inverse_condition: s.inverse_condition,
+                force: base_from_workpiece.rotation * problem.task.wrenches()[point].force,
+                deflection: s.deflection,
+                feed_part: s.feed_part,
+                normal_part: s.normal_part,
+                axial_part: s.axial_part,
+                score: s.score(),
+                deviation: s.deviation,
+            });
+        }
+    }
+    Plan {
+        postures: plans.iter().map(|plan| plan.posture).collect(),
+        mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
+        max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
+        points,
+    }
+}
+
+#[cfg(test)]
+mod tests;

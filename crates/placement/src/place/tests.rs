@@ -1,0 +1,143 @@
+//! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
+
+use super::super::control::Unwatched;
+use super::super::settings::{PostureSearch, Tables};
+use super::super::table::Unsuited;
+use super::super::testing::{five_segments, with_uncertainty};
+use super::*;
+
+fn small() -> SearchSettings {
+    SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
+}
+
+#[test]
+fn four_cases_are_ordered_and_complete() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    for postures in [PostureSearch::Exact, PostureSearch::Genetic] {
+        // A random scheme is rarely feasible, so the published way needs more individuals to find any.
+        let population = if postures == PostureSearch::Genetic { 80 } else { 16 };
+        let settings = SearchSettings { postures, population, ..small() };
+        let outcome = place(&problem, &settings, &TransferSettings::default(), &Unwatched).unwrap();
+        let means: Vec<f64> = outcome.cases.iter().map(|c| c.plan.mean).collect();
+        assert!(means[0] <= means[1] && means[2] <= means[3] && means[0] <= means[2], "{means:?}");
+        assert!(outcome.cases.iter().all(|c| c.plan.points.len() == 105 && c.plan.postures.len() == 5));
+        assert_eq!(outcome.cases[0].placement, outcome.cases[1].placement);
+        assert!(outcome.refinements.iter().all(|r| match r.goal {
+            Goal::Best => r.end_mean <= r.start_mean,
+            Goal::Worst => r.end_mean >= r.start_mean,
+        }));
+        assert!(!outcome.interrupted);
+    }
+}
+
+#[test]
+fn a_cell_out_of_reach_says_why() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 24;
+    problem.cell.position[1] = super::super::problem::Interval { min: -6.0, max: -5.0 };
+    let nothing = place(&problem, &small(), &TransferSettings::default(), &Unwatched).unwrap_err();
+    assert!(nothing.searched && !nothing.findings.is_empty());
+    assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");
+}
+
+#[test]
+fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    let run = |problem: &Problem, tables: Tables| {
+        let settings = SearchSettings { tables, population: 24, generations: 8, basins: 2, ..small() };
+        place(problem, &settings, &TransferSettings::default(), &Unwatched).unwrap()
+    };
+    let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
+    assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3), "{:?}", with.tabled);
+    assert_eq!(without.tabled, None);
+    // The ordinary evaluator has the last word, and the table never costs more than it finds.
+    assert!(with.cases[0].plan.mean <= without.cases[0].plan.mean * 1.001);
+    assert!(with.cases[2].plan.mean >= without.cases[2].plan.mean * 0.999);
+    let mut tilted = problem.clone();
+    let mut wrenches = tilted.task.wrenches().to_vec();
+    wrenches[3].moment.x = 0.5;
+    tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
+    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsuited::Moment { point: 3 })));
+}
+
+#[test]
+fn a_search_notices_that_its_table_misleads() {
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    let sound = Table::new(&problem).unwrap();
+    // A table that knows nothing of a third of the force.
+    let weaker = problem.task.wrenches().iter().map(|w| stead_model::task::Wrench { force: w.force / 1.5, ..*w });
+    let weaker = stead_model::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
+    let weaker = Problem { task: weaker, ..problem.clone() };
+    let wrong = Table::new(&weaker).unwrap();
+    let planner = Planner::new(&problem);
+    let misled = |table: Option<&Table<'_>>| {
+        let found = genetic::search(&Appraiser::new(&planner, table), &small(), Goal::Best, &Unwatched);
+        assert_eq!(found.basins[0].worth.mean(), {
+            let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());
+            planner.worth(pose, Extremum::Smallest, scheme, &mut planner.workspace()).mean()
+        });
+        found.misled
+    };
+    assert_eq!([misled(None), misled(Some(&sound)), misled(Some(&wrong))], [false, false, true]);
+}
+
+#[test]
+fn stopping_early_still_returns_a_result() {
+    struct Stop;
+    impl Control for Stop {
+        fn should_stop(&self) -> bool {
+            true
+        }
+    }
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 24;
+    let outcome = place(&problem, &small(), &TransferSettings::default(), &Stop).unwrap();
+    assert!(outcome.interrupted && outcome.refinements.is_empty());
+    // Two populations, and what is planned of them.
+    assert!((33..=36).contains(&outcome.evaluations), "{}", outcome.evaluations);
+}
+
+/// Mean of |normal part| over a plan, with other compliances.
+fn mean_with(problem: &Problem, pose: &[f64; 4], plan: &Plan, compliances: [f64; 6]) -> f64 {
+    let problem = Problem { robot: problem.robot.with_compliances(compliances).unwrap(), ..problem.clone() };
+    let normal_part = |p: &PlanPoint| state(&problem, p.point, pose, p.beta, p.posture).unwrap().normal_part;
+    plan.points.iter().map(|p| normal_part(p).abs()).sum::<f64>() / plan.points.len() as f64
+}
+
+#[test]
+fn the_mean_errs_as_all_its_points_together() {
+    let mut problem = with_uncertainty(five_segments(), 0.1);
+    problem.redundancy.beta_count = 40;
+    let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
+    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
+    let nominal = problem.robot.constant_compliances().unwrap();
+    for plan in [&scored.best, &scored.worst] {
+        // The mean moved along each independent error; small steps, so that no normal part changes its sign.
+        let h = 1e-4;
+        let changes = problem.robot.uncertainty().unwrap().directions().iter().map(|direction| {
+            let at = |h: f64| std::array::from_fn(|j| nominal[j] + h * direction[j]);
+            let pose = [2.2e-3, -1.6435, -0.5564, yaw];
+            (mean_with(&problem, &pose, plan, at(h)) - mean_with(&problem, &pose, plan, at(-h))) / (2.0 * h)
+        });
+        let expected = libm::sqrt(changes.map(|change| change * change).sum());
+        let found = plan.mean_deviation.unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
+        // Points err together: far more than independent ones would, and no more than fully correlated ones.
+        let deviations = || plan.points.iter().map(|p| p.deviation.unwrap());
+        let count = plan.points.len() as f64;
+        assert!(found <= deviations().sum::<f64>() / count);
+        assert!(found > 3.0 * libm::sqrt(deviations().map(|d| d * d).sum()) / count);
+    }
+}
+
+#[test]
+fn score_agrees_with_the_prototype() {
+    let problem = five_segments();
+    let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
+    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
+    assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
+    assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
+}

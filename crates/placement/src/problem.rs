@@ -1,0 +1,256 @@
+//! The placement problem: what may vary, what must hold, and what a placement is.
+
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::{PI, TAU};
+use stead_model::robot::{
+    Pose, Robot, Spindle,
+    angles::{q4_from_yaw, wrap},
+    cast, point_from_tool,
+};
+use stead_model::task::Task;
+use stead_numerics::scalar::Scalar;
+
+/// A closed interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub min: f64,
+    /// Upper end.
+    pub max: f64,
+}
+
+impl Interval {
+    /// The nearest value inside.
+    pub fn clamp(&self, value: f64) -> f64 {
+        value.max(self.min).min(self.max)
+    }
+
+    /// Whether the value is inside, ends included.
+    pub fn contains(&self, value: f64) -> bool {
+        value >= self.min && value <= self.max
+    }
+
+    /// Upper end less lower end.
+    pub fn width(&self) -> f64 {
+        self.max - self.min
+    }
+}
+
+/// Where the workpiece origin may stand, in the robot base frame (Caro 2013, eq. 6 and 23-25).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Bounds of x, y and z. m
+    pub position: [Interval; 3],
+    /// Bounds of the yaw. rad
+    pub yaw: Interval,
+}
+
+impl Cell {
+    /// Whether every yaw is allowed, so that the yaw has no ends.
+    pub fn is_yaw_free(&self) -> bool {
+        self.yaw.width() >= TAU - 1e-9
+    }
+
+    /// The nearest placement inside the cell.
+    pub fn clamp(&self, placement: &Placement) -> Placement {
+        let [x, y, z] = self.position;
+        let yaw = wrap(placement.yaw);
+        let yaw = if self.is_yaw_free() { yaw } else { self.yaw.clamp(self.turned_to(yaw)) };
+        Placement { x: x.clamp(placement.x), y: y.clamp(placement.y), z: z.clamp(placement.z), yaw }
+    }
+
+    /// Whether a placement is inside the cell.
+    pub fn contains(&self, placement: &Placement) -> bool {
+        let [x, y, z] = self.position;
+        let yaw = self.is_yaw_free() || self.yaw.contains(self.turned_to(wrap(placement.yaw)));
+        x.contains(placement.x) && y.contains(placement.y) && z.contains(placement.z) && yaw
+    }
+
+    /// The same yaw, within half a turn of the middle of the bounds.
+    fn turned_to(&self, yaw: f64) -> f64 {
+        let middle = (self.yaw.min + self.yaw.max) / 2.0;
+        middle + wrap(yaw - middle)
+    }
+}
+
+/// Where the workpiece stands: its origin in the robot base frame, and its rotation about the vertical.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// x of the workpiece origin. m
+    pub x: f64,
+    /// y of the workpiece origin. m
+    pub y: f64,
+    /// z of the workpiece origin. m
+    pub z: f64,
+    /// Yaw gamma about the vertical, with Q4 = sin(gamma / 2). rad
+    pub yaw: f64,
+}
+
+impl Placement {
+    /// The quaternion component by which the paper states the yaw (Caro 2013, eq. 4).
+    pub fn q4(&self) -> f64 {
+        q4_from_yaw(self.yaw)
+    }
+
+    /// The transform from workpiece to robot base (Caro 2013, eq. 8 as corrected: a plain rotation about z).
+    pub fn base_from_workpiece(&self) -> Pose<f64> {
+        base_from_workpiece(&[self.x, self.y, self.z, self.yaw])
+    }
+}
+
+/// The transform from workpiece to robot base for x, y, z (m) and yaw (rad) in any number type.
+pub fn base_from_workpiece<T: Scalar>(pose: &[T; 4]) -> Pose<T> {
+    let (sine, cosine) = pose[3].sin_cos();
+    let (zero, one) = (T::zero(), T::one());
+    Pose {
+        rotation: Matrix3::new(cosine, -sine, zero, sine, cosine, zero, zero, zero, one),
+        translation: Vector3::new(pose[0], pose[1], pose[2]),
+    }
+}
+
+/// What every point of a plan must satisfy, joint limits apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constraints {
+    /// Smallest 1/kappa_F (Caro 2013, eq. 26).
+    pub min_inverse_condition: f64,
+    /// Characteristic length that makes the Jacobian's position rows comparable with its rotation rows. m
+    pub characteristic_length: f64,
+    /// Largest score of a point, c_max (Caro 2013, eq. 22), where one is set. m
+    pub max_deflection: Option<f64>,
+}
+
+/// How a point is scored.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Criterion {
+    /// Relative size eps of the force error in any direction that a score must cover: the score is
+    /// `c_i + eps |w| |K^-1 n|`, the worst case over all such errors. Zero gives eq. 11 as published.
+    pub force_uncertainty: f64,
+    /// How many standard deviations sigma_i of c_i a score must cover, from the uncertainty of the robot's compliances: this
+    /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
+    /// uncertainty is not known.
+    pub confidence: f64,
+}
+
+/// How the free angle beta about the tool axis is planned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Redundancy {
+    /// Number of grid values of beta over a full turn.
+    pub beta_count: usize,
+    /// Feed speed; with the joint speeds it bounds the joint step from point to point. m/s
+    pub feed: f64,
+    /// Largest change of beta along the path. rad/m
+    pub max_beta_rate: f64,
+}
+
+impl Redundancy {
+    /// Step of the grid of beta. rad
+    pub fn beta_step(&self) -> f64 {
+        TAU / self.beta_count as f64
+    }
+
+    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `most`
+    /// (rad): every state of the old grid is one of the new.
+    pub fn divided(&self, most: f64) -> Self {
+        let parts = (self.beta_step() / most - 1e-9).ceil().max(1.0) as usize;
+        Self { beta_count: self.beta_count * parts, ..*self }
+    }
+
+    /// Grid value of beta, from -pi upwards. rad
+    pub fn beta(&self, index: usize) -> f64 {
+        -PI + self.beta_step() * index as f64
+    }
+}
+
+/// A joint step is never as large as half a turn. rad
+pub(super) const MOST_STEP: f64 = PI - 1e-6;
+
+/// Everything that defines the placement problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// The arm.
+    pub robot: Robot,
+    /// The spindle as mounted.
+    pub spindle: Spindle,
+    /// The tool path with its wrenches.
+    pub task: Task,
+    /// Where the workpiece may stand.
+    pub cell: Cell,
+    /// What every point must satisfy.
+    pub constraints: Constraints,
+    /// How a point is scored.
+    pub criterion: Criterion,
+    /// How beta is planned.
+    pub redundancy: Redundancy,
+}
+
+impl Problem {
+    /// Flange frame in the base frame at path point `point` for a workpiece placed at `pose` (x, y, z in m, yaw in rad)
+    /// and free angle `beta` in rad (Caro 2013, eq. 7 with eq. 8 to 10).
+    pub fn base_from_flange<T: Scalar>(&self, point: usize, pose: &[T; 4], beta: T) -> Pose<T> {
+        let path_point = &self.task.points()[point];
+        let workpiece_from_point = Pose {
+            rotation: path_point.workpiece_from_point().map(T::constant),
+            translation: cast(&path_point.position),
+        };
+        let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
+        base_from_workpiece(pose)
+            .then(&workpiece_from_point)
+            .then(&point_from_tool)
+            .then(&self.spindle.flange_from_tool.inverse().cast())
+    }
+
+    /// The feed at every path point in the base frame, with the workpiece placed.
+    pub fn feeds(&self, placement: &Placement) -> Vec<Vector3<f64>> {
+        let rotation = placement.base_from_workpiece().rotation;
+        self.task.points().iter().map(|point| rotation * point.feed).collect()
+    }
+
+    /// Time from path point `point - 1` to `point` at the given feed, both in one segment. s
+    pub fn step_time(&self, point: usize) -> f64 {
+        self.step_length(point) / self.redundancy.feed
+    }
+
+    /// Distance from path point `point - 1` to `point`. m
+    pub fn step_length(&self, point: usize) -> f64 {
+        let points = self.task.points();
+        (points[point].position - points[point - 1].position).norm()
+    }
+
+    /// Largest step of each joint from path point `point - 1` to `point`: what its speed allows at the feed, and in any case
+    /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path. rad
+    pub fn joint_steps(&self, point: usize) -> [f64; 6] {
+        let time = self.step_time(point);
+        std::array::from_fn(|j| self.robot.joints()[j].max_speed.map_or(MOST_STEP, |speed| MOST_STEP.min(speed * time)))
+    }
+
+    /// Largest step of beta from path point `point - 1` to `point`. rad
+    pub fn beta_step_limit(&self, point: usize) -> f64 {
+        self.redundancy.max_beta_rate * self.step_length(point)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn yaw_bounds_are_read_modulo_a_turn() {
+        let wide = Interval { min: -1.0, max: 1.0 };
+        let cell = Cell { position: [wide; 3], yaw: Interval { min: 2.0, max: 4.0 } };
+        let at = |yaw: f64| Placement { x: 0.0, y: 0.0, z: 0.0, yaw };
+        assert!(cell.contains(&at(3.9 - TAU)) && !cell.contains(&at(0.0)));
+        assert!((cell.clamp(&at(-2.0)).yaw - 4.0).abs() < 1e-12);
+        let free = Cell { yaw: Interval { min: -PI, max: PI }, ..cell };
+        assert!(free.is_yaw_free() && free.contains(&at(9.0)));
+        assert_eq!(free.clamp(&at(0.5)), at(0.5));
+    }
+
+    #[test]
+    fn a_divided_grid_has_the_old_values_in_it() {
+        let coarse = Redundancy { beta_count: 30, feed: 1.0, max_beta_rate: 1.0 };
+        let fine = coarse.divided(1.0_f64.to_radians());
+        assert_eq!(fine.beta_count, 360);
+        assert!((0..30).all(|k| (coarse.beta(k) - fine.beta(12 * k)).abs() < 1e-12));
+        assert_eq!(fine.divided(1.0_f64.to_radians()), fine);
+    }
+}

@@ -1,0 +1,311 @@
+//! Redundancy planning: the free angle beta about the tool axis at every path point, by dynamic programming.
+//!
+//! Continuity binds only inside a segment, so every segment is planned by itself, in each posture, and the best posture of
+//! each segment is found exactly. Within a segment, from one point to the next, beta may change by the rate allowed, each
+//! joint by its speed, and the posture not at all.
+//!
+//! The plan is made in steps:
+//! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
+//!    turn (twice where the two flips of a class yield differently: [`Flips`]). This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
+//!    Between points closer than a step of the grid takes, the steps found are spread over as many points as each takes (`pace`).
+//! 2. `turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
+//!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
+//! 3. `exact`: only where that fails, dynamic programming over (beta, turns) in one posture.
+//! 4. [`fine`]: beta off the grid, by dynamic programming in an ever narrower tube around the plan.
+
+pub mod band;
+mod exact;
+pub mod fine;
+mod pace;
+mod segment;
+mod sweep;
+mod turns;
+
+use super::kernel::{Flips, Kernel, States};
+use super::problem::{Problem, Redundancy};
+use std::ops::Range as Span;
+use stead_model::robot::{Posture, turns::Range};
+use stead_numerics::simd::Instructions;
+
+/// Which plan is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extremum {
+    /// The plan with the smallest mean score.
+    Smallest,
+    /// The plan with the largest.
+    Largest,
+}
+
+impl Extremum {
+    /// +1 or -1: scores times this are minimised.
+    pub fn sign(self) -> f64 {
+        match self {
+            Extremum::Smallest => 1.0,
+            Extremum::Largest => -1.0,
+        }
+    }
+}
+
+/// The plan of one segment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SegmentPlan {
+    /// The path points.
+    pub points: Span<usize>,
+    /// The posture kept all along.
+    pub posture: Posture,
+    /// Free angle at each point, changing from point to point by less than half a turn. rad
+    pub betas: Vec<f64>,
+    /// Real joint angles at each point. rad
+    pub joints: Vec<[f64; 6]>,
+    /// Sum of the scores. m
+    pub cost: f64,
+}
+
+/// What a placement is worth on the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Worth {
+    /// The mean score under the plan asked for. m
+    Feasible(f64),
+    /// Nothing to plan: number of path points that no posture allows, and of segments that no one posture gets through.
+    Infeasible {
+        /// Path points without an allowed state.
+        points: usize,
+        /// Segments without a plan; not counted when there are such points.
+        segments: usize,
+    },
+}
+
+impl Worth {
+    /// The mean score, where there is one. m
+    pub fn mean(self) -> Option<f64> {
+        match self {
+            Worth::Feasible(mean) => Some(mean),
+            Worth::Infeasible { .. } => None,
+        }
+    }
+}
+
+/// Why a placement has no plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoPlan {
+    /// Path points that have no allowed state in any posture asked for.
+    pub blocked_points: Vec<usize>,
+    /// Segments (from 0) whose points are all allowed but that no posture gets through, with the first point that cannot
+    /// be reached from the segment's start by the posture that gets farthest.
+    pub broken_segments: Vec<(usize, usize)>,
+}
+
+/// The planner of one problem: what does not change from one placement to the next.
+#[derive(Debug, Clone)]
+pub struct Planner<'a> {
+    problem: &'a Problem,
+    grid: Redundancy,
+    kernels: Vec<Kernel<'a>>,
+    pace: pace::Pace,
+    steps: Vec<[f64; 6]>,
+    /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
+    ranges: [Option<Range>; 6],
+    instructions: Instructions,
+}
+
+/// Largest change of the beta number at every path point from the one before, on a grid: where points are so close that the
+/// rate of beta allows less than a step between neighbours, a step after every few of them.
+pub fn beta_steps(problem: &Problem, grid: &Redundancy) -> Vec<usize> {
+    let pace = pace::Pace::new(problem, grid);
+    (0..problem.task.points().len()).map(|point| pace.step(point).0).collect()
+}
+
+/// Space of one thread to plan in.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    before: States,
+    now: States,
+    record: sweep::Record,
+}
+
+/// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
+const STEP_ROUNDING: f64 = 1e-9;
+
+impl<'a> Planner<'a> {
+    /// Prepares the planning of a problem on its grid of beta: for the search.
+    pub fn new(problem: &'a Problem) -> Self {
+        Self::on_grid(problem, problem.redundancy)
+    }
+
+    /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
+    /// degree and at most what the rate of beta allows between any two points, those apart where that is less than an eighth
+    /// of a degree.
+    pub fn finer(problem: &'a Problem) -> Self {
+        let segments = problem.task.segments().iter();
+        let steps = segments.flat_map(|span| span.clone().skip(1)).map(|point| problem.beta_step_limit(point));
+        let narrowest = steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min);
+        Self::on_grid(problem, problem.redundancy.divided(narrowest))
+    }
+
+    fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
+        let count = problem.task.points().len();
+        let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
+        let is_start = |point: &usize| starts.binary_search(point).is_ok();
+        let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
+        Self {
+            problem,
+            grid,
+            kernels: Flips::of(&problem.robot).iter().map(|flips| Kernel::new(problem, &grid, *flips)).collect(),
+            pace: pace::Pace::new(problem, &grid),
+            steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
+            // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
+            // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
+            ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
+            instructions: Instructions::best(),
+        }
+    }
+
+    /// The problem that is planned.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
+    /// The grid of beta that is planned on.
+    pub fn grid(&self) -> &Redundancy {
+        &self.grid
+    }
+
+    /// How far states must be continued cyclically for the widest step.
+    pub fn pad(&self) -> usize {
+        self.pace.widest()
+    }
+
+    /// Space for one thread.
+    pub fn workspace(&self) -> Workspace {
+        let count = self.grid.beta_count;
+        let pad = self.pad();
+        let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
+        Workspace {
+            before: States::new(count, pad),
+            now: States::new(count, pad),
+            record: sweep::Record::new(longest, count),
+        }
+    }
+
+    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best or worst plan on the grid, with
+    /// the posture scheme found exactly or given (one posture per segment).
+    pub fn worth(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Worth {
+        let mut sum = 0.0;
+        let (mut points, mut segments) = (0, 0);
+        for (index, span) in self.problem.task.segments().iter().enumerate() {
+            let only = scheme.map(|s| s[index]);
+            let found =
+                self.segment(span.clone(), pose, extremum, only, workspace, if points > 0 { None } else { Some(0.0) });
+            points += found.blocked.len();
+            if points > 0 {
+                continue;
+            }
+            match found.choices.first() {
+                Some(choice) => sum += choice.cost,
+                None => segments += 1,
+            }
+        }
+        if points > 0 {
+            Worth::Infeasible { points, segments: 0 }
+        } else if segments > 0 {
+            Worth::Infeasible { points, segments }
+        } else {
+            Worth::Feasible(sum / self.problem.task.points().len() as f64)
+        }
+    }
+
+    /// The best or worst plan on the grid of beta, one entry per segment.
+    ///
+    /// # Errors
+    /// [`NoPlan`] when some point or segment has none.
+    pub fn plan(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<SegmentPlan>, NoPlan> {
+        let choices = self.choices(pose, extremum, scheme, workspace, 0.0)?;
+        Ok(turns::settle(self.problem, choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect()))
+    }
+
+    /// The best or worst plan with beta off the grid, one entry per segment.
+    ///
+    /// Beta is refined in every posture class that comes within a fifth of the best one on the grid, so that a coarse grid
+    /// does not settle the posture.
+    ///
+    /// # Errors
+    /// [`NoPlan`] when some point or segment has no plan on the grid.
+    pub fn plan_fine(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        tube: fine::Tube,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<SegmentPlan>, NoPlan> {
+        let choices = self.choices(pose, extremum, scheme, workspace, CLOSE)?;
+        let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
+            let only = scheme.map(|s| s[segment]);
+            let plans = classes.into_iter().filter_map(|choice| {
+                let mut plan = turns::settle(self.problem, vec![choice]).pop()?;
+                fine::refine(self.problem, pose, extremum, tube, &mut plan);
+                Some(plan)
+            });
+            let sign = extremum.sign();
+            let plan = plans.min_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)))?;
+            // The refined betas may be driven in other flips and turns just as well.
+            let postures = match only {
+                Some(posture) => vec![posture],
+                None => self.alike(plan.posture),
+            };
+            let span = plan.points.clone();
+            let again = turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
+            Some(again.unwrap_or_else(|| turns::Choice::of(plan)))
+        });
+        Ok(turns::settle(self.problem, refined.collect()))
+    }
+
+    /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
+    /// cheapest, cheapest first.
+    fn choices(
+        &self,
+        pose: &[f64; 4],
+        extremum: Extremum,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+        margin: f64,
+    ) -> Result<Vec<Vec<turns::Choice>>, NoPlan> {
+        let mut failure = NoPlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
+        let mut all = Vec::new();
+        for (index, span) in self.problem.task.segments().iter().enumerate() {
+            let only = scheme.map(|s| s[index]);
+            let found = self.segment(span.clone(), pose, extremum, only, workspace, Some(margin));
+            if !found.choices.is_empty() {
+                all.push(found.choices);
+            } else if found.blocked.is_empty() {
+                failure.broken_segments.push((index, found.farthest));
+            } else {
+                failure.blocked_points.extend(&found.blocked);
+            }
+        }
+        if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
+    }
+}
+
+/// Widest step of the grid that final plans are made on. rad
+const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
+/// Narrowest step that the rate of beta may ask for. rad
+const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
+
+/// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.
+const CLOSE: f64 = 0.2;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,297 @@
+//! The planner against check values, and against plain dynamic programming over every real configuration.
+
+use super::sweep::Pass;
+use super::*;
+use crate::criterion::state;
+use crate::testing::{compensated, five_segments, with_laws};
+use stead_model::robot::angles::yaw_from_q4;
+use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
+use stead_model::task::{PathPoint, Task, ToolPath};
+
+fn published_optimum() -> [f64; 4] {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+}
+
+/// Every joint may step by 10 deg in 10 mm, as in the prototype.
+fn with_prototype_steps(mut problem: Problem) -> Problem {
+    let speed = 10.0_f64.to_radians() * problem.redundancy.feed / 0.010;
+    let joints: [Joint; 6] = problem.robot.joints().clone().map(|j| Joint { max_speed: Some(speed), ..j });
+    problem.robot = Robot::new("stepped", joints).unwrap();
+    problem
+}
+
+fn worth(problem: &Problem, pose: &[f64; 4], extremum: Extremum) -> Worth {
+    let planner = Planner::new(problem);
+    let mut workspace = planner.workspace();
+    planner.worth(pose, extremum, None, &mut workspace)
+}
+
+#[test]
+fn agrees_with_the_prototype_at_the_published_optimum() {
+    let problem = with_prototype_steps(five_segments());
+    let best = worth(&problem, &published_optimum(), Extremum::Smallest).mean().unwrap();
+    let worst = worth(&problem, &published_optimum(), Extremum::Largest).mean().unwrap();
+    // Printed with four and three digits.
+    assert!((best * 1e3 - 0.5357).abs() < 1e-3 * 0.5357, "{best}");
+    assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
+}
+
+/// Holds a plan against every rule, through the ordinary evaluator.
+fn assert_sound(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) {
+    assert_eq!(plans.len(), problem.task.segments().len());
+    for plan in plans {
+        let mut sum = 0.0;
+        for (place, point) in plan.points.clone().enumerate() {
+            let found = state(problem, point, pose, plan.betas[place], plan.posture).unwrap();
+            sum += found.score();
+            assert!(found.inverse_condition >= problem.constraints.min_inverse_condition);
+            for (j, joint) in problem.robot.joints().iter().enumerate() {
+                let real = plan.joints[place][j];
+                assert!(real >= joint.min - 1e-8 && real <= joint.max + 1e-8, "joint {}", j + 1);
+                assert!(stead_model::robot::angles::wrap(real - found.joints[j]).abs() < 1e-9);
+                if place > 0 {
+                    let step = (real - plan.joints[place - 1][j]).abs();
+                    assert!(step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
+                    assert!(step < std::f64::consts::PI, "joint {} steps {step}", j + 1);
+                }
+            }
+            if place > 0 {
+                let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
+                assert!(turned <= problem.beta_step_limit(point) + 1e-8, "beta steps {turned}");
+            }
+        }
+        assert!((sum - plan.cost).abs() < 1e-12 * sum, "{sum} {}", plan.cost);
+    }
+}
+
+/// The same arm with other ranges of joints 4, 5 and 6, in degrees.
+fn with_wrist(mut problem: Problem, ranges: [(f64, f64); 3]) -> Problem {
+    let mut joints = problem.robot.joints().clone();
+    for (joint, (min, max)) in joints[3..].iter_mut().zip(ranges) {
+        (joint.min, joint.max) = (min.to_radians(), max.to_radians());
+    }
+    problem.robot = Robot::new("other wrist", joints).unwrap();
+    problem
+}
+
+#[test]
+fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations() {
+    let mut compared = 0;
+    let mut feasible = 0;
+    for (index, ranges) in [
+        [(-350.0, 350.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-185.0, 185.0), (-125.0, 125.0), (-181.0, 200.0)],
+        [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
+        [(-60.0, 90.0), (-125.0, 125.0), (-200.0, 180.0)],
+        [(-100.0, 80.0), (-125.0, 125.0), (-80.0, 110.0)],
+        [(-180.0, 0.0), (-125.0, 125.0), (-182.0, 182.0)],
+        // With laws of compliance that tell the flips apart.
+        [(-185.0, 185.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        // With and without joint speeds that bind.
+        let arm = if index % 2 == 0 { five_segments() } else { with_prototype_steps(five_segments()) };
+        let mut problem = with_wrist(arm, ranges);
+        if index >= 6 {
+            let bent = Compliance::Range { at_min: 1e-6, at_max: 4e-6 };
+            problem = with_laws(problem, &[(1, compensated(0.2, 3e-7)), (3, compensated(1.0, 2e-6)), (4, bent)]);
+        }
+        problem.redundancy.beta_count = 40;
+        // So fast that plans swing around and meet the limits of the turns.
+        problem.redundancy.max_beta_rate *= 4.0;
+        let planner = Planner::new(&problem);
+        let mut workspace = planner.workspace();
+        for k in 0..8 {
+            let f = f64::from(k);
+            let pose = [-0.3 + 0.07 * f, -1.64 - 0.05 * f, -0.6 + 0.04 * f, -3.0 + 0.8 * f + 0.2 * index as f64];
+            for extremum in [Extremum::Smallest, Extremum::Largest] {
+                for scheme in [None, Some([3, 4, 3, 1, 5].map(|n| Posture::from_number(n).unwrap()))] {
+                    let found = planner.plan(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace);
+                    let mut expected = 0.0;
+                    for (segment, span) in problem.task.segments().iter().enumerate() {
+                        let only = scheme.map(|s| vec![s[segment]]);
+                        let postures = only.unwrap_or(Posture::ALL.to_vec());
+                        let choice = exact::plan(&planner, span, &pose, extremum, &postures, &mut workspace);
+                        expected += choice.map_or(f64::INFINITY, |c| c.cost);
+                    }
+                    let cost = found.as_ref().map_or(f64::INFINITY, |plans| plans.iter().map(|p| p.cost).sum());
+                    compared += 1;
+                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {pose:?} {extremum:?} {scheme:?}");
+                    let worth = planner.worth(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
+                    assert_eq!(worth.is_some(), cost.is_finite());
+                    if let Ok(plans) = found {
+                        feasible += 1;
+                        assert!((cost - expected).abs() < 1e-12 * expected, "{cost} {expected} {ranges:?} {pose:?}");
+                        assert!((worth.unwrap() * 105.0 - cost).abs() < 1e-12 * cost);
+                        assert_sound(&problem, &pose, &plans);
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared == 256 && feasible > 60, "{compared} {feasible}");
+}
+
+#[test]
+fn with_turns_to_spare_the_band_alone_is_exact() {
+    let wide = [(-540.0, 540.0), (-125.0, 125.0), (-540.0, 540.0)];
+    let mut compared = 0;
+    for share in [1.0, 0.3] {
+        let mut problem = with_wrist(with_prototype_steps(five_segments()), wide);
+        problem.redundancy.beta_count = 60;
+        problem.redundancy.max_beta_rate *= 3.0;
+        problem.redundancy.feed /= share;
+        let planner = Planner::new(&problem);
+        let mut workspace = planner.workspace();
+        for k in 0..6 {
+            let f = f64::from(k);
+            let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
+            for span in problem.task.segments() {
+                let kernel = &planner.kernels[0];
+                let pass = Pass { kernel, span, pose: &pose, extremum: Extremum::Smallest, is_paced: false };
+                let sweep = planner.sweep(pass, None, &mut workspace, false);
+                for class in PostureClass::ALL {
+                    let postures = class.postures();
+                    let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);
+                    let (found, expected) =
+                        (sweep.ends[class.index()].map(|end| end.0), judge.map(|choice| choice.cost));
+                    assert_eq!(found.is_some(), expected.is_some(), "{class:?} {span:?} {pose:?}");
+                    if let (Some(found), Some(expected)) = (found, expected) {
+                        compared += 1;
+                        assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected} {class:?} {span:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared > 40, "{compared}");
+}
+
+#[test]
+fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
+    let problem = with_prototype_steps(five_segments());
+    let pose = published_optimum();
+    for extremum in [Extremum::Smallest, Extremum::Largest] {
+        let planner = Planner::new(&problem);
+        let mut plans = planner.plan(&pose, extremum, None, &mut planner.workspace()).unwrap();
+        let before: f64 = plans.iter().map(|p| p.cost).sum();
+        for plan in &mut plans {
+            fine::refine(&problem, &pose, extremum, fine::Tube::full(&problem.redundancy), plan);
+            let replayed = fine::replay(&problem, &pose, plan).unwrap();
+            assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
+        }
+        assert_sound(&problem, &pose, &plans);
+        let after: f64 = plans.iter().map(|p| p.cost).sum();
+        assert!(after * extremum.sign() <= before * extremum.sign());
+        let mut fine_grid = problem.clone();
+        fine_grid.redundancy.beta_count = 1440;
+        let grid = worth(&fine_grid, &pose, extremum).mean().unwrap() * 105.0;
+        assert!(after * extremum.sign() < grid * extremum.sign() + 2e-4 * grid, "{before} {after} {grid}");
+    }
+}
+
+#[test]
+fn says_which_points_and_segments_have_no_plan() {
+    let problem = five_segments();
+    let planner = Planner::new(&problem);
+    let far = [0.0, -4.0, -0.4, 0.0];
+    let none = planner.plan(&far, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    assert_eq!(none.blocked_points.len(), 105);
+    assert_eq!(
+        planner.worth(&far, Extremum::Smallest, None, &mut planner.workspace()),
+        Worth::Infeasible { points: 105, segments: 0 }
+    );
+    // With joints that may hardly move, points are allowed but no segment can be followed.
+    let mut joints = problem.robot.joints().clone();
+    joints.iter_mut().for_each(|j| j.max_speed = Some(1e-6));
+    let stiff = Problem { robot: Robot::new("slow", joints).unwrap(), ..problem.clone() };
+    let planner = Planner::new(&stiff);
+    let none = planner.plan(&published_optimum(), Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    assert!(none.blocked_points.is_empty());
+    assert_eq!(none.broken_segments, [(0, 1), (1, 22), (2, 43), (3, 64), (4, 85)]);
+}
+
+#[test]
+fn plans_of_blocks_are_those_of_whole_segments() {
+    let mut problem = with_prototype_steps(five_segments());
+    problem.redundancy.beta_count = 60;
+    problem.redundancy.max_beta_rate *= 3.0;
+    let planner = Planner::new(&problem);
+    let (pose, extremum) = (published_optimum(), Extremum::Largest);
+    let mut compared = 0;
+    for kernel in &planner.kernels {
+        for span in problem.task.segments() {
+            let pass = Pass { kernel, span, pose: &pose, extremum, is_paced: false };
+            let mut whole = planner.workspace();
+            let sweep = planner.sweep(pass, None, &mut whole, false);
+            // Blocks that end with the segment, that do not, and of the least length.
+            for most in [5, 7, 1, 19, 20, 21].map(|steps| steps * 4 * 60) {
+                let mut blocks = planner.workspace();
+                blocks.record = sweep::Record::with_most(span.len(), 60, most);
+                let again = planner.sweep(pass, None, &mut blocks, false);
+                assert_eq!(again.ends, sweep.ends);
+                for class in PostureClass::ALL.into_iter().filter(|class| sweep.ends[class.index()].is_some()) {
+                    compared += 1;
+                    let betas = planner.trace(pass, class, &sweep, &mut whole);
+                    assert_eq!(planner.trace(pass, class, &again, &mut blocks), betas, "{span:?} {class:?} {most}");
+                }
+            }
+            let posture = Posture::ALL[2];
+            let search = exact::Search { planner: &planner, span, pose: &pose, extremum, posture };
+            let expected = search.plan(span.len(), &mut whole);
+            assert!(expected.is_some());
+            for block in [1, 4, 7, 20, 30] {
+                assert_eq!(search.plan(block, &mut whole), expected, "{span:?} {block}");
+            }
+        }
+    }
+    assert!(compared >= 30, "{compared}");
+}
+
+/// The same path with so many points for each of its own.
+fn denser(problem: &Problem, times: usize) -> Problem {
+    let task = &problem.task;
+    let (mut points, mut wrenches) = (Vec::new(), Vec::new());
+    for (segment, span) in task.segments().iter().enumerate() {
+        for point in span.clone() {
+            let (here, wrench) = (task.points()[point], task.wrenches()[point]);
+            let parts = if point + 1 < span.end { times } else { 1 };
+            for part in 0..parts {
+                let next = task.points()[(point + 1).min(span.end - 1)].position;
+                let position = here.position + (next - here.position) * (part as f64 / times as f64);
+                points.push((segment as u32 + 1, PathPoint { position, ..here }));
+                wrenches.push(wrench);
+            }
+        }
+    }
+    let path = ToolPath::new(points).unwrap();
+    Problem { task: Task::new(path, wrenches).unwrap(), ..problem.clone() }
+}
+
+#[test]
+fn beta_keeps_its_pace_where_points_are_close() {
+    // Near the best placement, where the rate of beta binds; steps of the path that are a third of a step of the grid.
+    let pose = [0.0, -1.64, -0.214, 1.378];
+    let dense = denser(&five_segments(), 10);
+    let extremum = Extremum::Smallest;
+    let planner = Planner::new(&dense);
+    assert!(dense.task.segments().iter().all(|span| planner.pace.is_spread(span)));
+    let mut workspace = planner.workspace();
+    let plans = planner.plan(&pose, extremum, None, &mut workspace).unwrap();
+    assert_sound(&dense, &pose, &plans);
+    let found = plans.iter().map(|plan| plan.cost).sum::<f64>() / dense.task.points().len() as f64;
+    let worth = planner.worth(&pose, extremum, None, &mut workspace).mean().unwrap();
+    assert!((found - worth).abs() < 1e-12 * found, "{found} {worth}");
+    // A grid so fine that nothing is saved up, and beta held still.
+    let mean = |beta_count: usize, share: f64| {
+        let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
+        let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
+        super::tests::worth(&Problem { redundancy, ..dense.clone() }, &pose, extremum).mean().unwrap()
+    };
+    let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
+    // Spread steps leave the grid, so that they may come out a little below the finest.
+    assert!((found - fine).abs() < 0.05 * (still - fine), "{fine} {found} {still}");
+}

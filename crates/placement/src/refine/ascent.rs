@@ -1,0 +1,117 @@
+//! Ascent to the worst placement: a maximum over the pose of the minimum over all plans.
+//!
+//! The gradient of that minimum with respect to the pose is exact (envelope theorem): it is the multiplier of "the pose
+//! stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model inside the cell
+//! and a trust region, again by clarabel, and leads to a pose where everything is planned anew.
+
+use super::super::problem::Problem;
+use super::super::redundancy::{Planner, Workspace, fine};
+use super::linearise::{Curvature, UNITS, linearise};
+use super::solver::Run;
+use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
+use super::{Solution, inside, planned};
+use nalgebra::{Matrix4, Vector4};
+use stead_model::robot::Posture;
+
+/// The trust region at the start, at the most and at the end, in scaled variables.
+const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
+/// Iterations at the most.
+const MOST_ITERATIONS: usize = 40;
+/// A step has to gain this share of what the model promises.
+const ARMIJO: f64 = 0.05;
+/// A promised gain of less than this share of the mean ends it.
+const LEAST_PROMISE: f64 = 1e-6;
+
+/// Climbs from a solution; never returns a lower one.
+pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Run {
+    let problem = planner.problem();
+    let tube = fine::Tube::full(planner.grid());
+    let mut best = start.clone();
+    let mut iterations = 0;
+    let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
+    let Some(mut gradient) = pose_gradient(problem, &best) else {
+        return ended(best, iterations, "the subproblem could not be solved");
+    };
+    let mut trust = TRUST.0;
+    let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
+    while trust >= TRUST.2 {
+        if iterations == MOST_ITERATIONS {
+            return ended(best, iterations, "stopped at the largest number of iterations");
+        }
+        iterations += 1;
+        let Some(step) = pose_step(problem, &best.pose, &gradient, &curvature, trust) else {
+            return ended(best, iterations, "the subproblem could not be solved");
+        };
+        let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
+        if promised < LEAST_PROMISE * best.mean() {
+            return ended(best, iterations, "converged: no first-order gain");
+        }
+        let pose = inside(problem, std::array::from_fn(|k| best.pose[k] + step[k] * UNITS[k]));
+        let candidate = planned(planner, &pose, scheme, tube, workspace);
+        let Some(next) = candidate.filter(|next| next.mean() - best.mean() > ARMIJO * promised) else {
+            trust = trust.min(step.amax()) / 3.0;
+            continue;
+        };
+        if next.mean() - best.mean() > 0.7 * promised && step.amax() > 0.9 * trust {
+            trust = (2.0 * trust).min(TRUST.1);
+        }
+        best = next;
+        let Some(there) = pose_gradient(problem, &best) else {
+            return ended(best, iterations, "the subproblem could not be solved");
+        };
+        learn(&mut curvature, &step, &(gradient - there));
+        gradient = there;
+    }
+    ended(best, iterations, "converged: no gain in the smallest trust region")
+}
+
+/// Damped BFGS (Powell 1978): keeps the curvature positive definite whatever the change of gradient says.
+fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64>) {
+    let image = *curvature * step;
+    let along = step.dot(&image);
+    let measured = step.dot(change);
+    let share = if measured >= 0.2 * along { 1.0 } else { 0.8 * along / (along - measured) };
+    let change = change * share + image * (1.0 - share);
+    let denominator = step.dot(&change);
+    if along > 0.0 && denominator > 0.0 {
+        *curvature += change * change.transpose() / denominator - image * image.transpose() / along;
+    }
+}
+
+/// Gradient of the mean score of the best plan with respect to the pose, postures fixed. m per scaled unit
+pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
+    let locals = linearise(problem, solution, Curvature::Beta)?;
+    let question = Question { trust: 1e-3, curved: true, pose_stays: true };
+    let answer = solve(problem, solution, &locals, question).ok()?;
+    Some(Vector4::from(answer.pose_gradient))
+}
+
+/// Distance of the sampled neighbours, in scaled variables.
+const SAMPLING: f64 = 2e-3;
+
+/// First-order optimality of a worst placement: m of mean score per scaled unit, zero at a maximum.
+///
+/// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the best
+/// plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector that a
+/// convex combination of them makes with the outward normals of the cell's active bounds.
+pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&[Posture]>) -> f64 {
+    let problem = planner.problem();
+    let mut workspace = planner.workspace();
+    let bounds = pose_bounds(problem, &solution.pose);
+    let mut gradients: Vec<Vector4<f64>> = pose_gradient(problem, solution).into_iter().collect();
+    let mut normals = Vec::new();
+    for k in 0..4 {
+        for side in [-1.0, 1.0] {
+            let room = if side > 0.0 { bounds[k].max } else { -bounds[k].min };
+            if room < SAMPLING {
+                normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
+                continue;
+            }
+            let mut pose = solution.pose;
+            pose[k] += side * SAMPLING * UNITS[k];
+            let near = planned(planner, &pose, scheme, fine::Tube::full(planner.grid()), &mut workspace);
+            gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
+        }
+    }
+    shortest(&gradients, &normals)
+}

@@ -1,0 +1,230 @@
+//! Gradient refinement of a placement: pose and all betas together.
+//!
+//! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
+//! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
+//! so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of beta and the
+//! cell are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
+//! Derivatives are exact ([`linearise`]). Then postures, turns and betas are planned anew, and so on until neither changes.
+//!
+//! **Worst placement.** That is a maximum over the pose of a minimum over beta. Its gradient is the multiplier of the
+//! constraint "the pose stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
+//!
+//! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
+//! or less feasible than the start.
+//!
+//! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one radian in
+//! yaw and beta; it is zero at a first-order optimum. For the best placement it is the decrease that the linear model still
+//! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
+//! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
+
+pub mod ascent;
+pub mod linearise;
+pub mod solver;
+pub mod subproblem;
+
+use super::appraiser::{self, Appraiser};
+use super::outcome::{CANCELLED, Goal, Refinement};
+use super::problem::{Placement, Problem};
+use super::redundancy::{Extremum, Planner, SegmentPlan, Workspace, fine};
+use stead_model::robot::Posture;
+
+/// The unit of position in scaled variables. m
+pub const LENGTH_UNIT: f64 = 0.1;
+/// Rounds of refining and planning anew, at the most.
+const ROUNDS: usize = 12;
+/// A round that gains less than this share of the mean ends the refinement.
+const GAIN: f64 = 1e-5;
+
+/// A placement with its best plan, beta off the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// x, y, z (m) and yaw (rad).
+    pub pose: [f64; 4],
+    /// One entry per segment.
+    pub plans: Vec<SegmentPlan>,
+}
+
+impl Solution {
+    /// Mean score. m
+    pub fn mean(&self) -> f64 {
+        let points: usize = self.plans.iter().map(|plan| plan.points.len()).sum();
+        self.plans.iter().map(|plan| plan.cost).sum::<f64>() / points as f64
+    }
+
+    /// The placement.
+    pub fn placement(&self) -> Placement {
+        let [x, y, z, yaw] = self.pose;
+        Placement { x, y, z, yaw }
+    }
+}
+
+/// The best plan at a pose, beta refined off the grid; `None` when the pose has none.
+pub fn planned(
+    planner: &Planner<'_>,
+    pose: &[f64; 4],
+    scheme: Option<&[Posture]>,
+    tube: fine::Tube,
+    workspace: &mut Workspace,
+) -> Option<Solution> {
+    let plans = planner.plan_fine(pose, Extremum::Smallest, scheme, tube, workspace).ok()?;
+    Some(Solution { pose: *pose, plans })
+}
+
+/// Refines from one pose, with the posture scheme found anew in every round or kept as given. `None` when the pose has no
+/// plan to start from.
+pub fn refine(
+    appraiser: &Appraiser<'_>,
+    start: &[f64; 4],
+    goal: Goal,
+    scheme: Option<&[Posture]>,
+) -> Option<(Solution, Refinement)> {
+    let planner = appraiser.planner();
+    let problem = planner.problem();
+    let mut workspace = planner.workspace();
+    let mut looks = appraiser.workspace();
+    let tube = fine::Tube::full(planner.grid());
+    let mut best = planned(planner, start, scheme, tube, &mut workspace)?;
+    let mut report = Refinement {
+        goal,
+        start: best.placement(),
+        start_mean: best.mean(),
+        end: best.placement(),
+        end_mean: best.mean(),
+        rounds: 0,
+        iterations: 0,
+        kkt_residual: f64::INFINITY,
+        statuses: Vec::new(),
+    };
+    let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLED;
+    if is_cancelled(&best) {
+        report.statuses.push("converged: the deflection is cancelled".to_owned());
+    }
+    while report.rounds < ROUNDS && !is_cancelled(&best) {
+        report.rounds += 1;
+        let before = best.mean();
+        let signature = signature(&best);
+        let (status, iterations) = match goal {
+            Goal::Best => {
+                let run = solver::run(problem, &best);
+                best = run.solution;
+                (run.status, run.iterations)
+            }
+            Goal::Worst => {
+                let run = ascent::run(planner, &best, scheme, &mut workspace);
+                best = run.solution;
+                (run.status, run.iterations)
+            }
+        };
+        report.iterations += iterations;
+        report.statuses.push(status);
+        // Plan anew at the new pose. For the best placement a better plan is welcome; for the worst one every plan is
+        // already the best at its pose.
+        if goal == Goal::Best
+            && let Some(anew) = planned(planner, &best.pose, scheme, tube, &mut workspace)
+            && anew.mean() < best.mean()
+        {
+            best = anew;
+        }
+        let gained = (before - best.mean()).abs();
+        if self::signature(&best) == signature && gained < GAIN * before {
+            // The model knows one plan; a neighbour may have another, better one.
+            match poll(appraiser, &best, goal, scheme, &mut workspace, &mut looks) {
+                Some(better) => best = better,
+                None => break,
+            }
+        }
+    }
+    report.kkt_residual = match goal {
+        // Nothing is smaller than nothing.
+        _ if is_cancelled(&best) => 0.0,
+        Goal::Best => subproblem::kkt_residual(problem, &best),
+        Goal::Worst => ascent::kkt_residual(planner, &best, scheme),
+    };
+    report.end = best.placement();
+    report.end_mean = best.mean();
+    Some((best, report))
+}
+
+/// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
+const POLLS: [f64; 2] = [0.03, 0.006];
+/// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
+fn poll(
+    appraiser: &Appraiser<'_>,
+    centre: &Solution,
+    goal: Goal,
+    scheme: Option<&[Posture]>,
+    workspace: &mut Workspace,
+    looks: &mut appraiser::Workspace,
+) -> Option<Solution> {
+    let planner = appraiser.planner();
+    let problem = planner.problem();
+    let tube = fine::Tube::full(planner.grid());
+    let sign = match goal {
+        Goal::Best => 1.0,
+        Goal::Worst => -1.0,
+    };
+    let mut look = |pose: &[f64; 4]| appraiser.table().and_then(|_| appraiser.worth(pose, scheme, looks).mean());
+    let here = look(&centre.pose);
+    let mut best: Option<Solution> = None;
+    for distance in POLLS {
+        for k in 0..4 {
+            for side in [-1.0, 1.0] {
+                let mut pose = centre.pose;
+                pose[k] += side * distance * linearise::UNITS[k];
+                let pose = inside(problem, pose);
+                // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
+                // next, sees to be no better.
+                let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
+                if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_no_better) {
+                    continue;
+                }
+                let Some(near) = planned(planner, &pose, scheme, tube, workspace) else { continue };
+                let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
+                if near.mean() * sign < known * sign {
+                    best = Some(near);
+                }
+            }
+        }
+        if best.is_some() {
+            break;
+        }
+    }
+    best
+}
+
+/// The pose, not outside the cell.
+fn inside(problem: &Problem, pose: [f64; 4]) -> [f64; 4] {
+    let [x, y, z, yaw] = pose;
+    let clamped = problem.cell.clamp(&Placement { x, y, z, yaw });
+    [clamped.x, clamped.y, clamped.z, clamped.yaw]
+}
+
+/// What must not change any more: posture and turns of every segment.
+fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
+    let turns = |plan: &SegmentPlan| plan.joints.first().map_or([0; 6], |q| q.map(stead_model::robot::turns::turns));
+    solution.plans.iter().map(|plan| (plan.posture, turns(plan))).collect()
+}
+
+/// A solution moved by a step of all variables (pose, then every beta), if there is an allowed one near there.
+///
+/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new pose the betas settle in a
+/// narrow tube around their step (a second-order correction).
+fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) -> Option<Solution> {
+    let mut plans = Vec::with_capacity(solution.plans.len());
+    for plan in &solution.plans {
+        let betas = betas[plan.points.clone()].to_vec();
+        let mut shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
+        fine::refine(problem, &pose, Extremum::Smallest, SETTLING, &mut shifted);
+        if !shifted.cost.is_finite() {
+            return None;
+        }
+        plans.push(shifted);
+    }
+    Some(Solution { pose, plans })
+}
+
+/// The tube in which betas settle after a step. rad
+const SETTLING: fine::Tube = fine::Tube { first: 4e-3, last: 1.2e-4 };
+
+#[cfg(test)]
+mod tests;

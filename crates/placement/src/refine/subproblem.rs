@@ -1,0 +1,310 @@
+//! The convex subproblem of the refinement, solved by clarabel.
+//!
+//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present mean). Minimised
+//! is the mean of t plus the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
+//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
+//! Rows that cannot become active inside the trust region are left out. Where the margin of a
+//! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
+//! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
+
+use super::super::problem::{Interval, Problem};
+use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
+use super::{LENGTH_UNIT, Solution};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    SupportedConeT, ZeroConeT,
+};
+use nalgebra::{Matrix4, Vector4};
+use stead_model::robot::angles::wrap;
+use stead_numerics::scalar::Dual;
+
+/// What a subproblem is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Question {
+    /// Half width of the trust region in scaled variables.
+    pub trust: f64,
+    /// Whether the objective has the curvature of the scores.
+    pub curved: bool,
+    /// Whether the pose has to stay, so that only the betas move.
+    pub pose_stays: bool,
+}
+
+/// What it answers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Pose step: m, m, m, rad.
+    pub pose: [f64; 4],
+    /// Steps of all betas. rad
+    pub betas: Vec<f64>,
+    /// Decrease of the mean score that the model promises, not negative. m
+    pub promised: f64,
+    /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
+    pub pose_gradient: [f64; 4],
+}
+
+/// Coefficients of one inequality `row . x <= bound`.
+struct Rows {
+    row: Vec<usize>,
+    column: Vec<usize>,
+    value: Vec<f64>,
+    bound: Vec<f64>,
+}
+
+impl Rows {
+    fn add(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, bound: f64) {
+        let row = self.bound.len();
+        for (column, value) in terms {
+            self.row.push(row);
+            self.column.push(column);
+            self.value.push(value);
+        }
+        self.bound.push(bound);
+    }
+
+    /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
+    fn add_between(&mut self, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
+        if high < swing {
+            self.add(terms.iter().copied(), high);
+        }
+        if -low < swing {
+            self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
+        }
+    }
+}
+
+/// Solves the subproblem at a solution with its linearisation.
+///
+/// # Errors
+/// The status of clarabel, in words, when it found no solution.
+pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, String> {
+    let n = locals.len();
+    let (beta, epigraph, margins) = (4, 4 + n, 4 + 2 * n);
+    let kinked: Vec<usize> = (0..n).filter(|i| !locals[*i].changes.is_empty()).collect();
+    let unit = solution.mean();
+    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    if question.pose_stays {
+        for k in 0..4 {
+            rows.add([(k, 1.0)], 0.0);
+        }
+    }
+    let equalities = rows.bound.len();
+    let terms = |i: usize, gradient: &[f64; LOCAL]| -> Vec<(usize, f64)> {
+        (0..4).map(|k| (k, gradient[k])).chain([(beta + i, gradient[4])]).collect()
+    };
+    // How far a linear function can move inside the trust region, twice over for safety.
+    let swing = |terms: &[(usize, f64)]| 2.0 * question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
+
+    for (i, local) in locals.iter().enumerate() {
+        let (c, u) = (&local.state.normal_part, &local.added);
+        for sign in [1.0, -1.0] {
+            let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
+            let margin = kinked.binary_search(&i).ok().map(|place| (margins + place, 1.0));
+            let row = terms(i, &slope).into_iter().chain([(epigraph + i, -1.0)]).chain(margin);
+            rows.add(row, -(sign * c.value + u.value) / unit);
+        }
+        if let Some(limit) = problem.constraints.max_deflection {
+            rows.add([(epigraph + i, 1.0)], limit / unit);
+        }
+        let condition: &Dual<LOCAL> = &local.state.inverse_condition;
+        let row = terms(i, &condition.gradient);
+        let spare = condition.value - problem.constraints.min_inverse_condition;
+        rows.add_between(&row, -spare, f64::INFINITY, swing(&row));
+        for (j, joint) in problem.robot.joints().iter().enumerate() {
+            let row = terms(i, &local.state.joints[j].gradient);
+            let q = local.joints[j];
+            rows.add_between(&row, joint.min - q, joint.max - q, swing(&row));
+        }
+    }
+    for plan in &solution.plans {
+        for (place, i) in plan.points.clone().enumerate().skip(1) {
+            let turned = plan.betas[place] - plan.betas[place - 1];
+            let limit = problem.beta_step_limit(i);
+            let row = [(beta + i, 1.0), (beta + i - 1, -1.0)];
+            rows.add_between(&row, -limit - turned, limit - turned, swing(&row));
+            let limits = problem.joint_steps(i);
+            for j in 0..6 {
+                let (here, there) = (&locals[i].state.joints[j].gradient, &locals[i - 1].state.joints[j].gradient);
+                let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
+                row.extend([(beta + i, here[4]), (beta + i - 1, -there[4])]);
+                let step = locals[i].joints[j] - locals[i - 1].joints[j];
+                rows.add_between(&row, -limits[j] - step, limits[j] - step, swing(&row));
+            }
+        }
+    }
+    for (k, bounds) in pose_bounds(problem, &solution.pose).into_iter().enumerate() {
+        let trust = question.trust;
+        rows.add([(k, 1.0)], bounds.max.min(trust));
+        rows.add([(k, -1.0)], (-bounds.min).min(trust));
+    }
+    for i in 0..n {
+        rows.add([(beta + i, 1.0)], question.trust);
+        rows.add([(beta + i, -1.0)], question.trust);
+    }
+
+    let inequalities = rows.bound.len() - equalities;
+    let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
+    for (place, i) in kinked.iter().enumerate() {
+        rows.add([(margins + place, -1.0)], 0.0);
+        let changes = &locals[*i].changes;
+        for change in changes {
+            rows.add(terms(*i, &change.gradient.map(|slope| -slope / unit)), change.value / unit);
+        }
+        cones.push(SecondOrderConeT(1 + changes.len()));
+    }
+
+    let variables = margins + kinked.len();
+    let mut linear = vec![0.0; variables];
+    linear[epigraph..margins].fill(1.0 / n as f64);
+    let curvature =
+        if question.curved { curvature(locals, variables, unit) } else { CscMatrix::zeros((variables, variables)) };
+    let matrix = CscMatrix::new_from_triplets(rows.bound.len(), variables, rows.row, rows.column, rows.value);
+    let found = programme(&curvature, &linear, &matrix, &rows.bound, &cones)?;
+    let mut pose = [0.0; 4];
+    let mut pose_gradient = [0.0; 4];
+    for k in 0..4 {
+        pose[k] = if question.pose_stays { 0.0 } else { found.x[k] * UNITS[k] };
+        if question.pose_stays {
+            pose_gradient[k] = -found.z[k] * unit;
+        }
+    }
+    Ok(Answer {
+        pose,
+        betas: found.x[beta..beta + n].to_vec(),
+        promised: ((1.0 - found.obj_val) * unit).max(0.0),
+        pose_gradient,
+    })
+}
+
+/// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
+fn programme(
+    quadratic: &CscMatrix<f64>,
+    linear: &[f64],
+    matrix: &CscMatrix<f64>,
+    bound: &[f64],
+    cones: &[SupportedConeT<f64>],
+) -> Result<DefaultSolution<f64>, String> {
+    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
+    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings)
+        .map_err(|e| format!("clarabel refused the subproblem: {e}"))?;
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
+        status => Err(format!("clarabel: {status:?}")),
+    }
+}
+
+/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
+/// clarabel found none.
+pub fn pose_step(
+    problem: &Problem,
+    pose: &[f64; 4],
+    gradient: &Vector4<f64>,
+    curvature: &Matrix4<f64>,
+    trust: f64,
+) -> Option<Vector4<f64>> {
+    let unit = gradient.norm();
+    let upper = curvature.upper_triangle() / unit;
+    let entries = (0..4).flat_map(|k| (0..=k).map(move |j| (j, k)));
+    let (row, column): (Vec<usize>, Vec<usize>) = entries.unzip();
+    let value = row.iter().zip(&column).map(|(j, k)| upper[(*j, *k)]).collect();
+    let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
+    let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
+    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    let bounds = pose_bounds(problem, pose);
+    for (k, bound) in bounds.iter().enumerate() {
+        rows.add([(k, 1.0)], bound.max.min(trust));
+        rows.add([(k, -1.0)], (-bound.min).min(trust));
+    }
+    let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
+    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)]).ok()?;
+    Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
+}
+
+/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
+/// infinite when there is no gradient or clarabel found none.
+pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
+    let unit = gradients.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    if gradients.is_empty() || unit == 0.0 {
+        return if gradients.is_empty() { f64::INFINITY } else { 0.0 };
+    }
+    let columns: Vec<Vector4<f64>> =
+        gradients.iter().map(|g| g / unit).chain(normals.iter().map(|normal| -normal)).collect();
+    let n = columns.len();
+    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
+    for k in 0..n {
+        for j in 0..=k {
+            row.push(j);
+            column.push(k);
+            value.push(columns[j].dot(&columns[k]));
+        }
+    }
+    let quadratic = CscMatrix::new_from_triplets(n, n, row, column, value);
+    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    rows.add((0..gradients.len()).map(|i| (i, 1.0)), 1.0);
+    for k in 0..n {
+        rows.add([(k, -1.0)], 0.0);
+    }
+    let matrix = CscMatrix::new_from_triplets(n + 1, n, rows.row, rows.column, rows.value);
+    let cones = [ZeroConeT(1), NonnegativeConeT(n)];
+    let Ok(found) = programme(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones) else { return f64::INFINITY };
+    let sum = columns.iter().zip(&found.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
+    sum.norm() * unit
+}
+
+/// How far each pose variable may move inside the cell, in scaled variables.
+pub fn pose_bounds(problem: &Problem, pose: &[f64; 4]) -> [Interval; 4] {
+    let cell = &problem.cell;
+    std::array::from_fn(|k| {
+        if k < 3 {
+            let Interval { min, max } = cell.position[k];
+            Interval { min: (min - pose[k]) / LENGTH_UNIT, max: (max - pose[k]) / LENGTH_UNIT }
+        } else if cell.is_yaw_free() {
+            Interval { min: f64::NEG_INFINITY, max: f64::INFINITY }
+        } else {
+            let middle = (cell.yaw.min + cell.yaw.max) / 2.0;
+            let yaw = middle + wrap(pose[3] - middle);
+            Interval { min: cell.yaw.min - yaw, max: cell.yaw.max - yaw }
+        }
+    })
+}
+
+/// The curvature of the mean score: an arrow of the pose block, its coupling with every beta, and the diagonal.
+fn curvature(locals: &[Local], variables: usize, unit: f64) -> CscMatrix<f64> {
+    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
+    let mut pose = [[0.0; 4]; 4];
+    let share = 1.0 / (unit * locals.len() as f64);
+    for (i, local) in locals.iter().enumerate() {
+        for k in 0..4 {
+            for j in 0..=k {
+                pose[j][k] += local.curvature[(j, k)] * share;
+            }
+            row.push(k);
+            column.push(4 + i);
+            value.push(local.curvature[(k, 4)] * share);
+        }
+        row.push(4 + i);
+        column.push(4 + i);
+        value.push(local.curvature[(4, 4)] * share);
+    }
+    for (j, entries) in pose.iter().enumerate() {
+        for (k, entry) in entries.iter().enumerate().skip(j) {
+            row.push(j);
+            column.push(k);
+            value.push(*entry);
+        }
+    }
+    CscMatrix::new_from_triplets(variables, variables, row, column, value)
+}
+
+/// Trust region in which the linear model is asked what it still promises.
+const KKT_TRUST: f64 = 1e-2;
+
+/// The first-order optimality of a solution with postures and turns fixed: see [`super`]. m per scaled unit; infinite when
+/// the subproblem could not be solved.
+pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let question = Question { trust: KKT_TRUST, curved: false, pose_stays: false };
+    linearise(problem, solution, Curvature::None)
+        .and_then(|locals| solve(problem, solution, &locals, question).ok())
+        .map_or(f64::INFINITY, |answer| answer.promised / KKT_TRUST)
+}

@@ -1,0 +1,218 @@
+//! The refinement: exact gradients, never worse, never infeasible.
+
+use super::*;
+use crate::problem::Interval;
+use crate::testing::{five_segments, five_segments_compensated};
+use nalgebra::DMatrix;
+use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
+
+fn published_optimum() -> [f64; 4] {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+}
+
+/// Every point of a solution is allowed, with joints and betas within their steps.
+fn assert_allowed(problem: &Problem, solution: &Solution) {
+    assert!(problem.cell.contains(&solution.placement()), "{:?}", solution.placement());
+    for plan in &solution.plans {
+        let replayed = fine::replay(problem, &solution.pose, plan).unwrap();
+        assert!((replayed.cost - plan.cost).abs() < 1e-10 * plan.cost);
+        for (a, b) in replayed.joints.iter().flatten().zip(plan.joints.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn best_gets_better_and_stays_allowed() {
+    for (problem, start) in
+        [(five_segments(), published_optimum()), (five_segments_compensated(), [0.0, -1.7, -0.4, 0.7])]
+    {
+        let planner = Planner::finer(&problem);
+        let (solution, report) = refine(&Appraiser::new(&planner, None), &start, Goal::Best, None).unwrap();
+        assert_allowed(&problem, &solution);
+        assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
+        assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
+        assert_eq!(report.statuses.len(), report.rounds);
+        // Nothing better in the neighbourhood, everything planned anew.
+        let mut workspace = planner.workspace();
+        for k in 0..4 {
+            for side in [-1.0, 1.0] {
+                let mut pose = solution.pose;
+                pose[k] += side * if k < 3 { 3e-3 } else { 3e-2 };
+                let [x, y, z, yaw] = pose;
+                if !problem.cell.contains(&Placement { x, y, z, yaw }) {
+                    continue;
+                }
+                let near = planned(&planner, &pose, None, fine::Tube::full(planner.grid()), &mut workspace);
+                assert!(near.is_none_or(|n| n.mean() > solution.mean() * (1.0 - 2e-5)), "variable {k} {side}");
+            }
+        }
+    }
+}
+
+#[test]
+fn margins_may_be_driven_to_their_kink() {
+    // With one uncertain joint the best betas make its torque vanish at many points, where the margin has a kink.
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 40;
+    problem.criterion.confidence = 3.0;
+    let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
+    problem.robot = problem.robot.with_uncertainty(known).unwrap();
+    let planner = Planner::new(&problem);
+    let (solution, report) = refine(&Appraiser::new(&planner, None), &published_optimum(), Goal::Best, None).unwrap();
+    assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
+    assert_allowed(&problem, &solution);
+    let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
+    let margins = || locals.iter().map(|local| local.state.margin.value);
+    assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
+    for local in locals.iter().filter(|local| !local.changes.is_empty()) {
+        let [change] = local.changes[..] else { panic!("one uncertain parameter is one change") };
+        assert!((change.value.abs() - local.state.margin.value).abs() < 1e-18);
+    }
+    assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
+}
+
+#[test]
+fn worst_gets_worse_and_stays_allowed() {
+    let problem = five_segments();
+    let planner = Planner::finer(&problem);
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
+}
+
+#[test]
+fn a_start_without_a_plan_is_refused() {
+    let problem = five_segments();
+    let planner = Planner::finer(&problem);
+    assert_eq!(refine(&Appraiser::new(&planner, None), &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
+}
+
+#[test]
+fn constraints_bind_and_hold() {
+    let mut problem = five_segments();
+    problem.cell.yaw = Interval { min: 0.5, max: 0.9 };
+    problem.constraints.min_inverse_condition = 0.4;
+    problem.constraints.max_deflection = Some(1.5e-3);
+    let planner = Planner::finer(&problem);
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean <= report.start_mean);
+}
+
+#[test]
+fn joint_speeds_bind_and_hold() {
+    let mut problem = five_segments();
+    let mut joints = problem.robot.joints().clone();
+    joints.iter_mut().for_each(|j| j.max_speed = Some(0.25));
+    problem.robot = stead_model::robot::Robot::new("slow", joints).unwrap();
+    let planner = Planner::finer(&problem);
+    let (solution, report) =
+        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+    assert_allowed(&problem, &solution);
+    assert!(report.end_mean <= report.start_mean);
+    let used = solution.plans.iter().flat_map(|plan| {
+        plan.points.clone().skip(1).enumerate().map(|(place, point)| {
+            let limits = problem.joint_steps(point);
+            let (a, b) = (plan.joints[place], plan.joints[place + 1]);
+            (0..6).map(|j| (b[j] - a[j]).abs() / limits[j]).fold(0.0, f64::max)
+        })
+    });
+    let used: Vec<f64> = used.collect();
+    assert!(used.iter().all(|share| *share <= 1.0 + 1e-6));
+    assert!(used.iter().any(|share| *share > 0.99), "no joint step is at its limit");
+}
+
+#[test]
+fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
+    for problem in [five_segments(), five_segments_compensated()] {
+        let planner = Planner::finer(&problem);
+        let mut workspace = planner.workspace();
+        let tube = fine::Tube { first: 0.026, last: 1e-7 };
+        let pose = [0.2, -2.1, -0.3, -2.2];
+        let here = planned(&planner, &pose, None, tube, &mut workspace).unwrap();
+        let gradient = ascent::pose_gradient(&problem, &here).unwrap();
+        for k in 0..4 {
+            let h = 1e-4;
+            let mut at = |side: f64| {
+                let mut moved = pose;
+                moved[k] += side * h * linearise::UNITS[k];
+                planned(&planner, &moved, None, tube, &mut workspace).unwrap().mean()
+            };
+            let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
+            assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
+        }
+    }
+}
+
+#[test]
+fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
+    for problem in [five_segments(), five_segments_compensated()] {
+        let planner = Planner::finer(&problem);
+        let tube = fine::Tube::full(planner.grid());
+        let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
+        let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
+        for plan in &here.plans {
+            for (place, point) in plan.points.clone().enumerate().step_by(4) {
+                for k in 0..linearise::LOCAL {
+                    let h = 1e-6;
+                    let at = |side: f64| {
+                        let (mut pose, mut beta) = (here.pose, plan.betas[place]);
+                        match k {
+                            4 => beta += side * h,
+                            _ => pose[k] += side * h * linearise::UNITS[k],
+                        }
+                        crate::criterion::state(&problem, point, &pose, beta, plan.posture).unwrap()
+                    };
+                    let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
+                    assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cell_without_room_is_refined_in_beta_alone() {
+    let mut problem = five_segments();
+    let pose = published_optimum();
+    problem.cell.position = [pose[0], pose[1], pose[2]].map(|v| Interval { min: v, max: v });
+    problem.cell.yaw = Interval { min: pose[3], max: pose[3] };
+    let planner = Planner::finer(&problem);
+    for goal in [Goal::Best, Goal::Worst] {
+        let (solution, report) = refine(&Appraiser::new(&planner, None), &pose, goal, None).unwrap();
+        assert_allowed(&problem, &solution);
+        assert!(report.end_mean <= report.start_mean * (1.0 + 1e-12));
+        assert!((0..4).all(|k| (solution.pose[k] - pose[k]).abs() < 1e-12), "{:?}", solution.pose);
+    }
+}
+
+#[test]
+fn argmin_observers_see_every_iteration() {
+    use argmin::core::observers::{Observe, ObserverMode};
+    use argmin::core::{Error, KV};
+    use std::sync::{Arc, Mutex};
+
+    struct Costs(Arc<Mutex<Vec<f64>>>);
+    impl Observe<solver::Iterate> for Costs {
+        fn observe_iter(&mut self, state: &solver::Iterate, _: &KV) -> Result<(), Error> {
+            self.0.lock().unwrap().push(state.get_cost());
+            Ok(())
+        }
+    }
+
+    let problem = five_segments();
+    let planner = Planner::finer(&problem);
+    let tube = fine::Tube::full(planner.grid());
+    let start = planned(&planner, &[0.0, -1.7, -0.4, 0.7], None, tube, &mut planner.workspace()).unwrap();
+    let costs = Arc::new(Mutex::new(Vec::new()));
+    let observer = Costs(Arc::clone(&costs));
+    let run = solver::run_observed(&problem, &start, |executor| executor.add_observer(observer, ObserverMode::Always));
+    let costs = costs.lock().unwrap();
+    assert_eq!(costs.len(), run.iterations);
+    assert!(costs.len() > 2 && costs.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert_eq!(costs.last().copied(), Some(run.solution.mean()));
+    assert!(!run.status.is_empty());
+}

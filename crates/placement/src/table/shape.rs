@@ -1,0 +1,165 @@
+//! What a table is sampled over.
+
+use crate::problem::Problem;
+use nalgebra::Vector2;
+use std::f64::consts::TAU;
+
+/// Step of radius and height. m
+const STEP: f64 = 0.07;
+/// Headings over a full turn, about.
+const HEADINGS: usize = 120;
+/// ... at least and at the most, where a number of the grid of beta can be had.
+const FEWEST_AND_MOST: (usize, usize) = (90, 180);
+
+/// Evenly spaced values. m
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// The first of them.
+    pub first: f64,
+    /// From one to the next.
+    pub step: f64,
+    /// How many.
+    pub count: usize,
+}
+
+/// The size of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// Distance of the tool centre point from axis 1.
+    pub radius: Axis,
+    /// Its height in the root frame.
+    pub height: Axis,
+    /// Headings of the spindle against the azimuth of the point, over a full turn.
+    pub headings: usize,
+    /// Whether the compliance between the vertical and the plane is in it.
+    pub has_vertical: bool,
+    /// Whether the angle of joint 1 against the azimuth is in it: where joint 1 does not get all the way round.
+    pub has_first_joint: bool,
+}
+
+/// Weights of the four nodes around a place, for the cubic through them (Lagrange).
+pub(super) fn cubic(t: f64) -> [f32; 4] {
+    let (a, b, c, d) = (t + 1.0, t, t - 1.0, t - 2.0);
+    [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0].map(|weight| weight as f32)
+}
+
+impl Axis {
+    /// An axis on which every value between two has two nodes on either side.
+    fn around(min: f64, max: f64, step: f64) -> Self {
+        Self { first: min - step, step, count: (((max - min) / step).ceil() as usize).saturating_add(4) }
+    }
+
+    /// The node of that number.
+    pub fn node(&self, index: usize) -> f64 {
+        self.first + self.step * index as f64
+    }
+
+    /// The first of the four nodes around a value, and their weights; `None` for a value that the axis does not cover.
+    pub(super) fn stencil(&self, value: f64) -> Option<(usize, [f32; 4])> {
+        let place = (value - self.first) / self.step;
+        // Rounding may leave the ends by a little.
+        if !(place > 1.0 - 1e-6 && place < self.count as f64 - 2.0 + 1e-6) {
+            return None;
+        }
+        let index = (place as usize).clamp(1, self.count - 3);
+        Some((index - 1, cubic(place - index as f64)))
+    }
+}
+
+/// Headings that go well with a grid of beta: as many as it has, or a multiple, or a part of them, so that places between
+/// headings repeat along the grid.
+fn headings(beta_count: usize) -> usize {
+    let (fewest, most) = FEWEST_AND_MOST;
+    if beta_count <= most {
+        beta_count * fewest.div_ceil(beta_count)
+    } else {
+        (fewest..=most).rev().find(|count| beta_count.is_multiple_of(*count)).unwrap_or(HEADINGS)
+    }
+}
+
+impl Shape {
+    pub(super) fn new(problem: &Problem, has_vertical: bool, has_first_joint: bool) -> Self {
+        let g = problem.robot.geometry();
+        let [x, y, z] = problem.cell.position;
+        let nearest =
+            Vector2::new(x.clamp(g.root_in_base.x) - g.root_in_base.x, y.clamp(g.root_in_base.y) - g.root_in_base.y);
+        let side = |min: f64, max: f64, root: f64| (min - root).abs().max((max - root).abs());
+        let farthest = libm::hypot(side(x.min, x.max, g.root_in_base.x), side(y.min, y.max, g.root_in_base.y));
+        let (mut reach, mut low, mut high) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+        for point in problem.task.points() {
+            reach = reach.max(libm::hypot(point.position.x, point.position.y));
+            low = low.min(point.position.z);
+            high = high.max(point.position.z);
+        }
+        // Beyond the arm and its tool there is nothing to sample.
+        let lever = problem.spindle.flange_from_tool.translation.norm() + g.flange.abs();
+        let most = (g.reach() + lever).max(STEP);
+        let min = (nearest.norm() - reach).clamp(0.0, most);
+        let max = (farthest + reach).clamp(min, most);
+        let up = g.base_from_root.m33.signum();
+        let heights = [z.min + low, z.max + high].map(|height| up * (height - g.root_in_base.z));
+        let (below, above) = (g.shoulder_height - most, g.shoulder_height + most);
+        let bottom = heights[0].min(heights[1]).clamp(below, above);
+        let top = heights[0].max(heights[1]).clamp(below, above);
+        Self {
+            radius: Axis::around(min, max, STEP),
+            height: Axis::around(bottom, top, STEP),
+            headings: headings(problem.redundancy.beta_count),
+            has_vertical,
+            has_first_joint,
+        }
+    }
+
+    /// Numbers in each state: m, d1, d2, the room left, and what else there is.
+    pub fn fields(&self) -> usize {
+        4 + 2 * usize::from(self.has_vertical) + 2 * usize::from(self.has_first_joint)
+    }
+
+    /// The first of the fields of joint 1: sine, then cosine.
+    pub(super) fn first_joint(&self) -> usize {
+        4 + 2 * usize::from(self.has_vertical)
+    }
+
+    /// Numbers in each row: all fields of one posture class over all headings.
+    pub(super) fn block(&self) -> usize {
+        self.fields() * self.headings
+    }
+
+    /// States sampled.
+    pub fn states(&self) -> u64 {
+        (self.radius.count as u64).saturating_mul(self.height.count as u64).saturating_mul(self.headings as u64 * 4)
+    }
+
+    /// What it takes in memory. Bytes
+    pub fn bytes(&self) -> u64 {
+        self.states().saturating_mul(self.fields() as u64 * 4)
+    }
+
+    /// Step of the heading. rad
+    pub fn heading_step(&self) -> f64 {
+        TAU / self.headings as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_go_with_the_grid_of_beta() {
+        assert_eq!([120, 90, 60, 40, 24, 1].map(headings), [120, 90, 120, 120, 96, 90]);
+        assert_eq!([360, 720, 1440, 1009].map(headings), [180, 180, 180, 120]);
+    }
+
+    #[test]
+    fn a_cubic_is_interpolated_exactly_anywhere_on_an_axis() {
+        let f = |x: f64| 1.0 + x * (0.3 + x * (-0.7 + 0.2 * x));
+        let axis = Axis::around(-0.4, 1.3, 0.17);
+        for value in [-0.4, -0.39, 0.0, 0.731, 1.29, 1.3] {
+            let (first, weights) = axis.stencil(value).unwrap();
+            let sum: f64 = (0..4).map(|k| f64::from(weights[k]) * f(axis.node(first + k))).sum();
+            assert!((sum - f(value)).abs() < 1e-6, "{value} {sum}");
+        }
+        assert!(axis.stencil(-0.41).is_none() && axis.stencil(f64::NAN).is_none() && axis.stencil(1.6).is_none());
+    }
+}

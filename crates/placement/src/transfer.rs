@@ -1,0 +1,100 @@
+//! Moves between segments: how long the joints need from the end of one segment to the start of the next.
+//!
+//! Each joint moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal profiles
+//! come from rsruckig. Only the time is computed: that the move clears the workpiece is for the programmer to see to.
+
+use super::outcome::{Cycle, Transfer};
+use super::problem::Problem;
+use super::redundancy::SegmentPlan;
+use super::settings::TransferSettings;
+use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
+
+/// A joint that moves by less than this stands still. rad
+const STANDSTILL: f64 = 1e-7;
+
+/// The times of a plan: the cut itself and the moves between segments.
+pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
+    let path = problem.task.path();
+    let cutting = (0..path.segments().len()).map(|s| path.segment_length(s)).sum::<f64>() / problem.redundancy.feed;
+    let transfers = plans
+        .windows(2)
+        .enumerate()
+        .filter_map(|(index, pair)| {
+            let (from, to) = (pair[0].joints.last()?, pair[1].joints.first()?);
+            let travel = from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            Some(Transfer { after_segment: index + 1, duration: duration(problem, settings, from, to), travel })
+        })
+        .collect();
+    Cycle { cutting, transfers }
+}
+
+/// Shortest time from rest at `from` to rest at `to` (joint angles in rad); `None` when a joint that has to move has no
+/// speed limit, or when no profile was found. s
+pub fn duration(problem: &Problem, settings: &TransferSettings, from: &[f64; 6], to: &[f64; 6]) -> Option<f64> {
+    let mut input = InputParameter::<6>::new(None);
+    let mut moves = false;
+    for (j, joint) in problem.robot.joints().iter().enumerate() {
+        let stands = (to[j] - from[j]).abs() < STANDSTILL;
+        input.enabled[j] = !stands;
+        if stands {
+            continue;
+        }
+        moves = true;
+        let speed = joint.max_speed?;
+        let acceleration = joint.max_acceleration.unwrap_or(speed / settings.acceleration_time);
+        input.current_position[j] = from[j];
+        input.target_position[j] = to[j];
+        input.max_velocity[j] = speed;
+        input.max_acceleration[j] = acceleration;
+        input.max_jerk[j] = joint.max_jerk.unwrap_or(acceleration / settings.jerk_time);
+    }
+    if !moves {
+        return Some(0.0);
+    }
+    let mut trajectory = Trajectory::<6>::new(None);
+    let mut generator = Ruckig::<6, ThrowErrorHandler>::new(None, 0.01);
+    generator.calculate(&input, &mut trajectory).ok()?;
+    let duration = trajectory.get_duration();
+    duration.is_finite().then_some(duration)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+    use stead_model::robot::{Joint, Robot};
+
+    fn with_speeds(speeds_deg: [f64; 6]) -> Problem {
+        let mut problem = five_segments();
+        let mut joints: [Joint; 6] = problem.robot.joints().clone();
+        for (joint, speed) in joints.iter_mut().zip(speeds_deg) {
+            joint.max_speed = Some(speed.to_radians());
+        }
+        problem.robot = Robot::new("fast", joints).unwrap();
+        problem
+    }
+
+    /// Textbook seven-phase profile of one joint, from rest to rest, where full speed is reached.
+    fn seven_phases(distance: f64, v: f64, a: f64, j: f64) -> f64 {
+        distance / v + v / a + a / j
+    }
+
+    #[test]
+    fn a_long_move_takes_the_textbook_time_of_the_slowest_joint() {
+        let problem = with_speeds([105.0, 101.0, 107.0, 136.0, 129.0, 206.0]);
+        let settings = TransferSettings::default();
+        let to = [2.0, 0.1, -0.2, 0.0, 0.3, 0.0];
+        let found = duration(&problem, &settings, &[0.0; 6], &to).unwrap();
+        let v = 105.0_f64.to_radians();
+        let expected = seven_phases(2.0, v, v / 0.4, v / 0.4 / 0.1);
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+
+    #[test]
+    fn standing_still_takes_no_time_and_an_unknown_speed_is_not_guessed() {
+        let problem = five_segments();
+        let settings = TransferSettings::default();
+        assert_eq!(duration(&problem, &settings, &[0.3; 6], &[0.3; 6]), Some(0.0));
+        assert_eq!(duration(&problem, &settings, &[0.3; 6], &[0.4; 6]), None);
+    }
+}

@@ -1,0 +1,163 @@
+//! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
+
+use super::super::json::{Timing, inputs};
+use super::super::number::Unit;
+use super::{AssessmentContext, elbow, load};
+use nalgebra::Vector3;
+use serde_json::{Map, Value, json};
+use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
+use stead_assessment::printed::Agreement;
+use stead_assessment::study::{Assessment, Configuration, ElbowNames, RobotResult, Spot, Study, Zones};
+
+/// What `stead assess --json` prints.
+pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing: &Timing) -> Value {
+    let mut document = common(assessment, context);
+    document.insert("threads".to_owned(), json!(timing.threads));
+    document.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
+    Value::Object(document)
+}
+
+/// The content of `summary.json`: byte for byte the same for the same inputs.
+pub fn summary_json(study: &Study, assessment: &Assessment, context: &AssessmentContext) -> Value {
+    let mut document = common(assessment, context);
+    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
+    document.insert("inputs".to_owned(), inputs(&context.inputs));
+    document.insert("benchmark".to_owned(), benchmark(study, context.range_share));
+    Value::Object(document)
+}
+
+fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {
+    let accuracies = assessment.accuracies.iter().map(|cell| {
+        json!({
+            "robot": cell.robot,
+            "force_n": Unit::FORCE_N.number(cell.force),
+            "circularity_mm": optional(cell.circularity),
+        })
+    });
+    let selection = assessment.capable.iter().map(|cell| {
+        json!({
+            "accuracy_mm": mm(cell.accuracy),
+            "force_n": Unit::FORCE_N.number(cell.force),
+            "robots": cell.robots,
+        })
+    });
+    let agreement = context.printed.as_ref().map(|(printed, agreement)| reference(&printed.source, agreement));
+    Map::from_iter([
+        ("robots".to_owned(), assessment.robots.iter().map(robot).collect()),
+        ("order".to_owned(), json!(assessment.order)),
+        ("accuracies".to_owned(), accuracies.collect()),
+        ("selection".to_owned(), selection.collect()),
+        ("reference".to_owned(), agreement.unwrap_or(Value::Null)),
+    ])
+}
+
+fn robot(robot: &RobotResult) -> Value {
+    let sheet = &robot.data_sheet;
+    json!({
+        "name": robot.name,
+        "payload_kg": sheet.payload,
+        "working_radius_mm": Unit::PLACE_MM.number(robot.working_radius),
+        "price_eur": sheet.price,
+        "configurations": robot.configurations.iter().map(configuration).collect::<Vec<_>>(),
+    })
+}
+
+fn configuration(configuration: &Configuration) -> Value {
+    let value = |spot: Option<Spot>| optional(spot.map(|spot| spot.circularity));
+    let place = |spot: Option<Spot>| spot.map_or(Value::Null, |spot| centre(spot.centre));
+    json!({
+        "elbow": elbow(configuration.elbow),
+        "load": load(configuration.load),
+        "force_n": Unit::FORCE_N.number(configuration.force),
+        "circles": configuration.circles,
+        "circles_too_soft": configuration.too_soft,
+        "min_mm": value(configuration.least),
+        "min_at": place(configuration.least),
+        "max_mm": value(configuration.most),
+        "max_at": place(configuration.most),
+        "middle_mm": value(configuration.middle),
+        "middle_at": place(configuration.middle),
+        "zones": configuration.zones.iter().map(zones).collect::<Vec<_>>(),
+    })
+}
+
+fn zones(zones: &Zones) -> Value {
+    json!({
+        "size_mm": Unit::PLACE_MM.number(zones.side),
+        "optimal_mm": optional(zones.optimal.map(|zone| zone.largest)),
+        "optimal_at": zones.optimal.map_or(Value::Null, |zone| centre(zone.centre)),
+        "middle_mm": optional(zones.middle.map(|zone| zone.largest)),
+        "middle_at": zones.middle.map_or(Value::Null, |zone| centre(zone.centre)),
+    })
+}
+
+/// A place in the coordinates of the plane.
+fn centre([x, y]: [f64; 2]) -> Value {
+    json!({ "x_mm": Unit::PLACE_MM.number(x), "y_mm": Unit::PLACE_MM.number(y) })
+}
+
+fn reference(source: &str, agreement: &Agreement) -> Value {
+    let (cells, same) = agreement.accuracies;
+    let (capable, same_capable) = agreement.capable;
+    json!({
+        "source": source,
+        "rms_percent": Unit::PLAIN.number(agreement.rms * 100.0),
+        "readings": agreement.readings,
+        "readings_on_one_side_only": agreement.one_sided,
+        "order": agreement.order,
+        "same_best": agreement.same_best,
+        "same_worst": agreement.same_worst,
+        "same_order": agreement.same_order,
+        "accuracy_cells": cells,
+        "accuracy_cells_that_round_alike": same,
+        "selection_cells": capable,
+        "selection_cells_with_the_same_robots": same_capable,
+    })
+}
+
+fn benchmark(study: &Study, range_share: Option<f64>) -> Value {
+    let Benchmark { plane, radius, points, wrench, turning, base_from_tool, yielding, limits_at, stiffness, .. } =
+        &study.benchmark;
+    let vector = |unit: Unit, v: &Vector3<f64>| [v.x, v.y, v.z].map(|part| unit.number(part));
+    let last = study.grid.at(study.grid.counts.map(|count| (count - 1) as f64));
+    let ends = |axis: usize| [study.grid.origin[axis], last[axis]].map(|end| Unit::PLACE_MM.number(end));
+    let joints: Vec<usize> = (1..=6).filter(|joint| yielding[joint - 1]).collect();
+    json!({
+        "plane": {
+            "origin_mm": vector(Unit::PLACE_MM, &plane.origin),
+            "x": vector(Unit::PLAIN, &plane.x),
+            "y": vector(Unit::PLAIN, &plane.y),
+        },
+        "radius_mm": Unit::PLACE_MM.number(*radius),
+        "points": points,
+        "force_n": vector(Unit::FORCE_N, &wrench.force),
+        "moment_nm": vector(Unit::MOMENT_NM, &wrench.moment),
+        "force_turns": match turning { Turning::WithTool => "with-tool", Turning::AgainstTool => "against-tool" },
+        "traced": if study.benchmark.flange_from_tool.is_some() { "tool" } else { "wrist-centre" },
+        "tool_axis": vector(Unit::PLAIN, &-base_from_tool.column(2).into_owned()),
+        "limits_at": match limits_at { LimitsAt::Circle => "circle", LimitsAt::Centre => "centre" },
+        "elbow_names": match study.elbow_names {
+            ElbowNames::Geometric => "geometric",
+            ElbowNames::Swapped => "swapped",
+        },
+        "joints": joints,
+        "range_share": range_share,
+        "loaded": *stiffness == StiffnessModel::Loaded,
+        "rated_share": study.rated_share,
+        "gravity_m_per_s2": study.selection.gravity,
+        "remaining_share": study.selection.remaining_share,
+        "map": {
+            "x_mm": ends(0),
+            "y_mm": ends(1),
+            "step_mm": Unit::PLACE_MM.number(study.grid.step),
+        },
+    })
+}
+
+fn mm(value: f64) -> f64 {
+    Unit::DEFLECTION_MM.number(value)
+}
+
+fn optional(value: Option<f64>) -> Value {
+    value.map_or(Value::Null, |value| json!(mm(value)))
+}

@@ -1,0 +1,101 @@
+//! What `stead assess` reports.
+
+mod json;
+mod tables;
+mod text;
+
+pub use json::{assess_json, summary_json};
+pub use text::assessment_text;
+
+use super::output::{Folder, ReportError};
+use super::{cutting, json as documents, picture};
+use std::path::PathBuf;
+use stead_assessment::map::Elbow;
+use stead_assessment::printed::{Agreement, Printed};
+use stead_assessment::study::{Assessment, Load, Study};
+use stead_format::input::InputFile;
+use stead_model::cutting::Course;
+
+/// What the reports of an assessment state besides the study and its result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssessmentContext {
+    /// The files the result depends on.
+    pub inputs: Vec<InputFile>,
+    /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
+    pub range_share: Option<f64>,
+    /// Published tables to set beside ours, and how far both agree.
+    pub printed: Option<(Printed, Agreement)>,
+    /// The cutting forces behind the load, where they were computed.
+    pub course: Option<Course>,
+}
+
+/// Writes everything that an assessment reports into a folder: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
+/// `circularity.csv`, `optimal-zones.csv`, `middle-zones.csv`, `accuracy.csv`, `selection.csv` (Klimchik 2017, Tables 5 to
+/// 9), `indicators.svg` and `summary.json`; and, where forces were computed, `cutting.svg`, `cutting-engagement.csv` and
+/// `cutting-turn.csv`. Returns the paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_assessment(
+    folder: &Folder,
+    study: &Study,
+    assessment: &Assessment,
+    context: &AssessmentContext,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    for (index, robot) in assessment.robots.iter().enumerate() {
+        let name = format!("map-{}", file_name(assessment, index));
+        files.push((format!("{name}.csv"), tables::map(robot)?));
+        files.push((format!("{name}.svg"), picture::circularity_map(study, robot)?.into_bytes()));
+    }
+    let printed = context.printed.as_ref().map(|(printed, _)| printed);
+    let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
+    add("circularity.csv", tables::circularity(assessment, printed)?);
+    add("optimal-zones.csv", tables::optimal_zones(assessment, printed)?);
+    add("middle-zones.csv", tables::middle_zones(assessment, printed)?);
+    add("accuracy.csv", tables::accuracy(assessment, printed)?);
+    add("selection.csv", tables::selection(assessment, printed)?);
+    add("indicators.svg", picture::indicators(assessment)?.into_bytes());
+    add("summary.json", documents::bytes(&summary_json(study, assessment, context)));
+    if let Some(course) = &context.course {
+        add("cutting.svg", picture::cutting(course)?.into_bytes());
+        add("cutting-engagement.csv", cutting::entering(course)?);
+        add("cutting-turn.csv", cutting::turn(course)?);
+    }
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
+/// Longest piece of a robot's name in a file name.
+const LONGEST_NAME: usize = 80;
+
+/// The name of a robot as part of a file name: small letters, digits and hyphens, and its number where an earlier robot has
+/// the same.
+fn file_name(assessment: &Assessment, index: usize) -> String {
+    let plain = |index: usize| {
+        let name = assessment.robots[index].name.to_lowercase();
+        let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        words.collect::<Vec<_>>().join("-").chars().take(LONGEST_NAME).collect::<String>()
+    };
+    let name = plain(index);
+    let taken = name.is_empty() || (0..index).any(|earlier| plain(earlier) == name);
+    if taken { format!("{name}-{}", index + 1).trim_start_matches('-').to_owned() } else { name }
+}
+
+/// `up` or `down`.
+fn elbow(elbow: Elbow) -> &'static str {
+    match elbow {
+        Elbow::Up => "up",
+        Elbow::Down => "down",
+    }
+}
+
+/// `test` or `rated`.
+fn load(load: Load) -> &'static str {
+    match load {
+        Load::Test => "test",
+        Load::Rated => "rated",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,110 @@
+//! The short tables for people.
+
+use super::super::number::{figures, fixed};
+use super::super::text::aligned;
+use super::{AssessmentContext, elbow, load};
+use stead_assessment::benchmark::MOST_DEFLECTION;
+use stead_assessment::printed::{Printed, Quantity};
+use stead_assessment::study::{Assessment, Configuration, RobotResult, obstacle_words};
+
+/// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published values
+/// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
+/// tables agree.
+pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
+    let printed = context.printed.as_ref().map(|(printed, _)| printed);
+    let mut text = aligned(&configuration_rows(assessment, printed), &[0, 1, 2]);
+    for robot in assessment.robots.iter().filter(|robot| robot.maps.iter().any(|(_, map)| map.count() == 0)) {
+        for (name, map) in robot.maps.iter().filter(|(_, map)| map.count() == 0) {
+            let why = obstacle_words(&map.obstacles(), map.nodes.len());
+            text += &format!("{}, elbow {}: the circle fits nowhere ({why})\n", robot.name, elbow(*name));
+        }
+    }
+    let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
+    for (robot, configuration) in every.filter(|(_, configuration)| configuration.too_soft > 0) {
+        text += &format!(
+            "{}, elbow {}, {} load: {} circles left out, deflected by more than {MOST_DEFLECTION} of the radius\n",
+            robot.name,
+            elbow(configuration.elbow),
+            load(configuration.load),
+            configuration.too_soft
+        );
+    }
+    if !assessment.capable.is_empty() {
+        let mut forces: Vec<f64> = assessment.capable.iter().map(|cell| cell.force).collect();
+        forces.sort_by(f64::total_cmp);
+        forces.dedup();
+        let forces: Vec<String> = forces.into_iter().map(|force| fixed(force, 0)).collect();
+        text += &format!("\naccuracy reached at the best place up to which of {} N:\n", forces.join(", "));
+        text += &aligned(&selection_rows(assessment), &[0]);
+    }
+    text += &format!("\nmost accurate first: {}\n", assessment.order.join(", "));
+    if let Some((printed, agreement)) = &context.printed {
+        let same = |same: bool| if same { "the same" } else { "another" };
+        text += &format!(
+            "in parentheses: {}\nrms difference {} % over {} values, {} more on one side only\n\
+             best robot {}, worst {}, order {}; robots for accuracy and force the same in {} of {} cells\n",
+            printed.source,
+            fixed(agreement.rms * 100.0, 1),
+            agreement.readings,
+            agreement.one_sided,
+            same(agreement.same_best),
+            same(agreement.same_worst),
+            same(agreement.same_order),
+            agreement.capable.1,
+            agreement.capable.0,
+        );
+    }
+    text
+}
+
+fn configuration_rows(assessment: &Assessment, printed: Option<&Printed>) -> Vec<Vec<String>> {
+    let mut header = ["robot", "elbow", "load", "force N", "min mm", "max mm", "middle mm"].map(str::to_owned).to_vec();
+    let first = assessment.robots.first().and_then(|robot| robot.configurations.first());
+    let sides: Vec<f64> = first.map_or(vec![], |configuration| configuration.zones.iter().map(|z| z.side).collect());
+    header.extend(sides.iter().map(|side| format!("in {0}x{0}", fixed(side * 1e3, 0))));
+    let mut rows = vec![header];
+    let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
+    for (robot, configuration) in every {
+        let mut row =
+            vec![robot.name.clone(), elbow(configuration.elbow).to_owned(), load(configuration.load).to_owned()];
+        row.push(fixed(configuration.force, 0));
+        let zones = sides.iter().map(|side| Quantity::OptimalZone(*side));
+        let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().chain(zones);
+        row.extend(quantities.map(|quantity| cell(robot, configuration, quantity, printed)));
+        rows.push(row);
+    }
+    rows
+}
+
+/// Our value, and the published one in parentheses.
+fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, printed: Option<&Printed>) -> String {
+    let number =
+        |value: Option<f64>, write: fn(f64) -> String| value.map_or_else(|| "-".to_owned(), |v| write(v * 1e3));
+    let ours = number(quantity.of(of), figures);
+    match printed.and_then(|printed| printed.value(&robot.name, of.elbow, of.load, quantity)) {
+        Some(value) => format!("{ours} ({})", number(value, |mm| fixed(mm, 2))),
+        None => ours,
+    }
+}
+
+/// Robots by accuracies: the largest of the forces at which a robot reaches the accuracy. A robot that does at one force does
+/// at any smaller one.
+fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
+    let mut accuracies: Vec<f64> = Vec::new();
+    for cell in &assessment.capable {
+        if accuracies.last() != Some(&cell.accuracy) {
+            accuracies.push(cell.accuracy);
+        }
+    }
+    let millimetres = |accuracy: &f64| format!("{} mm", (accuracy * 1e9).round() / 1e6);
+    let mut rows = vec![std::iter::once("robot".to_owned()).chain(accuracies.iter().map(millimetres)).collect()];
+    for robot in &assessment.robots {
+        let largest = |accuracy: &f64| {
+            let cells = assessment.capable.iter().filter(|cell| cell.accuracy == *accuracy);
+            let able = cells.filter(|cell| cell.robots.contains(&robot.name)).map(|cell| cell.force);
+            able.reduce(f64::max).map_or_else(|| "-".to_owned(), |force| format!("{} N", fixed(force, 0)))
+        };
+        rows.push(std::iter::once(robot.name.clone()).chain(accuracies.iter().map(largest)).collect());
+    }
+    rows
+}

@@ -1,0 +1,90 @@
+//! The certificate in sentences.
+
+use super::{Certificate, Ended, Proof};
+use crate::number::{Unit, figures, fixed};
+use stead_placement::outcome::Goal;
+
+/// Widest line.
+const WIDTH: usize = 110;
+
+/// What is known of both placements, what that assumes, and what is not known and why. Lines are at most 110 characters wide
+/// and end with a line break.
+pub fn certificate_text(certificate: &Certificate) -> String {
+    let mut text = String::new();
+    for (side, name) in [(&certificate.best, "best"), (&certificate.worst, "worst")] {
+        let paragraph = match side {
+            Ok(proof) => stated(proof),
+            Err(reason) => format!("No certificate for the {name} placement: {reason}."),
+        };
+        wrapped(&mut text, &paragraph);
+    }
+    text
+}
+
+fn stated(proof: &Proof) -> String {
+    let bound = fixed(proof.bound_mm(), Unit::DEFLECTION_MM.decimals);
+    let value = Unit::DEFLECTION_MM.text(proof.bound.value);
+    let gap = percent(proof);
+    if !proof.is_of_use() {
+        let name = match proof.goal {
+            Goal::Best => "best",
+            Goal::Worst => "worst",
+        };
+        return format!("Certificate, {name} placement: it ended before there was any bound of use; nothing is known.");
+    }
+    let claim = match proof.goal {
+        Goal::Best => format!(
+            "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
+             normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
+        ),
+        Goal::Worst => format!(
+            "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has under its \
+             best redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
+             {gap} %. With these limits kept this is no bound: worse ones are possible then."
+        ),
+    };
+    format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed.join("; "))
+}
+
+/// The gap in per cent as sentences have it.
+fn percent(proof: &Proof) -> String {
+    let text = fixed(proof.gap_percent(), 4);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Why a proof falls short of what was asked for, where it does.
+pub fn ending(certificate: &Certificate, proof: &Proof) -> Option<String> {
+    let asked = figures(certificate.settings.gap * 100.0);
+    let why = match proof.end {
+        Ended::Reached => return None,
+        Ended::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
+        Ended::Interrupted => "interrupted".to_owned(),
+        Ended::TimeLimit => {
+            let limit = certificate.settings.time_limit.map(figures).unwrap_or_default();
+            format!("the time limit of {limit} s is over")
+        }
+    };
+    let open = proof.bound.open.len();
+    let gap = if proof.is_of_use() { format!("a gap of {} %", percent(proof)) } else { "no gap".to_owned() };
+    let boxes = if open == 1 { "box is" } else { "boxes are" };
+    Some(format!("{why}: {gap} is reached, {asked} % was asked for; {open} {boxes} open"))
+}
+
+/// A paragraph in lines.
+fn wrapped(text: &mut String, paragraph: &str) {
+    let mut width = 0;
+    for word in paragraph.split(' ') {
+        let length = word.chars().count();
+        if width > 0 && width + 1 + length > WIDTH {
+            text.push('\n');
+            width = 0;
+        }
+        if width > 0 {
+            text.push(' ');
+            width += 1;
+        }
+        text.push_str(word);
+        width += length;
+    }
+    text.push('\n');
+}

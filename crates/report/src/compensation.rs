@@ -1,0 +1,190 @@
+//! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, and a table for people.
+
+use super::json;
+use super::number::{Unit, fixed};
+use super::output::{Folder, ReportError};
+use super::picture;
+use super::tables::{table, vector};
+use super::text::aligned;
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use stead_calibration::compensation::{Compensated, Figures, Model, NotCompensated, Outcome, reduction};
+use stead_format::CompensateRun;
+
+/// Places and deflections, from m to mm, to a tenth of the finest tolerance that is of use.
+const PLACE_MM: Unit = Unit { factor: 1e3, decimals: 7 };
+/// Joint angles and rotations, from rad to deg: so fine that 3 m away they move nothing by 1e-7 mm.
+const ANGLE_DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 9 };
+/// Components of a direction.
+const DIRECTION: Unit = Unit { factor: 1.0, decimals: 9 };
+/// Shares in per cent.
+const PER_CENT: Unit = Unit { factor: 100.0, decimals: 6 };
+
+/// Writes `corrected-path.csv`, `summary.json` and `compensation.svg`. Returns their paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_compensation(
+    folder: &Folder,
+    run: &CompensateRun,
+    outcome: &Outcome,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let files = [
+        ("corrected-path.csv", corrected_path(outcome)?),
+        ("summary.json", json::bytes(&compensation_json(run, outcome))),
+        ("compensation.svg", picture::compensation(outcome)?.into_bytes()),
+    ];
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
+const CORRECTED_PATH: [&str; 29] = [
+    "point",
+    "segment",
+    "target_x_mm",
+    "target_y_mm",
+    "target_z_mm",
+    "corrected_x_mm",
+    "corrected_y_mm",
+    "corrected_z_mm",
+    "axis_x",
+    "axis_y",
+    "axis_z",
+    "rotation_x_deg",
+    "rotation_y_deg",
+    "rotation_z_deg",
+    "theta1_deg",
+    "theta2_deg",
+    "theta3_deg",
+    "theta4_deg",
+    "theta5_deg",
+    "theta6_deg",
+    "before_x_mm",
+    "before_y_mm",
+    "before_z_mm",
+    "before_normal_mm",
+    "after_x_mm",
+    "after_y_mm",
+    "after_z_mm",
+    "after_normal_mm",
+    "iterations",
+];
+
+/// `corrected-path.csv`: one row for each path point. Places are those of the tool centre point, and all vectors are in the
+/// robot base frame: the target, the corrected command with its tool axis (from the workpiece to the robot) and the rotation
+/// vector from the target's orientation to the command's, the corrected joint angles, and the deflection before and after
+/// with its part normal to the feed.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn corrected_path(outcome: &Outcome) -> Result<Vec<u8>, ReportError> {
+    table("the table of the corrected path", &CORRECTED_PATH, outcome.points.iter().enumerate().map(row))
+}
+
+fn row((index, point): (usize, &Compensated)) -> Vec<String> {
+    // The tool's z axis points out of the spindle.
+    let axis: Vector3<f64> = -point.command.rotation.column(2);
+    let mut row = vec![index.to_string(), point.segment.to_string()];
+    row.extend(vector(PLACE_MM, &point.target.translation));
+    row.extend(vector(PLACE_MM, &point.command.translation));
+    row.extend(vector(DIRECTION, &axis));
+    row.extend(vector(ANGLE_DEG, &point.correction.angular));
+    row.extend(point.joints.map(|angle| ANGLE_DEG.text(angle)));
+    for deflection in [&point.before, &point.after] {
+        row.extend(vector(PLACE_MM, &deflection.linear));
+        row.push(PLACE_MM.text(deflection.normal));
+    }
+    row.push(point.iterations.to_string());
+    row
+}
+
+/// What `stead compensate --json` prints, and the content of `summary.json`.
+pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
+    let settings = &run.job.settings;
+    let placement = &run.placement;
+    let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "inputs": json::inputs(&run.inputs),
+        "robot": run.job.robot.name(),
+        "reality": run.has_reality.then(|| run.job.reality.name()),
+        "model": model(settings.model),
+        "alpha": settings.alpha,
+        "tolerance_mm": settings.tolerance * 1e3,
+        "max_iterations": settings.most_iterations,
+        "placement": {
+            "x_mm": Unit::PLACE_MM.number(placement.x),
+            "y_mm": Unit::PLACE_MM.number(placement.y),
+            "z_mm": Unit::PLACE_MM.number(placement.z),
+            "q4": Unit::PLAIN.number(placement.q4()),
+            "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
+        },
+        "points": outcome.points.len(),
+        "iterations": outcome.iterations(),
+        "before": figures(&deflections[0]),
+        "after": figures(&deflections[1]),
+        "reduction_percent": percent(deflections),
+        "normal": {
+            "before": figures(&normal[0]),
+            "after": figures(&normal[1]),
+            "reduction_percent": percent(normal),
+        },
+        "correction": {
+            "max_mm": PLACE_MM.number(outcome.figures(|point| point.correction.linear.norm()).max),
+            "max_deg": ANGLE_DEG.number(outcome.figures(|point| point.correction.angular.norm()).max),
+        },
+    })
+}
+
+/// What `stead compensate --json` prints where points cannot be compensated.
+pub fn not_compensated_json(failure: &NotCompensated) -> Value {
+    let failed: Vec<Value> =
+        failure.failed.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect();
+    json!({ "points": failure.of, "failed": failed })
+}
+
+fn figures(figures: &Figures) -> Value {
+    json!({ "mean_mm": PLACE_MM.number(figures.mean), "max_mm": PLACE_MM.number(figures.max) })
+}
+
+fn percent(pair: [Figures; 2]) -> Value {
+    reduction(pair).map_or(Value::Null, |share| json!(PER_CENT.number(share)))
+}
+
+fn model(model: Model) -> &'static str {
+    match model {
+        Model::Equilibrium => "equilibrium",
+        Model::Linear => "linear",
+    }
+}
+
+/// The table for people.
+pub fn compensation_text(run: &CompensateRun, outcome: &Outcome) -> String {
+    let model = match run.job.settings.model {
+        Model::Equilibrium => "the static equilibrium",
+        Model::Linear => "the linear displacement",
+    };
+    let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
+    let played = if run.has_reality {
+        format!("played on {} ({})", run.job.reality.name(), run.inputs.last().map_or("", |input| &input.name))
+    } else {
+        "played on the same arm".to_owned()
+    };
+    text.push_str(&format!("{played}\n\n"));
+    let header = ["", "before: mean mm", "max mm", "after: mean mm", "max mm", "reduction %"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (name, pair) in [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())] {
+        let mut row = vec![name.to_owned()];
+        row.extend(pair.iter().flat_map(|figures| [figures.mean, figures.max]).map(|value| fixed(value * 1e3, 7)));
+        row.push(reduction(pair).map_or_else(|| "-".to_owned(), |share| fixed(share * 100.0, 3)));
+        rows.push(row);
+    }
+    text.push_str(&aligned(&rows, &[0]));
+    text.push_str(&format!(
+        "\nlargest correction {} mm and {} deg, in at most {} iterations\n",
+        fixed(outcome.figures(|point| point.correction.linear.norm()).max * 1e3, 4),
+        fixed(outcome.figures(|point| point.correction.angular.norm()).max.to_degrees(), 4),
+        outcome.iterations()
+    ));
+    text
+}

@@ -1,0 +1,64 @@
+//! Reports of `stead identify fit`, and in [`plan`] those of `stead identify plan`: the robot file, the report for programs, tables, the picture, the table for people.
+
+mod json;
+pub mod plan;
+mod robot_file;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use json::identify_json;
+pub use robot_file::robot_file;
+pub use text::identify_text;
+
+use super::json as documents;
+use super::output::{Folder, ReportError};
+use super::picture;
+use std::path::PathBuf;
+use stead_calibration::identification::Identified;
+use stead_calibration::identification::law::{ArmParameter, Quantity};
+use stead_format::IdentifyRun;
+
+/// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv` and `deflections.svg` into a folder and
+/// returns their paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_identified(folder: &Folder, run: &IdentifyRun, found: &Identified) -> Result<Vec<PathBuf>, ReportError> {
+    let files = [
+        ("robot-identified.toml", robot_file(&run.robot_text, found)?.into_bytes()),
+        ("report.json", documents::bytes(&identify_json(run, found))),
+        ("compliances.csv", tables::compliances(found)?),
+        ("residuals.csv", tables::residuals(run, found)?),
+        ("deflections.svg", picture::deflections(found)?.into_bytes()),
+    ];
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
+/// The key of a robot file for a number of the arm, and what a number in SI is multiplied by to stand there.
+fn key(parameter: &ArmParameter) -> (String, f64) {
+    let number = parameter.joint + 1;
+    match parameter.quantity {
+        Quantity::Compliance => (format!("joints[{number}].compliance_urad_per_nm"), 1e6),
+        Quantity::SpringStiffness => (format!("joints[{number}].compensator.spring_stiffness_n_per_mm"), 1e-3),
+        Quantity::FreeLength => (format!("joints[{number}].compensator.free_length_mm"), 1e3),
+    }
+}
+
+/// Its unit there.
+fn unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Compliance => "urad/(N m)",
+        Quantity::SpringStiffness => "N/mm",
+        Quantity::FreeLength => "mm",
+    }
+}
+
+/// Compliances, from rad/(N m) to urad/(N m).
+const URAD: f64 = 1e6;
+
+/// A number with so many significant digits, as a number.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}

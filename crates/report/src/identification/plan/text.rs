@@ -1,0 +1,104 @@
+//! The table for people.
+
+use super::super::super::number::{figures, fixed};
+use super::super::super::text::aligned;
+use super::super::{URAD, key};
+use super::{left_out, warnings};
+use stead_calibration::identification::plan::{Plan, Tests};
+use stead_format::PlanRun;
+
+/// Expected errors of the compliances beside those of random sets, the expected error of the deflection, where the candidates
+/// come from, and what the plan does not show.
+pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
+    let request = &run.request;
+    let mut text = format!(
+        "{}: {} configurations chosen of {}, {} reference points, {} N, {} mm of noise\n\n",
+        request.robot.name(),
+        plan.shots.len(),
+        plan.candidates,
+        request.points.len(),
+        figures(request.load),
+        request.noise * 1e3
+    );
+    text += &aligned(&bar_rows(plan), &[0]);
+    if !plan.spring.is_empty() {
+        text += "\n";
+        text += &aligned(&spring_rows(plan), &[0]);
+    }
+    let scores = &plan.scores;
+    let millimetres = |value: f64| {
+        if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "does not tell everything".to_owned() }
+    };
+    let tests = match &request.tests {
+        Tests::Given(tests) => format!("the {} tests", tests.len()),
+        Tests::Drawn(_) => {
+            format!("{} random poses under {} N in any direction", plan.tests.len(), figures(request.load))
+        }
+    };
+    text += &format!(
+        "\nexpected error of the deflection at {tests}: {} rms, of {} rms\nbest of {} random sets: {}; their median: {}",
+        millimetres(scores.planned),
+        millimetres(plan.deflection),
+        scores.random_sets,
+        millimetres(scores.best_random),
+        millimetres(scores.median_random)
+    );
+    if scores.blind_sets > 0 {
+        text += &format!("; sets that do not tell everything: {}", scores.blind_sets);
+    }
+    if !plan.blind.is_empty() {
+        text += "\nall errors are without that of the compliances that are not seen (see below)";
+    }
+    let refused = &plan.refused;
+    text += &format!(
+        "\nof {} configurations drawn {} would leave the volume, {} come too near to the base, {} deflect by more than {} mm\n",
+        plan.draws,
+        refused.volume,
+        refused.radius,
+        refused.deflection,
+        figures(request.max_deflection * 1e3)
+    );
+    text += &format!(
+        "the way through them, in turns of the joint that turns furthest: {} deg\n",
+        fixed(plan.travel.to_degrees(), 0)
+    );
+    if let Some(note) = left_out(plan) {
+        text += &format!("note: {note}\n");
+    }
+    for warning in warnings(run, plan) {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+fn bar_rows(plan: &Plan) -> Vec<Vec<String>> {
+    let has_law = plan.bars.iter().any(|bar| bar.angle.is_some());
+    let mut header = vec!["joint", "at deg", "urad/(N m)", "std", "%"];
+    header.extend(has_law.then_some("% by law"));
+    header.extend(["% best random", "% median random"]);
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    for bar in &plan.bars {
+        let percent = |deviation: Option<f64>| {
+            deviation.map_or_else(|| "-".to_owned(), |deviation| fixed(100.0 * deviation / bar.value, 2))
+        };
+        let angle = bar.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
+        let deviation = bar.deviation.map_or_else(|| "-".to_owned(), |deviation| figures(deviation * URAD));
+        let mut row =
+            vec![(bar.joint + 1).to_string(), angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
+        row.extend(has_law.then(|| percent(Some(bar.by_law))));
+        row.extend([percent(bar.best_random), percent(bar.median_random)]);
+        rows.push(row);
+    }
+    rows
+}
+
+fn spring_rows(plan: &Plan) -> Vec<Vec<String>> {
+    let header = ["in the robot file", "value", "std", "%"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for bar in &plan.spring {
+        let (name, factor) = key(&bar.parameter);
+        let percent = fixed(100.0 * (bar.deviation / bar.value).abs(), 2);
+        rows.push(vec![name, figures(bar.value * factor), figures(bar.deviation * factor), percent]);
+    }
+    rows
+}

@@ -1,0 +1,176 @@
+//! Axes: scales from numbers to pixels, ticks at round numbers, and a frame with labels.
+
+use super::canvas::{Canvas, Drawn, Lettering, Place};
+use super::colour::{GRID, INK};
+use crate::number::fixed;
+
+/// A linear scale from numbers to pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Scale {
+    /// Number at the first pixel.
+    pub from: f64,
+    /// Number at the last pixel.
+    pub to: f64,
+    /// First pixel.
+    pub start: i32,
+    /// Last pixel.
+    pub end: i32,
+}
+
+impl Scale {
+    /// A scale; a range without width is widened a little.
+    pub fn new(from: f64, to: f64, start: i32, end: i32) -> Self {
+        if to > from { Self { from, to, start, end } } else { Self { from: from - 0.5, to: from + 0.5, start, end } }
+    }
+
+    /// The pixel of a number.
+    pub fn pixel(&self, value: f64) -> i32 {
+        self.place(value).round() as i32
+    }
+
+    /// The place of a number between the pixels.
+    pub fn place(&self, value: f64) -> f64 {
+        let part = (value - self.from) / (self.to - self.from);
+        f64::from(self.start) + part * f64::from(self.end - self.start)
+    }
+
+    /// The number at a place.
+    pub fn number(&self, place: f64) -> f64 {
+        let part = (place - f64::from(self.start)) / f64::from(self.end - self.start);
+        self.from + part * (self.to - self.from)
+    }
+
+    /// The pixel of a number, the nearest end for a number beyond the scale.
+    pub fn clamped(&self, value: f64) -> i32 {
+        self.pixel(value.max(self.from).min(self.to))
+    }
+}
+
+/// Numbers at which an axis has ticks, and how many decimals their labels need.
+pub(super) struct Ticks {
+    /// The numbers, ascending.
+    pub values: Vec<f64>,
+    /// Decimals of the labels.
+    pub decimals: usize,
+    /// Whether the labels are powers of ten with the numbers as exponents.
+    pub of_ten: bool,
+}
+
+impl Ticks {
+    /// No ticks at all.
+    pub fn none() -> Self {
+        Self { values: vec![], decimals: 0, of_ten: false }
+    }
+
+    /// Multiples of 1, 2 or 5 times a power of ten, at most `most` of them.
+    pub fn round(scale: &Scale, most: usize) -> Self {
+        let room = (scale.to - scale.from) / most.max(1) as f64;
+        for exponent in -9..=9_i32 {
+            for digit in [1.0, 2.0, 5.0] {
+                let step = digit * libm::pow(10.0, f64::from(exponent));
+                if step >= room {
+                    return Self::every(scale, step, (-exponent).max(0) as usize);
+                }
+            }
+        }
+        Self { values: vec![scale.from, scale.to], decimals: 0, of_ten: false }
+    }
+
+    /// Multiples of a step.
+    pub fn every(scale: &Scale, step: f64, decimals: usize) -> Self {
+        let (first, last) = ((scale.from / step - 1e-9).ceil() as i64, (scale.to / step + 1e-9).floor() as i64);
+        Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals, of_ten: false }
+    }
+
+    /// Whole exponents on a scale of common logarithms.
+    pub fn decades(scale: &Scale) -> Self {
+        Self { of_ten: true, ..Self::every(scale, 1.0, 0) }
+    }
+
+    /// The label of a tick.
+    pub fn label(&self, value: f64) -> String {
+        if self.of_ten {
+            let decimals = (-value).max(0.0).round() as usize;
+            return fixed(libm::pow(10.0, value), decimals);
+        }
+        fixed(value, self.decimals)
+    }
+}
+
+/// Two axes and what stands at them.
+pub(super) struct Panel {
+    /// Horizontal scale.
+    pub x: Scale,
+    /// Vertical scale; its first pixel is at the bottom.
+    pub y: Scale,
+    /// Ticks of the horizontal axis.
+    pub x_ticks: Ticks,
+    /// Ticks of the vertical axis.
+    pub y_ticks: Ticks,
+    /// Label of the horizontal axis, with its unit.
+    pub x_label: &'static str,
+    /// Label of the vertical axis, with its unit.
+    pub y_label: &'static str,
+}
+
+impl Panel {
+    /// The place of a point.
+    pub fn place(&self, x: f64, y: f64) -> Place {
+        (self.x.place(x), self.y.place(y))
+    }
+
+    /// Thin lines at the ticks, to be drawn before the content.
+    pub fn draw_grid(&self, canvas: &Canvas<'_>) -> Drawn {
+        for value in &self.x_ticks.values {
+            let x = self.x.pixel(*value);
+            canvas.line(vec![(x, self.y.start), (x, self.y.end)], GRID, 1)?;
+        }
+        for value in &self.y_ticks.values {
+            let y = self.y.pixel(*value);
+            canvas.line(vec![(self.x.start, y), (self.x.end, y)], GRID, 1)?;
+        }
+        Ok(())
+    }
+
+    /// Frame, ticks and labels, to be drawn after the content.
+    pub fn draw_frame(&self, canvas: &Canvas<'_>) -> Drawn {
+        let (left, right, bottom, top) = (self.x.start, self.x.end, self.y.start, self.y.end);
+        canvas.outline((left, top), (right, bottom), INK)?;
+        let lettering = Lettering::new(12.0).coloured(INK);
+        for value in &self.x_ticks.values {
+            let x = self.x.pixel(*value);
+            canvas.line(vec![(x, bottom), (x, bottom + 5)], INK, 1)?;
+            canvas.text(&self.x_ticks.label(*value), (x, bottom + 14), lettering.centred())?;
+        }
+        let mut widest = 0;
+        for value in &self.y_ticks.values {
+            let y = self.y.pixel(*value);
+            let label = self.y_ticks.label(*value);
+            widest = widest.max(lettering.width(&label));
+            canvas.line(vec![(left - 5, y), (left, y)], INK, 1)?;
+            canvas.text(&label, (left - 8, y), lettering.ending())?;
+        }
+        let lettering = Lettering::new(13.0).centred();
+        canvas.text(self.x_label, ((left + right) / 2, bottom + 34), lettering)?;
+        canvas.text(self.y_label, (left - 8 - widest - 14, (top + bottom) / 2), lettering.upwards())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_numbers_inside_the_scale() {
+        let ticks = Ticks::round(&Scale::new(0.0, 0.62, 0, 100), 8);
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6"]);
+        let ticks = Ticks::round(&Scale::new(-2700.0, 300.0, 0, 100), 7);
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["-2500", "-2000", "-1500", "-1000", "-500", "0"]);
+        assert!(Ticks::round(&Scale::new(3.0, 3.0, 0, 10), 5).values.contains(&3.0));
+        let ticks = Ticks::decades(&Scale::new(-2.3, 1.7, 0, 100));
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["0.01", "0.1", "1", "10"]);
+    }
+}

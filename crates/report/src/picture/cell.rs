@@ -1,0 +1,153 @@
+//! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
+
+use super::axes::{Panel, Scale, Ticks};
+use super::canvas::{Canvas, Drawn, Lettering, Pixel, exact, picture};
+use super::colour::{BLUE, GREEN, GREY, INK, PALE, RED};
+use super::scene::{Scene, is_upright, middles, top_view, wrist_centre};
+use crate::number::fixed;
+use crate::output::ReportError;
+use nalgebra::Vector3;
+use plotters::style::RGBColor;
+use stead_placement::outcome::{Case, Outcome};
+use stead_placement::problem::Problem;
+
+const SIZE: Pixel = (1110, 1180);
+/// Left edges of the two columns of panels.
+const COLUMNS: [i32; 2] = [85, 635];
+/// Upper edges of the two rows of panels.
+const ROWS: [i32; 2] = [85, 660];
+/// Width and height of a panel.
+const SIDE: i32 = 455;
+/// Half the side of the square shown around the origin of the base frame. mm
+const BASE: f64 = 300.0;
+
+/// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
+/// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
+///
+/// # Errors
+/// [`ReportError::Format`] when the drawing fails.
+pub fn cell(problem: &Problem, outcome: &Outcome) -> Result<String, ReportError> {
+    let [best, _, worst, _] = &outcome.cases;
+    picture("the picture of the cell", SIZE, |canvas| {
+        canvas.text("The cell from above, in the robot base frame", (COLUMNS[0], 24), Lettering::new(17.0).bold())?;
+        let near = Region::near(problem, [best, worst]);
+        overview(canvas, problem, [best, worst], &near)?;
+        legend(canvas, problem)?;
+        placement(canvas, problem, best, GREEN, near.panel(COLUMNS[0], ROWS[1]))?;
+        placement(canvas, problem, worst, RED, near.panel(COLUMNS[1], ROWS[1]))
+    })
+}
+
+/// The robot, its reach, the cell, and where the other panels are.
+fn overview(canvas: &Canvas<'_>, problem: &Problem, [best, worst]: [&Case; 2], near: &Region) -> Drawn {
+    let region = Region::whole(problem, near);
+    let scene = Scene { problem, panel: region.panel(COLUMNS[0], ROWS[0]) };
+    canvas.text("Robot and cell", (COLUMNS[0], ROWS[0] - 18), Lettering::new(13.0).bold().coloured(INK))?;
+    scene.panel.draw_grid(canvas)?;
+    scene.reach(canvas)?;
+    let corner = |[x, y]: [f64; 2]| (scene.panel.x.pixel(x), scene.panel.y.pixel(y));
+    canvas.outline(corner(near.from), corner(near.to), PALE)?;
+    scene.limits(canvas)?;
+    scene.base(canvas)?;
+    for (case, colour) in [(worst, RED), (best, GREEN)] {
+        scene.path(canvas, case, colour)?;
+        scene.origin(canvas, case)?;
+    }
+    scene.panel.draw_frame(canvas)
+}
+
+/// One placement with its surroundings.
+fn placement(canvas: &Canvas<'_>, problem: &Problem, case: &Case, colour: RGBColor, panel: Panel) -> Drawn {
+    let kind = if case.number <= 2 { "Best" } else { "Worst" };
+    let title = format!("{kind} placement: mean {} mm", fixed(case.plan.mean * 1e3, 4));
+    let (left, top) = (panel.x.start, panel.y.end);
+    canvas.text(&title, (left, top - 38), Lettering::new(13.0).bold().coloured(colour))?;
+    let place = &case.placement;
+    let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
+    let words = format!("x = {x} mm, y = {y} mm, z = {z} mm, yaw = {} deg", fixed(place.yaw.to_degrees(), 1));
+    canvas.text(&words, (left, top - 18), Lettering::new(12.0).coloured(INK))?;
+    let scene = Scene { problem, panel };
+    scene.panel.draw_grid(canvas)?;
+    scene.limits(canvas)?;
+    scene.wrists(canvas, case)?;
+    scene.path(canvas, case, colour)?;
+    scene.workpiece(canvas, case)?;
+    scene.numbers(canvas, case, colour)?;
+    scene.panel.draw_frame(canvas)
+}
+
+fn legend(canvas: &Canvas<'_>, problem: &Problem) -> Drawn {
+    let (left, right, mut y) = (COLUMNS[1], COLUMNS[1] + 34, ROWS[0] + 12);
+    let mut entry = |label: &str, sign: &dyn Fn(i32) -> Drawn| {
+        sign(y)?;
+        canvas.text(label, (right + 12, y), Lettering::new(12.0))?;
+        y += 28;
+        Ok(())
+    };
+    entry("tool path at the best placement", &|y| canvas.line(vec![(left, y), (right, y)], GREEN, 3))?;
+    entry("tool path at the worst placement", &|y| canvas.line(vec![(left, y), (right, y)], RED, 3))?;
+    entry("workpiece origin; below with the axes x and y", &|y| canvas.dot(exact((left + 17, y)), 4, INK))?;
+    entry("where the workpiece origin may stand", &|y| canvas.dashed((left, y), (right, y), INK))?;
+    if is_upright(problem) {
+        let reach = fixed(problem.robot.geometry().reach() * 1e3, 0);
+        let label = format!("reach of the wrist centre: {reach} mm from axis 1");
+        entry(&label, &|y| canvas.line(vec![(left, y), (right, y)], BLUE, 2))?;
+    }
+    entry("from the tool to the wrist centre, at mid-segment", &|y| {
+        canvas.line(vec![(left, y), (right - 3, y)], PALE, 1)?;
+        canvas.dot(exact((right - 3, y)), 3, GREY)
+    })?;
+    entry("part shown below", &|y| canvas.outline((left, y - 8), (right, y + 8), PALE))
+}
+
+/// A square part of the plane, in mm.
+struct Region {
+    /// Lower ends of x and y.
+    from: [f64; 2],
+    /// Upper ends of x and y.
+    to: [f64; 2],
+}
+
+impl Region {
+    /// The smallest square around points, with a margin of a given part of its side.
+    fn around(points: &[[f64; 2]], margin: f64) -> Self {
+        let bound = |k: usize, start: f64, better: fn(f64, f64) -> f64| points.iter().map(|p| p[k]).fold(start, better);
+        let low = [0, 1].map(|k| bound(k, f64::INFINITY, f64::min));
+        let high = [0, 1].map(|k| bound(k, f64::NEG_INFINITY, f64::max));
+        let half = (0.5 + margin) * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
+        let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+        Self { from: middle.map(|v| v - half), to: middle.map(|v| v + half) }
+    }
+
+    /// The cell, and of each case the tool path and the wrist centres that are drawn.
+    fn near(problem: &Problem, cases: [&Case; 2]) -> Self {
+        let [x, y, _] = problem.cell.position;
+        let mut points = vec![[x.min * 1e3, y.min * 1e3], [x.max * 1e3, y.max * 1e3]];
+        for case in cases {
+            points.extend(case.plan.points.iter().map(|point| top_view(&point.position)));
+            points.extend(middles(problem, case).map(|point| top_view(&wrist_centre(problem, point))));
+        }
+        Self::around(&points, 0.06)
+    }
+
+    /// The base, the near region, and the reach in the direction of the cell.
+    fn whole(problem: &Problem, near: &Region) -> Self {
+        let mut points = vec![[-BASE, -BASE], [BASE, BASE], near.from, near.to];
+        let [x, y, _] = problem.cell.position;
+        let root = problem.robot.geometry().root_in_base;
+        let toward = Vector3::new((x.min + x.max) / 2.0 - root.x, (y.min + y.max) / 2.0 - root.y, 0.0);
+        if let Some(direction) = toward.try_normalize(1e-6)
+            && is_upright(problem)
+        {
+            points.push(top_view(&(root + direction * problem.robot.geometry().reach())));
+        }
+        Self::around(&points, 0.03)
+    }
+
+    fn panel(&self, left: i32, top: i32) -> Panel {
+        let x = Scale::new(self.from[0], self.to[0], left, left + SIDE);
+        let y = Scale::new(self.from[1], self.to[1], top + SIDE, top);
+        let (x_ticks, y_ticks) = (Ticks::round(&x, 8), Ticks::round(&y, 8));
+        Panel { x, y, x_ticks, y_ticks, x_label: "x (mm)", y_label: "y (mm)" }
+    }
+}

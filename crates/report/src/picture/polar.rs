@@ -1,0 +1,237 @@
+//! The polar plot of a measured profile (after Klimchik et al. 2017, Fig. 24).
+
+use super::axes::{Scale, Ticks};
+use super::canvas::{Canvas, Drawn, Lettering, Place, nearest, picture};
+use super::colour::{BLUE, GREEN, GREY, GRID, INK, PALE, RED};
+use super::lettering::whole_or_figures;
+use crate::number::fixed;
+use crate::output::ReportError;
+use plotters::style::{RGBColor, WHITE};
+use std::f64::consts::{PI, TAU};
+use stead_assessment::roundness::Roundness;
+
+/// Middle of the plot.
+const MIDDLE: Place = (390.0, 425.0);
+/// Radius of the reference circle, distance of the zone circles from it, and radius of the plot. Pixels
+const REFERENCE: f64 = 200.0;
+const ZONE: f64 = 70.0;
+const RIM: f64 = 320.0;
+/// Most points that are drawn as dots; more make a line alone.
+const DOTS: usize = 400;
+/// Directions that are told apart: where there are more points, the extremes of each stand for all.
+const DIRECTIONS: usize = 1440;
+/// Least half width of a zone that is magnified to the whole ring, in radii.
+const LEAST_HALF: f64 = 1e-7;
+/// Two points are joined by an arc of steps of this angle, since a chord would dip inwards. rad
+const ARC: f64 = PI / 180.0;
+/// Points farther apart than this are not joined: so many times their mean distance, but no less than 2 deg.
+const GAP: f64 = 3.0;
+
+/// The profile about the centre of the minimum zone circles: the deviation from the mean of both circles, magnified so that
+/// the zone fills a fixed part of the picture. Points left out are shown apart, those beyond the rim on it.
+///
+/// # Errors
+/// [`ReportError::Format`] when the drawing fails.
+pub fn polar(name: &str, found: &Roundness) -> Result<String, ReportError> {
+    picture("the polar plot", (1000, 800), |canvas| {
+        let plot = Plot::new(found);
+        canvas.text(&format!("Roundness of {name}"), (30, 28), Lettering::new(17.0).bold())?;
+        let magnification = format!(
+            "Deviation from the reference circle, magnified {} times",
+            whole_or_figures((plot.scale * found.circles.mzc.circle.radius / REFERENCE * 1e3).round() / 1e3)
+        );
+        canvas.text(&magnification, (30, 52), Lettering::new(13.0).coloured(INK))?;
+        plot.grid(canvas)?;
+        plot.circles(canvas)?;
+        plot.profile(canvas)?;
+        plot.left_out(canvas)?;
+        plot.ring_labels(canvas)?;
+        plot.legend(canvas)
+    })
+}
+
+/// A point as drawn: angle about the centre and deviation from the reference circle.
+type Polar = (f64, f64);
+
+struct Plot<'a> {
+    found: &'a Roundness,
+    kept: Vec<Polar>,
+    excluded: Vec<Polar>,
+    /// Pixels to a unit of length of the deviation.
+    scale: f64,
+}
+
+impl<'a> Plot<'a> {
+    fn new(found: &'a Roundness) -> Self {
+        let circle = found.circles.mzc.circle;
+        let polar = |place: [f64; 2]| {
+            let (x, y) = (place[0] - circle.center[0], place[1] - circle.center[1]);
+            (libm::atan2(y, x), libm::hypot(x, y) - circle.radius)
+        };
+        let of = |is_excluded: bool| {
+            let points = found.points.iter().filter(|point| point.is_excluded == is_excluded);
+            let mut points: Vec<Polar> = points.map(|point| polar(point.place)).collect();
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            thinned(points)
+        };
+        // A perfect circle is shown as one, and not as what rounding makes of it.
+        let half = (0.5 * found.circles.mzc.circularity).max(LEAST_HALF * circle.radius);
+        Self { found, kept: of(false), excluded: of(true), scale: ZONE / half }
+    }
+
+    fn place(&self, angle: f64, deviation: f64) -> Place {
+        let radius = (REFERENCE + self.scale * deviation).clamp(0.0, RIM);
+        let (sine, cosine) = libm::sincos(angle);
+        (MIDDLE.0 + radius * cosine, MIDDLE.1 - radius * sine)
+    }
+
+    fn ring(&self, canvas: &Canvas<'_>, deviation: f64, colour: RGBColor, width: u32) -> Drawn {
+        let points: Vec<Place> = (0..=360).map(|k| self.place(TAU * f64::from(k) / 360.0, deviation)).collect();
+        canvas.curve(&points, colour, width)
+    }
+
+    /// Deviations at which there are rings.
+    fn ticks(&self) -> Ticks {
+        let reach = (RIM - REFERENCE) / self.scale;
+        Ticks::round(&Scale::new(-reach, reach, 0, 1), 8)
+    }
+
+    fn grid(&self, canvas: &Canvas<'_>) -> Drawn {
+        for deviation in self.ticks().values {
+            self.ring(canvas, deviation, GRID, 1)?;
+        }
+        let rim = (RIM - REFERENCE) / self.scale;
+        self.ring(canvas, rim, PALE, 1)?;
+        for k in 0..12 {
+            let angle = TAU * f64::from(k) / 12.0;
+            canvas.curve(&[MIDDLE, self.place(angle, rim)], GRID, 1)?;
+            let (sine, cosine) = libm::sincos(angle);
+            let label = (MIDDLE.0 + (RIM + 20.0) * cosine, MIDDLE.1 - (RIM + 16.0) * sine);
+            let lettering = Lettering::new(12.0).coloured(INK).centred();
+            canvas.text(&format!("{}\u{b0}", 30 * k), nearest(label), lettering)?;
+        }
+        Ok(())
+    }
+
+    fn circles(&self, canvas: &Canvas<'_>) -> Drawn {
+        let half = ZONE / self.scale;
+        self.ring(canvas, 0.0, INK, 1)?;
+        self.ring(canvas, half, GREEN, 2)?;
+        self.ring(canvas, -half, GREEN, 2)
+    }
+
+    fn profile(&self, canvas: &Canvas<'_>) -> Drawn {
+        let closing = self.kept.first().map(|(angle, deviation)| (angle + TAU, *deviation));
+        let points: Vec<Polar> = self.kept.iter().copied().chain(closing).collect();
+        let gap = (GAP * TAU / self.kept.len().max(1) as f64).max(PI / 90.0);
+        for run in points.chunk_by(|a, b| b.0 - a.0 < gap) {
+            if run.len() > 1 {
+                let arcs = run.windows(2).flat_map(|pair| self.arc(pair[0], pair[1]));
+                let last = self.place(run[run.len() - 1].0, run[run.len() - 1].1);
+                canvas.curve(&arcs.chain([last]).collect::<Vec<_>>(), BLUE, 2)?;
+            }
+        }
+        if self.kept.len() <= DOTS {
+            self.kept.iter().try_for_each(|(a, d)| canvas.dot(self.place(*a, *d), 2, PROFILE))?;
+        }
+        Ok(())
+    }
+
+    /// Places from one point towards the next, without the next.
+    fn arc(&self, from: Polar, to: Polar) -> impl Iterator<Item = Place> + '_ {
+        let steps = ((to.0 - from.0) / ARC).ceil().clamp(1.0, 360.0) as u32;
+        (0..steps).map(move |k| {
+            let part = f64::from(k) / f64::from(steps);
+            self.place(from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1))
+        })
+    }
+
+    fn left_out(&self, canvas: &Canvas<'_>) -> Drawn {
+        self.excluded.iter().try_for_each(|(angle, deviation)| canvas.dot(self.place(*angle, *deviation), 3, RED))
+    }
+
+    /// What the rings stand for, upwards from the middle, on white so that the profile does not hide them.
+    fn ring_labels(&self, canvas: &Canvas<'_>) -> Drawn {
+        let ticks = self.ticks();
+        let lettering = Lettering::new(11.0).coloured(INK).centred();
+        for deviation in &ticks.values {
+            let sign = if *deviation > 0.0 { "+" } else { "" };
+            let label = format!("{sign}{}", ticks.label(*deviation));
+            let (x, y) = nearest(self.place(75.0_f64.to_radians(), *deviation));
+            let half = lettering.width(&label) / 2;
+            canvas.fill((x - half, y - 7), (x + half, y + 7), WHITE)?;
+            canvas.text(&label, (x, y), lettering)?;
+        }
+        Ok(())
+    }
+
+    fn legend(&self, canvas: &Canvas<'_>) -> Drawn {
+        let (left, mut y) = (750, 110);
+        let circles = &self.found.circles;
+        let heading = Lettering::new(13.0).bold();
+        let lettering = Lettering::new(12.0).coloured(INK);
+        canvas.text("Circularity (mm)", (left, y), heading)?;
+        for (name, fit) in [("MZC", circles.mzc), ("LSC", circles.lsc), ("MIC", circles.mic), ("MCC", circles.mcc)] {
+            y += 22;
+            canvas.text(name, (left, y), lettering)?;
+            canvas.text(&fixed(fit.circularity, 6), (left + 210, y), lettering.ending())?;
+        }
+        y += 40;
+        canvas.text("Shown: minimum zone (MZC)", (left, y), heading)?;
+        let ([x, centre_y], z) = self.found.center(&circles.mzc);
+        let zone = [
+            ("radius of reference", circles.mzc.circle.radius),
+            ("outer zone circle", circles.mzc.largest),
+            ("inner zone circle", circles.mzc.smallest),
+            ("centre x", x),
+            ("centre y", centre_y),
+        ];
+        for (name, value) in zone.into_iter().chain(z.map(|z| ("centre z", z))) {
+            y += 22;
+            canvas.text(name, (left, y), lettering)?;
+            canvas.text(&fixed(value, 4), (left + 210, y), lettering.ending())?;
+        }
+        let note = "mm, places in the frame of the file";
+        canvas.text(note, (left, y + 22), lettering.coloured(GREY))?;
+        y += 62;
+        let excluded = self.found.points.len() - self.found.kept().count();
+        let measured = format!("measured, {} points", self.found.kept().count());
+        let left_out = format!("left out, {excluded} points");
+        for (label, colour, width) in
+            [("reference circle", INK, 1), ("zone circles", GREEN, 2), (measured.as_str(), BLUE, 2)]
+        {
+            canvas.line(vec![(left, y), (left + 30, y)], colour, width)?;
+            canvas.text(label, (left + 40, y), lettering)?;
+            y += 22;
+        }
+        if excluded > 0 {
+            canvas.dot((f64::from(left) + 15.0, f64::from(y)), 3, RED)?;
+            canvas.text(&left_out, (left + 40, y), lettering)?;
+            y += 22;
+        }
+        canvas.text("Numbers at the rings: deviation in mm.", (left, y + 10), lettering.coloured(GREY))?;
+        let beyond = |points: &[Polar]| points.iter().any(|(_, deviation)| self.scale * deviation > RIM - REFERENCE);
+        if beyond(&self.excluded) {
+            canvas.text("Points beyond the rim are drawn on it.", (left, y + 30), lettering.coloured(GREY))?;
+        }
+        Ok(())
+    }
+}
+
+/// Dots of the profile.
+const PROFILE: RGBColor = RGBColor(52, 84, 140);
+
+/// The points, sorted by angle; of very many the extremes of each direction.
+fn thinned(points: Vec<Polar>) -> Vec<Polar> {
+    if points.len() <= 2 * DIRECTIONS {
+        return points;
+    }
+    let direction = |point: &Polar| ((point.0 + PI) / TAU * DIRECTIONS as f64) as usize;
+    let mut kept = Vec::with_capacity(2 * DIRECTIONS);
+    for run in points.chunk_by(|a, b| direction(a) == direction(b)) {
+        let low = run.iter().fold(run[0], |a, b| if b.1 < a.1 { *b } else { a });
+        let high = run.iter().fold(run[0], |a, b| if b.1 > a.1 { *b } else { a });
+        kept.extend(if low.0 <= high.0 { [low, high] } else { [high, low] });
+    }
+    kept
+}

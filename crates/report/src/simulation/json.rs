@@ -1,0 +1,88 @@
+//! The JSON documents of a simulated pass.
+
+use super::super::json::inputs;
+use super::super::number::Unit;
+use super::super::stability::{HERTZ, RATE, RPM, SHARE, kind_word};
+use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
+use serde_json::{Value, json};
+use stead_format::SimulationRun;
+use stead_simulation::modes::Mode;
+use stead_simulation::outcome::{Simulation, Statistics};
+use stead_simulation::roughness::Roughness;
+
+/// The content of `summary.json`: byte for byte the same for the same inputs.
+pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
+    let (end, reason) = end_words(&found.run.end);
+    let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "inputs": inputs(&run.inputs),
+        "robot": run.setup.robot.name(),
+        "variant": run.setup.variant.word(),
+        "damping_scale": run.setup.damping_scale,
+        "fast": making.is_fast,
+        "spindle_rpm": RPM.number(run.cut.spindle_speed),
+        "slices": run.cut.slices,
+        "steps_per_turn": run.cut.steps_per_turn,
+        "step_s": Unit { factor: 1.0, decimals: 10 }.number(found.run.step),
+        "steps": found.run.samples.len().saturating_sub(1),
+        "evaluations": found.run.evaluations,
+        "end": end,
+        "end_reason": reason,
+        "stable": found.is_stable(),
+        "unrest": found.unrest.map(|unrest| SHARE.number(unrest)),
+        "small_motions": {
+            "kind": kind_word(found.verdict.kind()),
+            "growth_rate_per_s": RATE.number(found.verdict.growth_rate()),
+        },
+        "window_s": found.window.map(|time| MOMENT_S.number(time)),
+        "force_x": forces(0),
+        "force_y": forces(1),
+        "profile": found.roughness.as_ref().map(|[raw, filtered]| {
+            let mut profile = roughness(filtered);
+            profile["raw"] = roughness(raw);
+            profile["height_mm"] = json!(Unit::PLACE_MM.number(run.look.height));
+            profile["cutoff_mm"] = json!(Unit::PLACE_MM.number(run.look.cutoff));
+            profile
+        }),
+        "modes": found.modes.iter().map(mode).collect::<Vec<_>>(),
+        "published": run.look.published.as_ref().map(|published| json!({
+            "source": published.source,
+            "force_x": published.forces.as_ref().map(|forces| statistics(&forces[0])),
+            "force_y": published.forces.as_ref().map(|forces| statistics(&forces[1])),
+            "profile": published.roughness.as_ref().map(roughness),
+        })),
+    })
+}
+
+/// What `stead simulate --json` prints: the summary, and how long the run took.
+pub fn timed_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
+    let mut document = simulation_json(run, found, making);
+    let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
+    document["wall_s"] = json!(Unit::TIME_S.number(making.wall));
+    document["real_time_factor"] =
+        if making.wall > 0.0 { json!(Unit::TIME_S.number(duration / making.wall)) } else { Value::Null };
+    document
+}
+
+fn statistics(statistics: &Statistics) -> Value {
+    let Statistics { least, most, mean, root_mean_square } = statistics;
+    json!({
+        "min_n": Unit::FORCE_N.number(*least),
+        "max_n": Unit::FORCE_N.number(*most),
+        "mean_n": Unit::FORCE_N.number(*mean),
+        "rms_n": Unit::FORCE_N.number(*root_mean_square),
+    })
+}
+
+fn roughness(roughness: &Roughness) -> Value {
+    json!({
+        "ra_um": HEIGHT_UM.number(roughness.mean),
+        "rq_um": HEIGHT_UM.number(roughness.root_mean_square),
+        "rt_um": HEIGHT_UM.number(roughness.total),
+    })
+}
+
+fn mode(mode: &Mode) -> Value {
+    json!({ "frequency_hz": HERTZ.number(mode.natural_frequency()), "damping_ratio": SHARE.number(mode.damping_ratio) })
+}

@@ -1,0 +1,62 @@
+//! Reports of a simulated pass: `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg`, and a text for
+//! people.
+
+mod json;
+mod tables;
+mod text;
+
+pub use json::{simulation_json, timed_json};
+pub use tables::{series, wall};
+pub use text::simulation_text;
+
+use super::number::Unit;
+use super::output::{Folder, ReportError};
+use super::picture;
+use std::path::PathBuf;
+use stead_format::SimulationRun;
+use stead_simulation::coupled::End;
+use stead_simulation::outcome::Simulation;
+
+/// Lengths of a wall and of deflections, from m to um.
+pub(super) const HEIGHT_UM: Unit = Unit { factor: 1e6, decimals: 4 };
+/// Times of single steps, in s.
+pub(super) const MOMENT_S: Unit = Unit { factor: 1.0, decimals: 7 };
+
+/// How a run was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Making {
+    /// With the condensed model.
+    pub is_fast: bool,
+    /// Time on the clock that the run took. s
+    pub wall: f64,
+}
+
+/// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg` and `wall.svg`. Returns their paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_simulation(
+    folder: &Folder,
+    run: &SimulationRun,
+    found: &Simulation,
+    making: &Making,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let files = [
+        ("series.csv", series(found)?),
+        ("wall.csv", wall(found)?),
+        ("summary.json", super::json::bytes(&simulation_json(run, found, making))),
+        ("forces.svg", picture::forces(found)?.into_bytes()),
+        ("turns.svg", picture::turns(found, run.cut.spindle_speed)?.into_bytes()),
+        ("wall.svg", picture::wall(found)?.into_bytes()),
+    ];
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
+/// The word for how a run ended, and the reason if it ended early.
+pub(super) fn end_words(end: &End) -> (&'static str, Option<String>) {
+    match end {
+        End::Complete => ("complete", None),
+        End::Limit(limit) => ("limit", Some(limit.to_string())),
+        End::Step(error) => ("step", Some(error.to_string())),
+    }
+}

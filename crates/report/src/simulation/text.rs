@@ -1,0 +1,92 @@
+//! The text for people.
+
+use super::super::number::{figures, fixed};
+use super::super::stability::kind_word;
+use super::super::text::aligned;
+use super::{Making, end_words};
+use stead_format::SimulationRun;
+use stead_simulation::coupled::End;
+use stead_simulation::outcome::{Simulation, Statistics};
+use stead_simulation::roughness::Roughness;
+
+/// Forces in the window and roughness of the wall, beside published figures where there are any; whether the cut stayed calm.
+/// Lines end with a line break.
+pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making) -> String {
+    let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
+    let model = if making.is_fast { "condensed model" } else { "full model" };
+    let mut text = format!(
+        "{}, {}: {} s in {} steps, {model}, {} times as fast as the pass\n\n",
+        run.setup.robot.name(),
+        run.setup.variant.word(),
+        fixed(duration, 3),
+        found.run.samples.len().saturating_sub(1),
+        figures(duration / making.wall.max(1e-9)),
+    );
+    text.push_str(&forces(run, found));
+    text.push_str(&roughness(run, found));
+    text.push_str(&verdict(found));
+    text
+}
+
+fn forces(run: &SimulationRun, found: &Simulation) -> String {
+    let [from, to] = found.window.map(|time| fixed(time, 3));
+    let Some(forces) = &found.forces else {
+        let why = match found.run.end {
+            End::Complete => "the pass is too short for statistics",
+            _ => "the run ended before",
+        };
+        return format!("no forces from {from} to {to} s: {why}\n\n");
+    };
+    let header = ["", "min", "max", "mean", "rms"].map(str::to_owned).to_vec();
+    let mut rows = vec![header];
+    let row = |name: String, Statistics { least, most, mean, root_mean_square }: &Statistics| {
+        let mut row = vec![name];
+        row.extend([least, most, mean, root_mean_square].map(|force| fixed(*force, 2)));
+        row
+    };
+    let published = run.look.published.as_ref().and_then(|published| published.forces.as_ref());
+    for (axis, name) in ["along the feed", "towards the wall"].into_iter().enumerate() {
+        rows.push(row(name.to_owned(), &forces[axis]));
+        rows.extend(published.map(|published| row("  published".to_owned(), &published[axis])));
+    }
+    format!("forces on the tool (N) from {from} to {to} s\n{}\n", aligned(&rows, &[0]))
+}
+
+fn roughness(run: &SimulationRun, found: &Simulation) -> String {
+    let Some([raw, filtered]) = &found.roughness else {
+        return "no wall was made\n\n".to_owned();
+    };
+    let header = ["", "Ra", "Rq", "Rt"].map(str::to_owned).to_vec();
+    let row = |name: String, Roughness { mean, root_mean_square, total }: &Roughness| {
+        let mut row = vec![name];
+        row.extend([mean, root_mean_square, total].map(|height| fixed(height * 1e6, 2)));
+        row
+    };
+    let mut rows = vec![header, row("wall".to_owned(), raw)];
+    rows.push(row(format!("filtered, {} mm", figures(run.look.cutoff * 1e3)), filtered));
+    let published = run.look.published.as_ref().and_then(|published| published.roughness.as_ref());
+    rows.extend(published.map(|published| row("  published".to_owned(), published)));
+    format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
+}
+
+fn verdict(found: &Simulation) -> String {
+    let calm = if found.is_stable() { "calm" } else { "unstable" };
+    let (_, reason) = end_words(&found.run.end);
+    let mut text = match (reason, found.unrest) {
+        (Some(reason), _) => format!("The cut is {calm}: {reason}.\n"),
+        (None, Some(unrest)) => {
+            format!("The cut is {calm}: forces differ by {} % from turn to turn.\n", figures(unrest * 100.0))
+        }
+        (None, None) => format!("The cut is {calm}.\n"),
+    };
+    let rate = figures(found.verdict.growth_rate().abs());
+    text.push_str(&if found.verdict.is_stable() && found.run.end == End::Complete && !found.is_stable() {
+        format!("Small motions die out, at {rate} per second: a longer ramp or pass tells whether the start is still felt.\n")
+    } else if found.verdict.is_stable() {
+        format!("Small motions die out, at {rate} per second.\n")
+    } else {
+        let bounded = if found.is_stable() { ", but have not become large by the end of the pass" } else { "" };
+        format!("Small motions grow ({}), at {rate} per second{bounded}.\n", kind_word(found.verdict.kind()))
+    });
+    text
+}

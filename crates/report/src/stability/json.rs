@@ -1,0 +1,76 @@
+//! The JSON document of a survey.
+
+use super::super::json;
+use super::super::number::Unit;
+use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
+use serde_json::{Map, Value, json};
+use stead_format::SimulationRun;
+use stead_simulation::modes::Mode;
+use stead_simulation::survey::{Depths, Survey};
+
+/// What `stead stability --json` prints, and the content of `summary.json`.
+pub fn stability_json(run: &SimulationRun, survey: &Survey) -> Value {
+    let mut document = verdict(&survey.depths);
+    let rate = survey.depths.verdict.growth_rate();
+    let rest = [
+        ("version", json!(env!("CARGO_PKG_VERSION"))),
+        ("inputs", json::inputs(&run.inputs)),
+        ("robot", json!(run.setup.robot.name())),
+        ("variant", json!(run.setup.variant.word())),
+        ("damping_scale", json!(run.setup.damping_scale)),
+        ("way_mm", json!(Unit::PLACE_MM.number(run.plan.way))),
+        ("spindle_rpm", json!(RPM.number(run.cut.spindle_speed))),
+        ("axial_depth_mm", json!(DEPTH_MM.number(run.cut.axial_depth))),
+        ("max_depth_mm", json!(DEPTH_MM.number(run.plan.deepest))),
+        ("pass_time_s", json!(Unit::TIME_S.number(survey.pass_time))),
+        ("growth_in_pass", json!(RATE.number(rate * survey.pass_time))),
+        ("modes", modes(&survey.modes)),
+        ("lobes", lobes(survey)),
+    ];
+    document.extend(rest.map(|(key, value)| (key.to_owned(), value)));
+    Value::Object(document)
+}
+
+/// Critical depths and verdict.
+pub(crate) fn verdict(depths: &Depths) -> Map<String, Value> {
+    let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
+    let verdict = &depths.verdict;
+    let pairs = [
+        (
+            "critical_depth_mm",
+            json!({
+                "semi_discretisation": depth(depths.semi_discretisation),
+                "zero_order": depth(depths.zero_order),
+            }),
+        ),
+        ("stable", json!(verdict.is_stable())),
+        ("kind", json!(kind_word(verdict.kind()))),
+        ("growth_rate_per_s", json!(RATE.number(verdict.growth_rate()))),
+    ];
+    pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// Frequencies, damping and shapes.
+pub(crate) fn modes(modes: &[Mode]) -> Value {
+    let mode = |mode: &Mode| {
+        json!({
+            "frequency_hz": HERTZ.number(mode.natural_frequency()),
+            "damping_ratio": SHARE.number(mode.damping_ratio),
+            "joints": mode.joints.iter().map(|amplitude| SHARE.number(*amplitude)).collect::<Vec<_>>(),
+            "tip_mm_per_rad": mode.tip.iter().map(|part| Unit::PLACE_MM.number(*part)).collect::<Vec<_>>(),
+        })
+    };
+    modes.iter().map(mode).collect()
+}
+
+fn lobes(survey: &Survey) -> Value {
+    let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
+    let lobe = |lobe: &stead_simulation::stability::Lobe| {
+        json!({
+            "spindle_rpm": RPM.number(lobe.spindle_speed),
+            "critical_depth_mm": depth(lobe.semi_discretisation),
+            "zero_order_mm": depth(lobe.zero_order),
+        })
+    };
+    survey.lobes.iter().map(lobe).collect()
+}

@@ -1,0 +1,61 @@
+//! Reports of a stability survey: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
+//! text for people.
+
+mod json;
+mod path;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use json::stability_json;
+pub use path::PathStability;
+pub use tables::{lobes, modes, responses};
+pub use text::stability_text;
+
+use super::number::Unit;
+use super::output::{Folder, ReportError};
+use super::picture;
+use std::path::PathBuf;
+use stead_format::SimulationRun;
+use stead_simulation::stability::Kind;
+use stead_simulation::survey::Survey;
+
+/// Frequencies in Hz.
+pub(super) const HERTZ: Unit = Unit { factor: 1.0, decimals: 4 };
+/// Shares of the critical damping.
+pub(super) const SHARE: Unit = Unit { factor: 1.0, decimals: 6 };
+/// Spindle speeds, from rad/s to turns a minute.
+pub(super) const RPM: Unit = Unit { factor: 30.0 / std::f64::consts::PI, decimals: 2 };
+/// Depths of cut, from m to mm.
+pub(super) const DEPTH_MM: Unit = Unit { factor: 1e3, decimals: 5 };
+/// Answers to a force, from m/N to um/N.
+pub(super) const ANSWER: Unit = Unit { factor: 1e6, decimals: 6 };
+/// Rates of growth in 1/s.
+pub(super) const RATE: Unit = Unit { factor: 1.0, decimals: 4 };
+
+/// Writes `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg` and `lobes.svg`. Returns
+/// their paths in that order.
+///
+/// # Errors
+/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+pub fn write_stability(folder: &Folder, run: &SimulationRun, survey: &Survey) -> Result<Vec<PathBuf>, ReportError> {
+    let files = [
+        ("modes.csv", modes(survey)?),
+        ("frequency-response.csv", responses(survey)?),
+        ("lobes.csv", lobes(survey)?),
+        ("summary.json", super::json::bytes(&stability_json(run, survey))),
+        ("frequency-response.svg", picture::frequency_response(survey)?.into_bytes()),
+        ("lobes.svg", picture::lobes(survey, &run.cut, run.plan.deepest)?.into_bytes()),
+    ];
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
+/// The word for a kind of growth.
+pub(super) fn kind_word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::None => "none",
+        Kind::Flip => "flip",
+        Kind::Hopf => "hopf",
+    }
+}

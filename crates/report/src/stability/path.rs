@@ -1,0 +1,99 @@
+//! Critical depths along the plans of a placement.
+
+use super::super::number::fixed;
+use super::super::output::ReportError;
+use super::super::picture;
+use super::super::tables::table;
+use super::json::verdict;
+use super::{DEPTH_MM, RATE, RPM, kind_word};
+use serde_json::{Value, json};
+use stead_placement::outcome::Plan;
+use stead_simulation::chatter::{Chatter, smallest};
+use stead_simulation::survey::Depths;
+
+/// What may be cut along two plans.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathStability {
+    /// What is to be cut.
+    pub chatter: Chatter,
+    /// Along both plans, point by point.
+    pub plans: [Vec<Depths>; 2],
+}
+
+impl PathStability {
+    /// `stability-best.csv`, `stability-worst.csv` and `stability.svg` for the two plans.
+    ///
+    /// # Errors
+    /// [`ReportError::Format`] when a file cannot be made.
+    pub fn files(&self, plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
+        Ok([
+            ("stability-best.csv", along(plans[0], &self.plans[0])?),
+            ("stability-worst.csv", along(plans[1], &self.plans[1])?),
+            ("stability.svg", picture::path_stability(self, plans)?.into_bytes()),
+        ])
+    }
+
+    /// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
+    /// of them too.
+    pub fn document(&self, points: bool) -> Value {
+        let plan = |depths: &Vec<Depths>| {
+            let least = smallest(depths);
+            let mut value = json!({
+                "smallest_critical_depth_mm": least.map(|(_, depth)| DEPTH_MM.number(depth)),
+                "at_point": least.map(|(point, _)| point),
+                "stable": depths.iter().all(|at| at.verdict.is_stable()),
+                "points_that_chatter": chattering(depths),
+            });
+            if points && let Some(object) = value.as_object_mut() {
+                object.insert("points".to_owned(), depths.iter().map(verdict).map(Value::Object).collect());
+            }
+            value
+        };
+        json!({
+            "variant": self.chatter.variant.word(),
+            "damping_scale": self.chatter.damping_scale,
+            "spindle_rpm": RPM.number(self.chatter.cut.spindle_speed),
+            "axial_depth_mm": DEPTH_MM.number(self.chatter.cut.axial_depth),
+            "max_depth_mm": DEPTH_MM.number(self.chatter.deepest),
+            "best": plan(&self.plans[0]),
+            "worst": plan(&self.plans[1]),
+        })
+    }
+
+    /// A line for each of the two plans, by what they are called.
+    pub fn text(&self, names: [&str; 2]) -> String {
+        let mut text = String::new();
+        for (name, depths) in names.iter().zip(&self.plans) {
+            let deepest = match smallest(depths) {
+                Some((point, depth)) => format!("down to {} mm (point {point})", fixed(depth * 1e3, 3)),
+                None => format!("beyond {} mm everywhere", fixed(self.chatter.deepest * 1e3, 3)),
+            };
+            let (bad, count) = (chattering(depths), depths.len());
+            let verdict = match bad {
+                0 => "is stable at every point".to_owned(),
+                _ => format!("chatters at {bad} of {count} points"),
+            };
+            let depth = fixed(self.chatter.cut.axial_depth * 1e3, 3);
+            text.push_str(&format!("{name}: critical depth {deepest}; the cut of {depth} mm {verdict}\n"));
+        }
+        text
+    }
+}
+
+fn chattering(depths: &[Depths]) -> usize {
+    depths.iter().filter(|at| !at.verdict.is_stable()).count()
+}
+
+/// One row for each path point; depths are empty where all depths looked at are stable.
+fn along(plan: &Plan, depths: &[Depths]) -> Result<Vec<u8>, ReportError> {
+    const HEADER: [&str; 7] =
+        ["point", "segment", "critical_depth_mm", "zero_order_mm", "stable", "kind", "growth_rate_per_s"];
+    let rows = plan.points.iter().zip(depths).map(|(point, at)| {
+        let mut row = vec![point.point.to_string(), point.segment.to_string()];
+        row.extend([at.semi_discretisation, at.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth)));
+        row.push(at.verdict.is_stable().to_string());
+        row.extend([kind_word(at.verdict.kind()).to_owned(), RATE.text(at.verdict.growth_rate())]);
+        row
+    });
+    table("the table of critical depths", &HEADER, rows)
+}

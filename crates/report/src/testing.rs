@@ -1,0 +1,247 @@
+//! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
+//! planned by a shortest path over the grid, with an invented search.
+
+use super::Context;
+use std::sync::OnceLock;
+use stead_format::input::{InputFile, Reference};
+use stead_model::cutting::{Course, Engagement, MillingTool, Rotation};
+use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
+use stead_placement::criterion::{State, state};
+use stead_placement::outcome::*;
+use stead_placement::problem::{Placement, Problem};
+use stead_placement::settings::{SearchSettings, TransferSettings};
+use stead_placement::testing::five_segments;
+
+/// Grid steps of beta from point to point.
+const STEPS: i64 = 4;
+
+/// The problem of the result: the paper's, with narrower limits of joints 5 and 6 and a largest deflection, so that every
+/// reason against a state occurs.
+pub fn problem() -> &'static Problem {
+    static PROBLEM: OnceLock<Problem> = OnceLock::new();
+    PROBLEM.get_or_init(|| {
+        let mut problem = five_segments();
+        let mut joints = problem.robot.joints().clone();
+        for (j, limit_deg) in [(4, 75.0_f64), (5, 120.0)] {
+            (joints[j].min, joints[j].max) = (-limit_deg.to_radians(), limit_deg.to_radians());
+        }
+        problem.robot = Robot::new("KUKA KR270-2", joints).unwrap();
+        problem.constraints.max_deflection = Some(4.5e-3);
+        problem
+    })
+}
+
+/// The result.
+pub fn outcome() -> &'static Outcome {
+    static OUTCOME: OnceLock<Outcome> = OnceLock::new();
+    OUTCOME.get_or_init(|| {
+        let best = Grid::new(Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw: yaw_from_q4(0.9258) });
+        let worst = Grid::new(Placement { x: -0.18, y: -2.0, z: -0.25, yaw: 0.6 });
+        let cases = [best.case(1), best.case(2), worst.case(3), worst.case(4)];
+        let (low, high) = (cases[0].plan.mean, cases[2].plan.mean);
+        let mut convergence = Vec::new();
+        for (goal, end) in [(Goal::Best, low), (Goal::Worst, high)] {
+            convergence.extend((0..=51).map(|k| generation(goal, end, k)));
+        }
+        let refinements = vec![refinement(Goal::Best, &cases[0]), refinement(Goal::Worst, &cases[2])];
+        let (map_best, map_worst) = (best.map(), worst.map());
+        Outcome {
+            cases,
+            tabled: None,
+            convergence,
+            refinements,
+            map_best,
+            map_worst,
+            evaluations: 12480,
+            states: 157_248_000,
+            interrupted: false,
+        }
+    })
+}
+
+/// What goes with the result.
+pub fn context() -> Context {
+    let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
+    Context {
+        inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
+        search: SearchSettings::default(),
+        transfer: TransferSettings::default(),
+        reference: Some(Reference {
+            source: "Caro et al. 2013, Table III".to_owned(),
+            case_mm: [0.083, 0.35, 0.82, 1.2],
+        }),
+        stability: None,
+    }
+}
+
+fn generation(goal: Goal, end: f64, k: usize) -> Generation {
+    let left = libm::exp(-(k as f64) / 9.0);
+    let ripple = 1.0 + 0.08 * libm::sin(2.1 * k as f64);
+    let toward = if goal == Goal::Best { 1.0 } else { -0.25 };
+    let best = (k > 0).then_some(end * (1.0 + toward * (0.01 + 2.0 * left)));
+    let average = (k > 0).then_some(end * (1.05 + toward * (0.8 * ripple + 2.3 * left)));
+    Generation { goal, generation: k, best, average, feasible: 2 * k, population: 120, evaluations: 120 * (k + 1) }
+}
+
+fn refinement(goal: Goal, case: &Case) -> Refinement {
+    Refinement {
+        goal,
+        start: Placement { x: case.placement.x + 1e-3, ..case.placement },
+        start_mean: case.plan.mean * 1.01,
+        end: case.placement,
+        end_mean: case.plan.mean,
+        rounds: 2,
+        iterations: 17,
+        kkt_residual: 3.2e-10,
+        statuses: vec!["converged".to_owned(), "plan unchanged".to_owned()],
+    }
+}
+
+/// A state in each posture, or why it is not allowed.
+type Postures = [Result<State<f64>, Blocked>; 8];
+
+/// All states of a placement: for point, beta and posture the state, or why it is not allowed.
+struct Grid {
+    placement: Placement,
+    states: Vec<Vec<Postures>>,
+}
+
+impl Grid {
+    fn new(placement: Placement) -> Self {
+        let pose = [placement.x, placement.y, placement.z, placement.yaw];
+        let betas = 0..problem().redundancy.beta_count;
+        let at = |point: usize, k: usize| Posture::ALL.map(|posture| allowed(point, &pose, k, posture));
+        let states = (0..problem().task.points().len()).map(|point| betas.clone().map(|k| at(point, k)).collect());
+        Self { placement, states: states.collect() }
+    }
+
+    fn map(&self) -> DeflectionMap {
+        let cell = |states: &Postures| {
+            let allowed = states.iter().zip(Posture::ALL).filter_map(|(s, posture)| Some((s.as_ref().ok()?, posture)));
+            let cells = allowed.map(|(state, posture)| MapCell { score: state.score(), posture });
+            let nearest = states.iter().filter_map(|s| s.as_ref().err().copied()).max();
+            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(nearest.unwrap_or(Blocked::Reach))
+        };
+        let rows = self.states.iter().map(|row| row.iter().map(cell).collect()).collect();
+        DeflectionMap { beta_count: problem().redundancy.beta_count, rows }
+    }
+
+    fn case(&self, number: u8) -> Case {
+        let sign = if number % 2 == 1 { 1.0 } else { -1.0 };
+        let mut points = Vec::new();
+        let mut postures = Vec::new();
+        for range in problem().task.segments() {
+            let plans = Posture::ALL.map(|posture| self.shortest(range.clone(), posture, sign));
+            let best = plans.into_iter().zip(Posture::ALL).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+            let ((cost, betas), posture) = best.unwrap();
+            assert!(cost.is_finite(), "no plan for case {number}");
+            points.extend(range.clone().zip(betas).map(|(point, k)| self.plan_point(point, k, posture)));
+            postures.push(posture);
+        }
+        let scores = || points.iter().map(|point: &PlanPoint| point.score);
+        let (mean, max) = (scores().sum::<f64>() / points.len() as f64, scores().fold(0.0, f64::max));
+        let plan = Plan { postures, mean, max, mean_deviation: None, points };
+        let transfer = |k: usize| {
+            let duration = (number < 4 || k != 2).then_some(0.4 * k as f64);
+            Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
+        };
+        let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
+        Case { number, placement: self.placement, plan, cycle }
+    }
+
+    /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.
+    fn shortest(&self, range: std::ops::Range<usize>, posture: Posture, sign: f64) -> (f64, Vec<usize>) {
+        let count = problem().redundancy.beta_count as i64;
+        let cost = |point: usize, k: usize| {
+            self.states[point][k][usize::from(posture.number()) - 1]
+                .as_ref()
+                .map_or(f64::INFINITY, |s| sign * s.score())
+        };
+        let mut sums: Vec<(f64, Vec<usize>)> = vec![(0.0, Vec::new()); count as usize];
+        for point in range {
+            sums = (0..count)
+                .map(|k| {
+                    let near = (-STEPS..=STEPS).map(|step| (k + step).rem_euclid(count) as usize);
+                    let from = near.min_by(|a, b| sums[*a].0.total_cmp(&sums[*b].0)).unwrap();
+                    let (sum, mut path) = sums[from].clone();
+                    path.push(k as usize);
+                    (sum + cost(point, k as usize), path)
+                })
+                .collect();
+        }
+        sums.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+    }
+
+    fn plan_point(&self, point: usize, k: usize, posture: Posture) -> PlanPoint {
+        let state = self.states[point][k][usize::from(posture.number()) - 1].as_ref().unwrap();
+        let base_from_workpiece = self.placement.base_from_workpiece();
+        let joints = problem().robot.joints();
+        PlanPoint {
+            point,
+            segment: problem().task.path().segment_of(point) + 1,
+            position: base_from_workpiece.point(&problem().task.points()[point].position),
+            beta: stead_model::robot::angles::wrap(problem().redundancy.beta(k)),
+            posture,
+            joints: std::array::from_fn(|j| Range::of(&joints[j]).nearest(state.joints[j]).0),
+            inverse_condition: state.inverse_condition,
+            force: base_from_workpiece.rotation * problem().task.wrenches()[point].force,
+            deflection: state.deflection,
+            feed_part: state.feed_part,
+            normal_part: state.normal_part,
+            axial_part: state.axial_part,
+            score: state.score(),
+            deviation: state.deviation,
+        }
+    }
+}
+
+fn allowed(point: usize, pose: &[f64; 4], k: usize, posture: Posture) -> Result<State<f64>, Blocked> {
+    let found = state(problem(), point, pose, problem().redundancy.beta(k), posture).map_err(|_| Blocked::Reach)?;
+    for (j, joint) in problem().robot.joints().iter().enumerate() {
+        if Range::of(joint).nearest(found.joints[j]).1 > 0.0 {
+            return Err(Blocked::JointLimit(j as u8 + 1));
+        }
+    }
+    if found.inverse_condition < problem().constraints.min_inverse_condition {
+        return Err(Blocked::Conditioning);
+    }
+    if problem().constraints.max_deflection.is_some_and(|limit| found.score() > limit) {
+        return Err(Blocked::Deflection);
+    }
+    Ok(found)
+}
+
+/// A document whose tags nest and whose attributes are quoted; fails otherwise.
+pub fn assert_well_formed(svg: &str) {
+    let mut open = Vec::new();
+    let mut rest = svg;
+    while let Some(start) = rest.find('<') {
+        let end = rest[start..].find('>').unwrap() + start;
+        let tag = &rest[start + 1..end];
+        assert!(!tag.contains('<') && tag.matches('"').count().is_multiple_of(2), "{tag}");
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else if !tag.ends_with('/') {
+            open.push(tag.split(' ').next().unwrap());
+        }
+        rest = &rest[end + 1..];
+    }
+    assert!(open.is_empty() && svg.starts_with("<svg "));
+}
+
+/// The force of a cutter on both sides of a slot that is open over half its width.
+pub fn course() -> Course {
+    let tool = MillingTool {
+        radius: 0.005,
+        teeth: 3,
+        rotation: Rotation::Clockwise,
+        entering_angle: 90_f64.to_radians(),
+        helix: 20_f64.to_radians(),
+        rake: 5_f64.to_radians(),
+        friction: 0.4,
+        normal_pressure: 750e6,
+        feed_per_tooth: 8e-5,
+        axial_depth: 5e-3,
+    };
+    Course::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
+}

@@ -1,0 +1,54 @@
+//! Critical depths along a tool path: a stiff placement may chatter all the same.
+
+use super::arm::Variant;
+use super::milling::{Cut, Cutter};
+use super::survey::{CutFrame, Depths, SurveyError, depths, linear_of};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use stead_model::robot::{Robot, Spindle};
+
+/// What is to be cut along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chatter {
+    /// How much of the arm is modelled.
+    pub variant: Variant,
+    /// What all damping is multiplied with.
+    pub damping_scale: f64,
+    /// The cutter.
+    pub cutter: Cutter,
+    /// The cut, at every point of the path alike.
+    pub cut: Cut,
+    /// Depths of cut beyond this are not looked at. m
+    pub deepest: f64,
+}
+
+/// An arm somewhere on a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Joint angles. rad
+    pub joints: [f64; 6],
+    /// Direction of the feed in the base frame.
+    pub feed: Vector3<f64>,
+}
+
+impl Chatter {
+    /// Critical depths and the verdict at every station, in their order.
+    ///
+    /// # Errors
+    /// [`SurveyError`] for a robot that says too little, or a cut without width.
+    pub fn along(&self, robot: &Robot, spindle: &Spindle, stations: &[Station]) -> Result<Vec<Depths>, SurveyError> {
+        let at = |station: &Station| {
+            let linear = linear_of(robot, spindle, self.variant, self.damping_scale, &station.joints)?;
+            let tool = robot.forward(&station.joints).then(&spindle.flange_from_tool);
+            let frame = CutFrame::new(station.feed, -tool.rotation.column(2), self.cut.milling);
+            Ok(depths(&linear.plant(&frame)?, &self.cutter, &self.cut, self.deepest)?)
+        };
+        stations.par_iter().map(at).collect()
+    }
+}
+
+/// The smallest critical depth (m) by semi-discretisation, and which station has it; none where all are stable.
+pub fn smallest(depths: &[Depths]) -> Option<(usize, f64)> {
+    let found = depths.iter().enumerate().filter_map(|(k, depths)| Some((k, depths.semi_discretisation?)));
+    found.min_by(|a, b| a.1.total_cmp(&b.1))
+}

@@ -1,0 +1,39 @@
+//! An arm on a straight pass: what a simulation and a stability analysis have in common.
+
+use super::arm::{AnyArm, Arm, Missing, Variant};
+use super::motion::Motion;
+use stead_model::robot::{Robot, Spindle};
+
+/// An arm, how much of it is modelled, and the pass that it makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The arm, with masses.
+    pub robot: Robot,
+    /// What it carries.
+    pub spindle: Spindle,
+    /// How much is modelled.
+    pub variant: Variant,
+    /// What all damping is multiplied with.
+    pub damping_scale: f64,
+    /// How the motors are commanded.
+    pub motion: Motion,
+}
+
+impl Setup {
+    /// Chain and drives, their stiffnesses taken at the start of the pass.
+    ///
+    /// # Errors
+    /// [`Missing`] when the robot says too little for the variant.
+    pub fn arm(&self) -> Result<AnyArm, Missing> {
+        fn scale<const N: usize>(arm: &mut Arm<N>, by: f64) {
+            arm.drive.damping *= by;
+        }
+        let start = self.motion.motors(0.0).0;
+        let mut arm = AnyArm::new(&self.robot, &self.spindle, self.variant, &start)?;
+        match &mut arm {
+            AnyArm::Six(arm) => scale(arm, self.damping_scale),
+            AnyArm::Eighteen(arm) => scale(arm, self.damping_scale),
+        }
+        Ok(arm)
+    }
+}

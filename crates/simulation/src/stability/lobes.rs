@@ -1,0 +1,42 @@
+//! Critical depth of cut over spindle speed.
+
+use super::floquet::SemiDiscretisation;
+use super::plant::Plant;
+use super::zero_order::ZeroOrder;
+use crate::milling::{Cut, Cutter};
+use rayon::prelude::*;
+use stead_model::cutting::EngagementError;
+
+/// How deep can be cut at a spindle speed; `None` where all depths looked at are stable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobe {
+    /// Angular speed of the spindle. rad/s
+    pub spindle_speed: f64,
+    /// By semi-discretisation. m
+    pub semi_discretisation: Option<f64>,
+    /// By the zero-order solution. m
+    pub zero_order: Option<f64>,
+}
+
+/// Critical depths up to `most` (m) at spindle speeds (rad/s), in their order, for the cut at hand otherwise.
+///
+/// # Errors
+/// [`EngagementError`] for a width of cut that is none.
+pub fn lobes(
+    plant: &Plant,
+    cutter: &Cutter,
+    cut: &Cut,
+    spindle_speeds: &[f64],
+    most: f64,
+) -> Result<Vec<Lobe>, EngagementError> {
+    let zero_order = ZeroOrder::new(plant);
+    let lobe = |&spindle_speed: &f64| {
+        let cut = Cut { spindle_speed, ..*cut };
+        Ok(Lobe {
+            spindle_speed,
+            semi_discretisation: SemiDiscretisation::new(plant, cutter, &cut)?.critical_depth(most),
+            zero_order: zero_order.critical_depth(cutter, &cut, most)?,
+        })
+    };
+    spindle_speeds.par_iter().map(lobe).collect()
+}

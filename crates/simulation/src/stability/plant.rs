@@ -1,0 +1,102 @@
+//! How the tool tip answers to forces, as a state-space model.
+
+use crate::modes::Linear;
+use nalgebra::{Complex, DMatrix, Matrix2x3, Vector3};
+
+/// `x' = A x + B F`, `u = C x`: force F (N) on the tool tip along the feed, the outward normal of the wall and the tool axis, and
+/// motion u (m) of it along feed and normal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plant {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+}
+
+/// Why matrices make no plant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum PlantError {
+    /// Shapes that do not fit.
+    #[error("a plant needs A of n x n, B of n x 3 (or n x 2) and C of 2 x n")]
+    Shape,
+    /// Entries that are not finite.
+    #[error("a plant needs finite numbers")]
+    NotFinite,
+}
+
+impl Plant {
+    /// A plant of its matrices. B may have two columns: then a force along the tool axis does nothing.
+    ///
+    /// # Errors
+    /// [`PlantError`] for shapes that do not fit and entries that are not finite.
+    pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> Result<Self, PlantError> {
+        let n = a.nrows();
+        if n == 0 || a.shape() != (n, n) || b.nrows() != n || !(2..=3).contains(&b.ncols()) || c.shape() != (2, n) {
+            return Err(PlantError::Shape);
+        }
+        if a.iter().chain(&b).chain(&c).all(|entry| entry.is_finite()) {
+            Ok(Self { a, b: b.resize_horizontally(3, 0.0), c })
+        } else {
+            Err(PlantError::NotFinite)
+        }
+    }
+
+    /// Small motions of an arm's tip under forces along three directions in the base frame: the feed, the outward normal of the
+    /// wall and the tool axis. `None` where the mass matrix has no inverse.
+    pub fn of_arm<const N: usize>(arm: &Linear<N>, directions: [Vector3<f64>; 3]) -> Option<Self> {
+        let a = arm.state_matrix()?;
+        let tip = DMatrix::from_fn(3, N, |row, joint| directions[row].dot(&arm.tip.column(joint)));
+        let mass = DMatrix::from_fn(N, N, |row, column| arm.mass[(row, column)]);
+        let (mut b, mut c) = (DMatrix::zeros(2 * N, 3), DMatrix::zeros(2, 2 * N));
+        b.view_mut((N, 0), (N, 3)).copy_from(&mass.cholesky()?.solve(&tip.transpose()));
+        c.view_mut((0, 0), (2, N)).copy_from(&tip.rows(0, 2));
+        Self::new(a, b, c).ok()
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.a.nrows()
+    }
+
+    /// A, 1/s or of other units that go with the states.
+    pub fn a(&self) -> &DMatrix<f64> {
+        &self.a
+    }
+
+    /// C.
+    pub fn c(&self) -> &DMatrix<f64> {
+        &self.c
+    }
+
+    /// Eigenvalues of A. 1/s
+    pub fn poles(&self) -> Vec<Complex<f64>> {
+        self.a.complex_eigenvalues().iter().copied().collect()
+    }
+
+    /// Motion (m, complex amplitude) for a force (N) that swings with `omega` (rad/s): `C (i omega - A)^-1 B`; none in a resonance
+    /// without damping.
+    pub fn response(&self, omega: f64) -> Option<Matrix2x3<Complex<f64>>> {
+        let n = self.states();
+        let matrix = DMatrix::from_fn(n, n, |row, column| {
+            let swing = if row == column { Complex::new(0.0, omega) } else { Complex::from(0.0) };
+            swing - Complex::from(self.a[(row, column)])
+        });
+        let states = matrix.lu().solve(&self.b.map(Complex::from))?;
+        let answer = self.c.map(Complex::from) * states;
+        Some(Matrix2x3::from_fn(|row, column| answer[(row, column)]))
+    }
+
+    /// Over a step (s) exactly, for a force that changes linearly from one value to another: next states are
+    /// `E x + W_0 F_0 + W_1 F_1`.
+    pub(super) fn step(&self, step: f64) -> [DMatrix<f64>; 3] {
+        // exp([[A, B, 0], [0, 0, 1], [0, 0, 0]] h) = [[E, P, Q], ..] with P = int e^(A (h - s)) B ds and Q that of B s.
+        let n = self.states();
+        let mut all = DMatrix::zeros(n + 6, n + 6);
+        all.view_mut((0, 0), (n, n)).copy_from(&(&self.a * step));
+        all.view_mut((0, n), (n, 3)).copy_from(&(&self.b * step));
+        // That of the last block in parts of the step: Q / h, what a force that rises to 1 does.
+        all.view_mut((n, n + 3), (3, 3)).fill_with_identity();
+        let whole = all.exp();
+        let [constant, rising] = [n, n + 3].map(|column| whole.view((0, column), (n, 3)).into_owned());
+        [whole.view((0, 0), (n, n)).into_owned(), constant - &rising, rising]
+    }
+}

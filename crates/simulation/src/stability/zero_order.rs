@@ -1,0 +1,112 @@
+//! The zero-order solution: mean coefficients in place of those that change over the turn.
+
+use super::directional::{exit, mean};
+use super::plant::Plant;
+use crate::milling::{Cut, Cutter};
+use nalgebra::{Complex, Matrix2x3, Matrix3x2};
+use stead_model::cutting::EngagementError;
+
+/// The answer of a tool tip at many frequencies, from which the zero-order solution is read at any spindle speed.
+///
+/// With `F = b K q(omega) u`, K the mean coefficients of all teeth and `q = mean_j (1 - e^(-i omega tau_j))`, motion of a frequency
+/// omega keeps its size where `b q(omega) lambda(omega) = 1` for an eigenvalue lambda of `K G(i omega)` (Altintas and Budak 1995,
+/// here for a given speed, which allows for unequal pitch).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZeroOrder {
+    answers: Vec<(f64, Matrix2x3<Complex<f64>>)>,
+}
+
+/// Frequencies in the half width of a resonance.
+const IN_RESONANCE: f64 = 8.0;
+/// Half widths of a resonance in which frequencies are dense.
+const AROUND: f64 = 12.0;
+/// Frequencies in equal steps.
+const EVENLY: usize = 2000;
+/// Delays are followed in such steps of their phase. rad
+const STEP: f64 = 0.1;
+/// Frequencies go so far beyond the fastest mode.
+const BEYOND: f64 = 2.0;
+
+impl ZeroOrder {
+    /// Looks at the plant at evenly spread frequencies and densely around its resonances.
+    pub fn new(plant: &Plant) -> Self {
+        let poles = plant.poles();
+        let swinging = poles.iter().filter(|pole| pole.im > 0.0);
+        let most = BEYOND * poles.iter().fold(1.0_f64, |most, pole| most.max(pole.norm()));
+        let mut frequencies: Vec<f64> = (1..=EVENLY).map(|k| most * k as f64 / EVENLY as f64).collect();
+        for pole in swinging {
+            let step = (pole.re.abs() / IN_RESONANCE).max(1e-6 * pole.im);
+            let count = (AROUND * IN_RESONANCE) as i32;
+            frequencies.extend((-count..=count).map(|k| pole.im + step * f64::from(k)));
+        }
+        frequencies.retain(|omega| *omega > 0.0);
+        frequencies.sort_by(f64::total_cmp);
+        let answers = frequencies.into_iter().filter_map(|omega| Some((omega, plant.response(omega)?)));
+        Self { answers: answers.collect() }
+    }
+
+    /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `most`. m
+    ///
+    /// # Errors
+    /// [`EngagementError`] for a width of cut that is none.
+    pub fn critical_depth(&self, cutter: &Cutter, cut: &Cut, most: f64) -> Result<Option<f64>, EngagementError> {
+        let teeth = cutter.teeth();
+        let coefficients = mean(cutter, cut, exit(cutter, cut)?).map(Complex::from);
+        let delays: Vec<f64> = teeth.iter().map(|tooth| tooth.pitch / cut.spindle_speed).collect();
+        let longest = delays.iter().fold(0.0_f64, |most, delay| most.max(*delay));
+        let mut best = most;
+        let mut last = None::<[Complex<f64>; 2]>;
+        for pair in self.answers.windows(2) {
+            let [(from, first), (to, second)] = pair else { continue };
+            // Between two frequencies the delays may turn several times.
+            let steps = ((to - from) * longest / STEP).ceil().max(1.0) as usize;
+            for step in 0..steps {
+                let share = step as f64 / steps as f64;
+                let answer = first + (second - first) * Complex::from(share);
+                let found = gains(&coefficients, &delays, from + (to - from) * share, &answer);
+                let found = last.map_or(found, |last| matched(&last, found));
+                for (before, after) in last.iter().flatten().zip(found) {
+                    // Where the imaginary part passes zero.
+                    if before.im * after.im <= 0.0 && before.im != after.im {
+                        let real = before.re + before.im / (before.im - after.im) * (after.re - before.re);
+                        best = if real * best > 1.0 { 1.0 / real } else { best };
+                    }
+                }
+                last = Some(found);
+            }
+        }
+        Ok((best < most).then_some(best))
+    }
+}
+
+/// The eigenvalues of what one metre of depth feeds back.
+fn gains(
+    coefficients: &Matrix3x2<Complex<f64>>,
+    delays: &[f64],
+    omega: f64,
+    answer: &Matrix2x3<Complex<f64>>,
+) -> [Complex<f64>; 2] {
+    let factor: Complex<f64> = delays
+        .iter()
+        .map(|delay| {
+            let (sine, cosine) = libm::sincos(omega * delay);
+            Complex::new(1.0 - cosine, sine)
+        })
+        .sum();
+    let fed = answer * coefficients * factor;
+    let (half, determinant) = (fed.trace() / 2.0, fed.determinant());
+    let root = square_root(half * half - determinant);
+    [half + root, half - root]
+}
+
+fn square_root(z: Complex<f64>) -> Complex<f64> {
+    let norm = z.norm_sqr().sqrt();
+    let [real, imaginary] = [norm + z.re, norm - z.re].map(|twice| (twice.max(0.0) / 2.0).sqrt());
+    Complex::new(real, imaginary.copysign(z.im))
+}
+
+/// The second pair in the order in which it goes on from the first.
+fn matched(first: &[Complex<f64>; 2], [a, b]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
+    let [straight, crossed] = [[a, b], [b, a]].map(|[a, b]| (a - first[0]).norm_sqr() + (b - first[1]).norm_sqr());
+    if straight <= crossed { [a, b] } else { [b, a] }
+}

@@ -1,0 +1,17 @@
+//! Everything that is tested from outside: the command line, and independent oracles.
+
+mod assess;
+mod bad_input;
+mod certify;
+mod circularity;
+mod common;
+mod compensate;
+mod discretisation;
+mod identify;
+mod identify_plan;
+mod opw_oracle;
+mod place;
+mod score_explain;
+mod simulate;
+mod stability;
+mod uncertainty;
