@@ -221,7 +221,7 @@ fn a_task_without_rows_or_columns_is_refused() {
     refused_by_all(
         &bench,
         &format!("{RUN}:7: task: "),
-        &["has no force columns", "[cutting]", "found \"../tasks/five"],
+        &["has no force columns", "[tool] and [cut]", "found \"../tasks/five"],
     );
 }
 

@@ -23,7 +23,7 @@ fn text() -> String {
 }
 
 fn read(text: &str) -> Result<Robot, InputError> {
-    robot_from(&Source::new(Path::new("arm.toml"), text.as_bytes().to_vec())?)
+    robot_from(&TomlFile::new(Path::new("arm.toml"), text.as_bytes().to_vec())?)
 }
 
 /// The file with one line (from 1) replaced.

@@ -2,27 +2,25 @@
 
 mod arm;
 mod look;
-mod milling;
 mod survey;
 #[cfg(test)]
 mod tests;
 
 pub use arm::{MOST_DAMPING_SCALE, Overrides};
-pub use milling::FASTEST_RPM;
 
 use super::reader::{Field, Table};
-use super::source::Source;
+use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile};
+use crate::tool::Cutting;
+pub(crate) use arm::DampingScale;
 use arm::{ArmFields, FEED, setup_from};
-pub(super) use arm::{damping_scale_from, variant_from};
 use look::{LookFields, check_duration, check_step, look_from};
-pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use std::path::Path;
 use stead_simulation::milling::{Cut, Cutter};
 use stead_simulation::outcome::Look;
 use stead_simulation::setup::Setup;
 use stead_simulation::survey::Plan;
-pub(super) use survey::deepest_from;
+pub(crate) use survey::deepest;
 use survey::plan_from;
 
 /// A simulation file and the files it names, read and checked.
@@ -49,7 +47,7 @@ const SLICES: u64 = 32;
 const STEPS_PER_TURN: u64 = 360;
 
 /// Reads a simulation file and the robot file that it names. Top-level keys: `robot` (its path relative to the folder of the
-/// file), `[spindle]`, with mass, `[pass]`, `[work]` and `[milling]`; optionally `variant`, `damping_scale`, `[simulation]`,
+/// file), `[spindle]`, with mass, `[pass]`, `[work]`, `[tool]` and `[cut]`; optionally `variant`, `damping_scale`, `[simulation]`,
 /// `[stability]` and `[published]`. The shipped files explain each field.
 ///
 /// # Errors
@@ -69,9 +67,9 @@ pub fn read_survey(file: &Path, overrides: &Overrides) -> Result<SimulationRun, 
 }
 
 fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<SimulationRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability, published] =
+    let [robot, variant, damping_scale, spindle, pass, work, tool, cut, simulation, stability, published] =
         Table::root(&document).fields([
             "robot",
             "variant",
@@ -79,7 +77,8 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
             "spindle",
             "pass",
             "work",
-            "milling",
+            "tool",
+            "cut",
             "simulation",
             "stability",
             "published",
@@ -99,9 +98,10 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
         Ok::<_, InputError>(found.unwrap_or(default) as usize)
     };
     let (slices, steps) = (whole(0, 1024, SLICES)?, whole(1, 100_000, STEPS_PER_TURN)?);
-    let table = milling.table()?;
-    table.fields(MILLING_KEYS)?;
-    let (cutter, mut cut) = milling_from(&table, length, slices, steps)?;
+    let (tool, cut) = (Some(tool.read()?), Some(cut.read()?));
+    let root = document.root();
+    let cutting = Cutting::of(&tool, &cut, &root)?;
+    let (cutter, mut cut) = Cutting::required(cutting.as_ref(), &root)?.cutter_and_cut(length, slices, steps)?;
     slot.optional(|field| fits(field, &cutter))?;
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;

@@ -1,8 +1,11 @@
 //! The `[stability]` table of a simulation file.
 
 use super::super::reader::Field;
-use super::FASTEST_RPM;
 use crate::input::InputError;
+use crate::place::Place;
+use crate::quantity::Quantity;
+use crate::tool::FASTEST_RPM;
+use crate::units::{Mm, Positive};
 use std::f64::consts::TAU;
 use stead_simulation::milling::{Cut, Cutter};
 use stead_simulation::setup::Setup;
@@ -37,7 +40,7 @@ pub(super) fn plan_from(field: &Field<'_>, setup: &Setup, cutter: &Cutter, cut: 
     if let Some(count) = points.optional(|field| field.integer(2..=10_000))? {
         plan.points = count as usize;
     }
-    plan.deepest = deepest_from(&deepest, cutter)?;
+    plan.deepest = self::deepest(deepest.read()?, cutter, field)?;
     if let Some(ends) = frequencies.optional(|field| from_to(field, 0.0, 1e5))? {
         plan.frequencies = ends;
     }
@@ -45,9 +48,15 @@ pub(super) fn plan_from(field: &Field<'_>, setup: &Setup, cutter: &Cutter, cut: 
 }
 
 /// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
-pub(crate) fn deepest_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
+///
+/// # Errors
+/// [`InputError`] at `max_depth_mm` of the table that is here where it is more than that.
+pub(crate) fn deepest(depth: Option<Mm<Positive>>, cutter: &Cutter, at: &Place<'_>) -> Result<f64, InputError> {
     let flute_mm = cutter.flute() * 1e3;
-    let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
-    let depth = field.optional(|field| field.number_where(&within, |value| value > 0.0 && value <= flute_mm))?;
-    Ok(depth.map_or(cutter.flute(), |mm| mm / 1e3))
+    match depth {
+        Some(depth) if depth.written() > flute_mm => Err(at
+            .key("max_depth_mm")
+            .out_of_range(format!("a number above 0 and not above flute_length_mm = {flute_mm}"))),
+        depth => Ok(depth.map_or(cutter.flute(), Quantity::si)),
+    }
 }
