@@ -11,7 +11,7 @@ use std::time::Instant;
 use stead_format::{Overrides, SimulationRun, read_simulation};
 use stead_simulation::arm::Variant;
 use stead_simulation::coupled::{Job, Run};
-use stead_simulation::milling::Milling;
+use stead_simulation::milling::MaterialRemoval;
 use stead_simulation::surface::Node;
 
 fn main() {

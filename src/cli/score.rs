@@ -8,7 +8,7 @@ use stead_placement::place::score;
 use stead_placement::problem::{Criterion, Placement, Problem};
 use stead_report::stability::PathStability;
 use stead_report::{evaluation, json};
-use stead_simulation::chatter::{Chatter, Station};
+use stead_simulation::path_stability::{PathStabilityAnalysis, Station};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
@@ -41,7 +41,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
 /// Critical depths along two plans.
 pub(super) fn path_stability(
     problem: &Problem,
-    chatter: &Chatter,
+    chatter: &PathStabilityAnalysis,
     plans: [(&Placement, &Plan); 2],
 ) -> Result<PathStability, Failure> {
     let along = |(placement, plan): (&Placement, &Plan)| {

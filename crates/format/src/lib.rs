@@ -47,4 +47,4 @@ pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run, read_run_to_certify};
-pub use simulation::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_survey};
+pub use simulation::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};

@@ -1,7 +1,7 @@
 //! Run files.
 
 use super::certificate::{certificate_from, check_size};
-use super::chatter::chatter_from;
+use super::path_stability::chatter_from;
 use super::cutting::cutting_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::{moving_robot_from, robot_from};
@@ -18,7 +18,7 @@ use stead_model::task::{Task, ToolPath};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
-use stead_simulation::chatter::Chatter;
+use stead_simulation::path_stability::PathStabilityAnalysis;
 
 /// A run file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Run {
     /// Published figures to print beside ours.
     pub reference: Option<Reference>,
     /// What is to be cut along the path, where its stability is asked for.
-    pub chatter: Option<Chatter>,
+    pub chatter: Option<PathStabilityAnalysis>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
 }

@@ -154,7 +154,7 @@ fn percent(pair: [Figures; 2]) -> Value {
 fn model(model: Model) -> &'static str {
     match model {
         Model::Equilibrium => "equilibrium",
-        Model::Linear => "linear",
+        Model::LinearArm => "linear",
     }
 }
 
@@ -162,7 +162,7 @@ fn model(model: Model) -> &'static str {
 pub fn compensation_text(run: &CompensateRun, outcome: &Outcome) -> String {
     let model = match run.job.settings.model {
         Model::Equilibrium => "the static equilibrium",
-        Model::Linear => "the linear displacement",
+        Model::LinearArm => "the linear displacement",
     };
     let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
     let played = if run.has_reality {

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 /// An arm at rest, for small motions about it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Linear<const N: usize> {
+pub struct LinearArm<const N: usize> {
     /// kg m^2
     pub mass: SMatrix<f64, N, N>,
     /// N m s/rad
@@ -44,7 +44,7 @@ impl Mode {
     }
 }
 
-impl<const N: usize> Linear<N> {
+impl<const N: usize> LinearArm<N> {
     /// The arm at rest at angles `q` (rad), with its damping times `damping_scale`.
     pub fn of(arm: &Arm<N>, q: &SVector<f64, N>, damping_scale: f64) -> Self {
         let posed = arm.chain.at(q);
@@ -130,8 +130,8 @@ impl<const N: usize> Linear<N> {
         let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));
         let jacobian = DMatrix::from_fn(N, 3, |row, column| Complex::from(self.tip[(column, row)]));
         let angles = matrix.lu().solve(&jacobian)?;
-        let answer = jacobian.transpose() * angles;
-        Some(Matrix3::from_fn(|row, column| answer[(row, column)]))
+        let response = jacobian.transpose() * angles;
+        Some(Matrix3::from_fn(|row, column| response[(row, column)]))
     }
 }
 

@@ -16,11 +16,11 @@ mod limit;
 #[cfg(test)]
 mod tests;
 
-pub use cut::{Cut, CutError, least_steps};
+pub use cut::{Cut, CutError, min_steps};
 pub use cutter::{Coefficients, Cutter, CutterError, Tooth};
 pub use limit::{Limit, Limits};
 
-use super::surface::{LANES, Look, Node, Passes, Predecessor, Rays, Stock, Trail, starts};
+use super::surface::{LANES, Node, Passes, Predecessor, Rays, Stock, ToothQuery, Trail, starts};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 use stead_numerics::simd::{Instructions, Lanes};
@@ -162,7 +162,7 @@ impl Milling {
         let last = self.lags.len() - 1;
         for edge in &self.teeth {
             let tip = edge.tip(time, self.turn, self.sense);
-            let look = Look {
+            let query = ToothQuery {
                 trail: &self.trail,
                 predecessors: &edge.predecessors,
                 largest: self.largest,
@@ -180,7 +180,7 @@ impl Milling {
                 if bundle == last {
                     rays.to[self.rest..].fill(-1.0);
                 }
-                self.passes.clear(simd, &look, &mut rays);
+                self.passes.clear(simd, &query, &mut rays);
                 chips.add(simd, &rays);
             }
         }

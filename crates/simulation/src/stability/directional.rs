@@ -76,10 +76,10 @@ pub(super) fn mean(cutter: &Cutter, cut: &Cut, exit: f64) -> Matrix3x2<f64> {
     matrix(cutter, cut.milling, &Integrals::over(Arc { entry: 0.0, exit })) / TAU
 }
 
-fn matrix(cutter: &Cutter, milling: Milling, sums: &Integrals) -> Matrix3x2<f64> {
+fn matrix(cutter: &Cutter, milling: MillingDirection, sums: &Integrals) -> Matrix3x2<f64> {
     let tangential = match milling {
-        Milling::Climb => cutter.coefficients().tangential,
-        Milling::Conventional => -cutter.coefficients().tangential,
+        MillingDirection::Climb => cutter.coefficients().tangential,
+        MillingDirection::Conventional => -cutter.coefficients().tangential,
     };
     let Coefficients { radial, axial, .. } = cutter.coefficients();
     let Integrals { sine, cosine, sine_squared, cosine_squared, sine_cosine } = *sums;

@@ -40,7 +40,7 @@ fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
             let reach = brute_force(&wild, &cutter, cut.sense(), step as f64, psi);
             let expected = (to - from.max(reach)).max(0.0);
             met += usize::from(expected > 0.0);
-            assert!((found - expected).abs() < 2e-9, "{found} {expected} at {step} {way:?} {width}");
+            assert!((found - expected).abs() < 2e-9, "{found} {expected} at {step} {direction:?} {width}");
         }
         assert!(met > 10, "{met}");
     }

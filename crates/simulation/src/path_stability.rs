@@ -2,14 +2,14 @@
 
 use super::arm::Variant;
 use super::milling::{Cut, Cutter};
-use super::survey::{CutFrame, Depths, SurveyError, depths, linear_of};
+use super::stability_analysis::{CutFrame, CutStability, StabilityError, cut_stability, linear_of};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use stead_model::robot::{Robot, Spindle};
 
 /// What is to be cut along a path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chatter {
+pub struct PathStabilityAnalysis {
     /// How much of the arm is modelled.
     pub variant: Variant,
     /// What all damping is multiplied with.
@@ -19,36 +19,41 @@ pub struct Chatter {
     /// The cut, at every point of the path alike.
     pub cut: Cut,
     /// Depths of cut beyond this are not looked at. m
-    pub deepest: f64,
+    pub max_depth: f64,
 }
 
 /// An arm somewhere on a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
+pub struct PathConfiguration {
     /// Joint angles. rad
     pub joints: [f64; 6],
     /// Direction of the feed in the base frame.
     pub feed: Vector3<f64>,
 }
 
-impl Chatter {
+impl PathStabilityAnalysis {
     /// Critical depths and the verdict at every station, in their order.
     ///
     /// # Errors
-    /// [`SurveyError`] for a robot that says too little, or a cut without width.
-    pub fn along(&self, robot: &Robot, spindle: &Spindle, stations: &[Station]) -> Result<Vec<Depths>, SurveyError> {
-        let at = |station: &Station| {
-            let linear = linear_of(robot, spindle, self.variant, self.damping_scale, &station.joints)?;
-            let tool = robot.forward(&station.joints).then(&spindle.flange_from_tool);
-            let frame = CutFrame::new(station.feed, -tool.rotation.column(2), self.cut.milling);
-            Ok(depths(&linear.plant(&frame)?, &self.cutter, &self.cut, self.deepest)?)
+    /// [`StabilityError`] for a robot that says too little, or a cut without width.
+    pub fn along(
+        &self,
+        robot: &Robot,
+        spindle: &Spindle,
+        configurations: &[PathConfiguration],
+    ) -> Result<Vec<CutStability>, StabilityError> {
+        let at = |configuration: &PathConfiguration| {
+            let linear = linear_of(robot, spindle, self.variant, self.damping_scale, &configuration.joints)?;
+            let tool = robot.forward(&configuration.joints).then(&spindle.flange_from_tool);
+            let frame = CutFrame::new(configuration.feed, -tool.rotation.column(2), self.cut.milling);
+            Ok(cut_stability(&linear.plant(&frame)?, &self.cutter, &self.cut, self.max_depth)?)
         };
-        stations.par_iter().map(at).collect()
+        configurations.par_iter().map(at).collect()
     }
 }
 
 /// The smallest critical depth (m) by semi-discretisation, and which station has it; none where all are stable.
-pub fn smallest(depths: &[Depths]) -> Option<(usize, f64)> {
+pub fn smallest(cut_stability: &[CutStability]) -> Option<(usize, f64)> {
     let found = depths.iter().enumerate().filter_map(|(k, depths)| Some((k, depths.semi_discretisation?)));
     found.min_by(|a, b| a.1.total_cmp(&b.1))
 }
