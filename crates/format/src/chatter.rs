@@ -1,7 +1,7 @@
 //! The `[stability]` table of a run: what is to be cut along the path, to be told where it chatters.
 
 use super::reader::Table;
-use super::simulation::{MILLING_KEYS, damping_scale_from, deepest_from, milling_from, variant_from};
+use super::simulation::{MILLING_KEYS, damping_scale_from, max_depth_from, milling_from, variant_from};
 use crate::input::InputError;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 
@@ -25,7 +25,7 @@ pub(super) fn chatter_from(table: &Table<'_>) -> Result<PathStabilityAnalysis, I
     Ok(PathStabilityAnalysis {
         variant: variant_from(&variant)?,
         damping_scale: damping_scale_from(&damping_scale)?,
-        max_depth: deepest_from(&max_depth, &cutter)?,
+        max_depth: max_depth_from(&max_depth, &cutter)?,
         cutter,
         cut,
     })

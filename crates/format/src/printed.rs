@@ -3,9 +3,9 @@
 use super::reader::{Field, Table};
 use super::source::Source;
 use crate::input::InputError;
+use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
 use stead_assessment::published::{PublishedTables, Quantity, Reading};
-use stead_assessment::comparison::Load;
 
 /// Reads published tables: `source`, the heads `sides_mm`, `forces_n` and `accuracies_mm`, and for each of `[[robots]]` its
 /// `name`, `accuracy_mm` (by force), `largest_force_n` (by accuracy: the largest of the forces at which the robot is

@@ -1,8 +1,8 @@
 //! Run files.
 
 use super::certificate::{certificate_from, check_size};
-use super::path_stability::chatter_from;
 use super::cutting::cutting_from;
+use super::path_stability::chatter_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::{moving_robot_from, robot_from};
 use super::source::{Source, input_file};

@@ -7,7 +7,7 @@ mod tests;
 use benchmark::{Setting, benchmark_from, direction, yield_from};
 
 use super::milling::milling_from;
-use super::published::printed_from;
+use super::printed::printed_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
 use super::source::{Source, input_file};
@@ -15,10 +15,10 @@ use super::tables::spindle_from;
 use crate::input::{InputError, InputFile};
 use std::path::Path;
 use stead_assessment::benchmark::Plane;
+use stead_assessment::comparison::Comparison;
 use stead_assessment::map::Grid;
 use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
-use stead_assessment::comparison::Comparison;
 use stead_model::cutting::ForceHistory;
 use stead_model::robot::{Compliance, Pose, Robot};
 
@@ -69,8 +69,14 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let force_history = cut.map(|(tool, engagement)| ForceHistory::new(&tool, &engagement));
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
     let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
-    let setting =
-        Setting { plane, flange_from_tool, yields, force_history: force_history.as_ref(), milling: &milling, spindle: &spindle };
+    let setting = Setting {
+        plane,
+        flange_from_tool,
+        yields,
+        force_history: force_history.as_ref(),
+        milling: &milling,
+        spindle: &spindle,
+    };
     let (benchmark, elbow_names) = benchmark_from(&benchmark.table()?, &setting)?;
     let grid = grid_from(&map.table()?)?;
     let zones = zones.optional(|field| zones_from(&field.table()?, &grid))?.unwrap_or_default();

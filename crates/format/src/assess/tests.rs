@@ -3,9 +3,9 @@ use super::*;
 use nalgebra::{Matrix3, Vector3};
 use std::path::PathBuf;
 use stead_assessment::benchmark::{LimitsAt, StiffnessModel, Turning};
+use stead_assessment::comparison::{ElbowNames, Load};
 use stead_assessment::map::Elbow;
 use stead_assessment::published::Quantity;
-use stead_assessment::comparison::{ElbowNames, Load};
 
 /// An assessment file without optional tables but a few, for two robots.
 const TEXT: &str = "robots = ['one.toml', 'two.toml']

@@ -28,7 +28,11 @@ const DAMPED: f64 = 0.5;
 ///
 /// # Errors
 /// [`InputError`] with file, line and field.
-pub(super) fn look_from(fields: &LookFields<'_, '_>, setup: &Setup, cut: &Cut) -> Result<EvaluationSettings, InputError> {
+pub(super) fn look_from(
+    fields: &LookFields<'_, '_>,
+    setup: &Setup,
+    cut: &Cut,
+) -> Result<EvaluationSettings, InputError> {
     let mut look = EvaluationSettings { window: None, height: cut.axial_depth / 2.0, cutoff: CUTOFF, published: None };
     if let Some([window, height, cutoff]) = fields.keys {
         let duration = setup.motion.duration();

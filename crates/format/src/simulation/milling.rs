@@ -81,7 +81,8 @@ pub(crate) fn milling_from(
     let (width, mean) = (radial.positive()? / 1e3, 2.0 * cutter.radius());
     let radial_depth = if (2.0 * radius.min(cutter.radius())..=2.0 * radius).contains(&width) { mean } else { width };
     let cut = Cut {
-        milling: milling.one_of(&[("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)])?,
+        milling: milling
+            .one_of(&[("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)])?,
         radial_depth,
         axial_depth: axial.positive()? / 1e3,
         length,

@@ -3,7 +3,7 @@
 mod arm;
 mod look;
 mod milling;
-mod stability_analysis;
+mod stability;
 #[cfg(test)]
 mod tests;
 
@@ -17,13 +17,13 @@ use arm::{ArmFields, FEED, setup_from};
 pub(super) use arm::{damping_scale_from, variant_from};
 use look::{LookFields, check_duration, check_step, look_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
+use stability::analysis_from;
+pub(super) use stability::max_depth_from;
 use std::path::Path;
 use stead_simulation::milling::{Cut, Cutter};
 use stead_simulation::outcome::EvaluationSettings;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
-pub(super) use stability::deepest_from;
-use stability::plan_from;
 
 /// A simulation file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,9 +37,9 @@ pub struct SimulationRun {
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
     /// How to look at the simulated pass.
-    pub look: EvaluationSettings,
+    pub evaluation: EvaluationSettings,
     /// What is to be found out of its stability.
-    pub plan: AnalysisSettings,
+    pub analysis: AnalysisSettings,
     /// The files that were read: config, robot.
     pub inputs: Vec<InputFile>,
 }
@@ -60,7 +60,7 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
     read(file, overrides, true)
 }
 
-/// The same for a survey of small motions, which makes no steps: they may be as coarse and as many as they like.
+/// The same for a stability analysis, which makes no steps: they may be as coarse and as many as they like.
 ///
 /// # Errors
 /// [`InputError`] as [`read_simulation`], but for the steps.
@@ -106,13 +106,13 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;
     }
-    let plan = plan_from(&stability, &setup, &cutter, &cut)?;
+    let analysis = analysis_from(&stability, &setup, &cutter, &cut)?;
     if steps_are_made {
         check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
         check_duration(&setup, &cut, &feed)?;
     }
-    let look = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap, look, plan, inputs })
+    let evaluation = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap, evaluation, analysis, inputs })
 }
 
 /// The width of the slot that the pass is part of: the cutter has to fit into it.

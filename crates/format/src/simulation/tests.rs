@@ -85,7 +85,10 @@ fn optional_tables_override_the_defaults() {
         .replace("# steps_per_turn = 360", "steps_per_turn = 90\nwall_height_mm = 1.2\ncutoff_mm = 0.8");
     let run = read(&text).unwrap();
     assert_eq!((run.cut.slices, run.cut.steps_per_turn, run.setup.damping_scale), (8, 90, 2.0));
-    assert_eq!((run.evaluation.height, run.evaluation.cutoff, run.evaluation.window), (1.2e-3, 0.8e-3, Some([0.4, 1.4])));
+    assert_eq!(
+        (run.evaluation.height, run.evaluation.cutoff, run.evaluation.window),
+        (1.2e-3, 0.8e-3, Some([0.4, 1.4]))
+    );
     // The figures of the variant that is run, which is the first where none is named.
     let published = run.evaluation.published.unwrap();
     assert_eq!(published.forces.unwrap()[1].min, -111.39);
