@@ -1,4 +1,4 @@
-//! The whole assessment: every robot, both elbows, both loads, zones, and the selection.
+//! Comparison of robots: every robot, both elbows, both loads, zones, and the selection.
 
 use super::benchmark::{Benchmark, MAX_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
@@ -67,7 +67,7 @@ pub struct Zones {
 /// One robot with one elbow under one load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configuration {
-    /// The elbow, by the names of the study.
+    /// The elbow, by the names of the comparison.
     pub elbow: Elbow,
     /// The load.
     pub load: Load,
@@ -83,7 +83,7 @@ pub struct Configuration {
     pub max: Option<MapPoint>,
     /// The middle of the map: the centre of the largest square of places that can all be milled.
     pub middle: Option<MapPoint>,
-    /// Zones of the sizes of the study, in their order.
+    /// Zones of the sizes of the comparison, in their order.
     pub zones: Vec<Zones>,
 }
 
@@ -98,7 +98,7 @@ pub struct RobotResult {
     pub working_radius: f64,
     /// Load of [`Load::Rated`] in multiples of the benchmark's wrench, where the payload is known.
     pub rated_load: Option<f64>,
-    /// Elbow up, then elbow down, by the names of the study: circularity under the test load and, where there is one, under
+    /// Elbow up, then elbow down, by the names of the comparison: circularity under the test load and, where there is one, under
     /// the rated load (else that of the test load again).
     pub maps: [(Elbow, Map<2>); 2],
     /// Both elbows under the test load, then both under the rated load where there is one.
@@ -108,7 +108,7 @@ pub struct RobotResult {
 /// What an assessment finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
-    /// The robots in the order of the study.
+    /// The robots in the order of the comparison.
     pub robots: Vec<RobotResult>,
     /// Every robot at every force of the selection.
     pub accuracies: Vec<Accuracy>,
@@ -170,7 +170,7 @@ pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Assesses every robot of the study. `progress` is told how many rows of maps are done, and of how many; it says whether to
+/// Assesses every robot of the comparison. `progress` is told how many rows of maps are done, and of how many; it says whether to
 /// go on.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Published results to set beside ours, and how far the two agree.
+//! Published results of an assessment, and their agreement with computed ones.
 
 use super::comparison::{Assessment, Configuration, Load};
 use super::map::Elbow;

@@ -20,13 +20,13 @@
 mod arrays;
 mod assess;
 mod certificate;
-mod chatter;
 mod compensate;
 mod cutting;
 mod identify;
 mod inertial;
 pub mod input;
 mod milling;
+mod path_stability;
 mod points;
 mod printed;
 pub mod reader;

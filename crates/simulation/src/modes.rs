@@ -1,4 +1,4 @@
-//! What swings how fast: natural frequencies, damping and shapes of an arm, and how its tip answers to a swinging force.
+//! Modal analysis: natural frequencies, damping ratios and mode shapes of an arm, and the frequency response of its tip.
 //!
 //! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state matrix
 //! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode with damping ratio `zeta`; its natural
@@ -124,7 +124,7 @@ impl<const N: usize> LinearArm<N> {
         })
     }
 
-    /// How the tip answers (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
+    /// Response of the tip (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
     /// are directions of the force; none in a resonance without damping.
     pub fn response(&self, frequency: f64) -> Option<Matrix3<Complex<f64>>> {
         let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));

@@ -18,7 +18,7 @@ pub struct PathStabilityAnalysis {
     pub cutter: Cutter,
     /// The cut, at every point of the path alike.
     pub cut: Cut,
-    /// Depths of cut beyond this are not looked at. m
+    /// Largest depth of cut that is examined. m
     pub max_depth: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct PathConfiguration {
 }
 
 impl PathStabilityAnalysis {
-    /// Critical depths and the verdict at every station, in their order.
+    /// Critical depths and the verdict at every configuration, in their order.
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little, or a cut without width.
@@ -52,8 +52,8 @@ impl PathStabilityAnalysis {
     }
 }
 
-/// The smallest critical depth (m) by semi-discretisation, and which station has it; none where all are stable.
-pub fn smallest(cut_stability: &[CutStability]) -> Option<(usize, f64)> {
+/// The smallest critical depth (m) by semi-discretisation, and which configuration has it; none where all are stable.
+pub fn smallest(depths: &[CutStability]) -> Option<(usize, f64)> {
     let found = depths.iter().enumerate().filter_map(|(k, depths)| Some((k, depths.semi_discretisation?)));
     found.min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -1,4 +1,4 @@
-//! Whether a cut chatters: modes of the arm, its answer at the tip, and how deep it may cut at which spindle speed.
+//! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the spindle speed.
 
 use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::milling::{Cut, Cutter};
@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
-use stead_model::cutting::{EngagementError, Milling};
+use stead_model::cutting::{EngagementError, MillingDirection};
 use stead_model::robot::{Robot, Spindle};
 
 /// What is to be found out.
@@ -19,13 +19,13 @@ pub struct AnalysisSettings {
     pub speeds: [f64; 2],
     /// Spindle speeds between and at both.
     pub points: usize,
-    /// Depths of cut beyond this are not looked at. m
+    /// Largest depth of cut that is examined. m
     pub max_depth: f64,
-    /// Frequencies of the answer at the tip, from and to. Hz
+    /// Frequencies of the frequency response, from and to. Hz
     pub frequencies: [f64; 2],
 }
 
-/// How the tip answers to a swinging force, in the plane of the cut.
+/// Frequency response of the tool tip at one frequency, in the plane of the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrequencyResponse {
     /// Frequency of the force. Hz
@@ -67,7 +67,7 @@ impl CutFrame {
 /// How deep may be cut, and whether the cut at hand is calm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CutStability {
-    /// By semi-discretisation; none where all depths looked at are stable. m
+    /// By semi-discretisation; none where all depths up to the largest are stable. m
     pub semi_discretisation: Option<f64>,
     /// By the zero-order solution. m
     pub zero_order: Option<f64>,
@@ -75,12 +75,12 @@ pub struct CutStability {
     pub verdict: Verdict,
 }
 
-/// What a survey found.
+/// Result of a stability analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StabilityAnalysis {
     /// All modes, by natural frequency.
     pub modes: Vec<Mode>,
-    /// The answer at the tip over frequency.
+    /// Frequency response of the tool tip.
     pub frequency_response: Vec<FrequencyResponse>,
     /// At the spindle speed of the cut.
     pub cut_stability: CutStability,
@@ -90,10 +90,10 @@ pub struct StabilityAnalysis {
     pub pass_time: f64,
 }
 
-/// Frequencies of the answer at the tip.
+/// Number of frequencies of the frequency response.
 const FREQUENCIES: usize = 1000;
 
-/// Modes, answer, critical depths and lobes of a cut, with the arm where the plan says.
+/// Modes, frequency response, critical depths and stability lobes of a cut, linearised where the settings say.
 ///
 /// # Errors
 /// [`StabilityError`] for an arm that says too little, or a cut without width.
@@ -196,7 +196,7 @@ impl AnyLinearArm {
         modes.ok_or(StabilityError::Singular)
     }
 
-    /// The answer of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
+    /// The response of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
     ///
     /// # Errors
     /// [`StabilityError::Singular`] in a resonance without damping.
@@ -221,7 +221,7 @@ impl AnyLinearArm {
         plant.ok_or(StabilityError::Singular)
     }
 
-    /// The answer in the plane of the cut at frequencies (Hz).
+    /// Frequency response in the plane of the cut at frequencies (Hz).
     ///
     /// # Errors
     /// [`StabilityError::Singular`] in a resonance without damping.

@@ -128,7 +128,7 @@ impl<'a> DeflectedCircle<'a> {
     fn go_round(&self, centre: [f64; 2], class: PostureClass, angles: &mut Vec<[f64; 6]>) -> Result<(), Obstacle> {
         angles.clear();
         let radius = self.benchmark.radius;
-        // Joints 1 to 3 are looked at as they come: most circles that fail do so early.
+        // Joints 1 to 3 are checked as they come: most circles that fail do so early.
         let (early, mut flip) = match self.benchmark.limits_at {
             LimitsAt::Circle => (3, Flip::Plain),
             LimitsAt::Centre => {

@@ -58,7 +58,7 @@ pub enum Turning {
     AgainstTool,
 }
 
-/// Where the limits of the joints are looked at.
+/// Where the limits of the joints are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimitsAt {
     /// At every point of the circle: the whole circle can be milled in one posture.
@@ -104,7 +104,7 @@ pub struct Benchmark {
     pub flange_from_tool: Option<Pose<f64>>,
     /// Which joints yield; the others count as rigid.
     pub yielding: [bool; 6],
-    /// Where limits are looked at.
+    /// Where limits are checked.
     pub limits_at: LimitsAt,
     /// How a wrench becomes a deflection.
     pub stiffness: StiffnessModel,

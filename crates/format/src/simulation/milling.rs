@@ -3,7 +3,7 @@
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
 use std::f64::consts::TAU;
-use stead_model::cutting::Milling;
+use stead_model::cutting::MillingDirection;
 use stead_simulation::milling::{Coefficients, Cut, CutError, Cutter, CutterError, Tooth};
 
 /// The keys of a cutter and its cut.

@@ -1,7 +1,7 @@
 use super::*;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
-use stead_model::cutting::Milling;
+use stead_model::cutting::MillingDirection;
 use stead_simulation::arm::Variant;
 use stead_simulation::arm::testing::{spindle, start};
 
@@ -112,7 +112,7 @@ fn a_cut_of_the_whole_diameter_is_a_slot() {
     assert!(!run.cut.is_slot(&run.cutter) && run.cut.radial_depth == 9.9e-3);
 }
 
-/// A survey makes no steps, so that a slow pass and a slow spindle are none of its business.
+/// A stability analysis makes no steps, so that a slow pass and a slow spindle are none of its business.
 #[test]
 fn a_survey_does_not_ask_for_steps() {
     let text = shipped("umons-aluminium.toml").replace("window_s", "# window_s");

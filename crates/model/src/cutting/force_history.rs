@@ -1,4 +1,4 @@
-//! How force and moment of a milling tool go with the engagement and over a turn (Klimchik 2017, Fig. 4).
+//! Force and moment of a milling tool over the engagement and over a turn (Klimchik 2017, Fig. 4).
 
 use super::engagement::{Arc, Engagement, Integrals};
 use super::milling_tool::MillingTool;
@@ -34,7 +34,7 @@ const ENTERING_STEPS: u32 = 180;
 const TURN_STEPS: u32 = 720;
 
 impl ForceHistory {
-    /// The course of a tool in an engagement.
+    /// The forces of a tool in an engagement.
     pub fn new(tool: &MillingTool, engagement: &Engagement) -> Self {
         let angles = |steps: u32, end: f64| (0..=steps).map(move |k| end * (f64::from(k) / f64::from(steps)));
         let entering = |phi| Sample { phi, wrench: tool.mean_over(Integrals::over(Arc { entry: 0.0, exit: phi })) };

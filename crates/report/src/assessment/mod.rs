@@ -16,7 +16,7 @@ use stead_assessment::published::{Agreement, PublishedTables};
 use stead_format::input::InputFile;
 use stead_model::cutting::ForceHistory;
 
-/// What the reports of an assessment state besides the study and its result.
+/// What the reports of an assessment state besides the comparison and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AssessmentContext {
     /// The files the result depends on.

@@ -1,4 +1,4 @@
-//! The JSON document of a survey.
+//! The JSON document of a stability analysis.
 
 use super::super::json;
 use super::super::number::Unit;

@@ -1,4 +1,4 @@
-//! Reports of a stability survey: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
+//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
 //! text for people.
 
 mod json;

@@ -15,7 +15,7 @@ use stead_simulation::stability_analysis::CutStability;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathStability {
     /// What is to be cut.
-    pub chatter: PathStabilityAnalysis,
+    pub analysis: PathStabilityAnalysis,
     /// Along both plans, point by point.
     pub plans: [Vec<CutStability>; 2],
 }
@@ -50,11 +50,11 @@ impl PathStability {
             value
         };
         json!({
-            "variant": self.chatter.variant.word(),
-            "damping_scale": self.chatter.damping_scale,
-            "spindle_rpm": RPM.number(self.chatter.cut.spindle_speed),
-            "axial_depth_mm": DEPTH_MM.number(self.chatter.cut.axial_depth),
-            "max_depth_mm": DEPTH_MM.number(self.chatter.max_depth),
+            "variant": self.analysis.variant.word(),
+            "damping_scale": self.analysis.damping_scale,
+            "spindle_rpm": RPM.number(self.analysis.cut.spindle_speed),
+            "axial_depth_mm": DEPTH_MM.number(self.analysis.cut.axial_depth),
+            "max_depth_mm": DEPTH_MM.number(self.analysis.max_depth),
             "best": plan(&self.plans[0]),
             "worst": plan(&self.plans[1]),
         })
@@ -66,14 +66,14 @@ impl PathStability {
         for (name, depths) in names.iter().zip(&self.plans) {
             let max_depth = match smallest(depths) {
                 Some((point, depth)) => format!("down to {} mm (point {point})", fixed(depth * 1e3, 3)),
-                None => format!("beyond {} mm everywhere", fixed(self.chatter.max_depth * 1e3, 3)),
+                None => format!("beyond {} mm everywhere", fixed(self.analysis.max_depth * 1e3, 3)),
             };
             let (bad, count) = (chattering(depths), depths.len());
             let verdict = match bad {
                 0 => "is stable at every point".to_owned(),
                 _ => format!("chatters at {bad} of {count} points"),
             };
-            let depth = fixed(self.chatter.cut.axial_depth * 1e3, 3);
+            let depth = fixed(self.analysis.cut.axial_depth * 1e3, 3);
             text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
         }
         text
@@ -84,7 +84,7 @@ fn chattering(depths: &[CutStability]) -> usize {
     depths.iter().filter(|at| !at.verdict.is_stable()).count()
 }
 
-/// One row for each path point; depths are empty where all depths looked at are stable.
+/// One row for each path point; depths are empty where all depths up to the largest are stable.
 fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
     const HEADER: [&str; 7] =
         ["point", "segment", "critical_depth_mm", "zero_order_mm", "stable", "kind", "growth_rate_per_s"];

@@ -1,4 +1,4 @@
-//! The CSV tables of a survey.
+//! The CSV tables of a stability analysis.
 
 use super::super::number::Unit;
 use super::super::output::ReportError;
@@ -35,7 +35,7 @@ pub(super) fn joint_name(index: usize, count: usize) -> String {
     format!("joint{}{}", index / each + 1, ["", "_x", "_y"][index % each])
 }
 
-/// `frequency-response.csv`: the complex answer of the tip at each frequency: along the feed to a force along the feed, along the
+/// `frequency-response.csv`: the complex frequency response of the tip: along the feed to a force along the feed, along the
 /// normal of the wall to a force along it, and across.
 ///
 /// # Errors
@@ -59,7 +59,7 @@ pub fn responses(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
     table("the table of the frequency response", &HEADER, rows)
 }
 
-/// `lobes.csv`: critical depth over spindle speed, empty where all depths looked at are stable.
+/// `lobes.csv`: critical depth over spindle speed, empty where all depths up to the largest are stable.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.

@@ -112,7 +112,7 @@ impl<'a, const N: usize> Frozen<'a, N> {
         Self { arm, step, spacing, tips, intervals, tick, asked, loose }
     }
 
-    /// The station at a way (m), and the tip there.
+    /// The interval at a distance (m) along the pass, and the tip there.
     fn at(&self, distance: f64) -> (usize, Tip<N>) {
         let place = distance / self.spacing;
         let index = (place.max(0.0) as usize).min(self.intervals.len() - 1);
@@ -289,7 +289,7 @@ fn stepped<const N: usize>(
             place += moved;
             assumed = found;
             // What the force changes by when the tip moves so far.
-            let follows = process.milling.stiffness() * moved.norm();
+            let follows = process.removal.stiffness() * moved.norm();
             if follows <= (FORCE_TOLERANCE * found.norm()).max(MIN_FORCE) {
                 break;
             }

@@ -11,7 +11,7 @@ mod tests;
 
 use super::arm::{AnyArm, Missing};
 use super::integrator::StepError;
-use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, Milling};
+use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, MaterialRemoval};
 use super::motion::Motion;
 use super::setup::Setup;
 use super::stability_analysis::CutFrame;
@@ -154,7 +154,7 @@ impl CutPlane {
 struct Process<'a> {
     motion: &'a Motion,
     plane: CutPlane,
-    milling: MillingDirection,
+    removal: MaterialRemoval,
     limits: Limits,
     step: f64,
     samples: Vec<Sample>,
@@ -168,7 +168,7 @@ impl<'a> Process<'a> {
         Ok(Self {
             motion: &job.setup.motion,
             plane: CutPlane::new(job),
-            milling: MillingDirection::with_room(job.cutter, job.cut, steps)?,
+            removal: MaterialRemoval::with_room(job.cutter, job.cut, steps)?,
             limits: Limits { radius: job.cutter.radius(), spindle_speed: job.cut.spindle_speed },
             step,
             samples: Vec::with_capacity(steps),
@@ -188,7 +188,7 @@ impl<'a> Process<'a> {
         let whole = steps.round();
         // Times are products with the step: whole ones but for rounding.
         let steps = if (steps - whole).abs() < 1e-6 { whole } else { steps };
-        self.milling.force(steps, place)
+        self.removal.force(steps, place)
     }
 
     /// Writes down the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
@@ -198,7 +198,7 @@ impl<'a> Process<'a> {
         let nominal = self.plane.nominal(self.motion, distance);
         let deflection = [place[0] - nominal[0], place[1] - nominal[1]];
         self.samples.push(Sample { force: force.on_tool, deflection });
-        self.milling.remember(Node { place, motion: velocity.map(|part| part * self.step) });
+        self.removal.remember(Node { place, motion: velocity.map(|part| part * self.step) });
         self.limits.check(time, force.chip, deflection, [velocity[0] - feed, velocity[1]])
     }
 
@@ -206,7 +206,7 @@ impl<'a> Process<'a> {
         Run {
             step: self.step,
             samples: self.samples,
-            trail: self.milling.into_trail(),
+            trail: self.removal.into_trail(),
             end,
             evaluations: self.evaluations,
         }

@@ -4,7 +4,7 @@ use super::*;
 use crate::arm::{Variant, testing};
 use crate::milling::{Coefficients, Tooth};
 use crate::motion::{Pass, Ramp};
-use crate::outcome::{Look, Simulation, Statistics, statistics};
+use crate::outcome::{EvaluationSettings, Simulation, Statistics, statistics};
 use crate::stability::SemiDiscretisation;
 use crate::stability_analysis::linear_at;
 use std::f64::consts::TAU;
@@ -190,7 +190,7 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), Cut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
-    let look = Look { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
+    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
     let frame = CutFrame::along(&setup.motion, cut.milling);
     let verdict_at = |distance: f64| {

@@ -30,7 +30,7 @@ const STRETCH: usize = 6;
 
 /// Milling under way: the cutter in the work that it has milled so far.
 #[derive(Debug, Clone)]
-pub struct Milling {
+pub struct MaterialRemoval {
     teeth: Vec<Edge>,
     /// Sine and cosine of each slice's lag, in the sense in which psi changes. Bundles are filled up with slices that cut nothing.
     lags: Vec<[[f64; LANES]; 2]>,
@@ -53,7 +53,7 @@ pub struct Milling {
 
 /// A moment of which the chips are asked, with the widest instructions of the processor.
 struct Moment<'a> {
-    milling: &'a mut Milling,
+    removal: &'a mut MaterialRemoval,
     time: f64,
     centre: [f64; 2],
 }
@@ -63,7 +63,7 @@ impl WithSimd for Moment<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Chips {
-        self.milling.chips(simd, self.time, self.centre)
+        self.removal.chips(simd, self.time, self.centre)
     }
 }
 
@@ -95,7 +95,7 @@ struct Chips {
     thickest: [f64; LANES],
 }
 
-impl Milling {
+impl MaterialRemoval {
     /// Before the first contact.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl Milling {
     /// The force at a time (in steps) with the tool centre at a place (m), in the work left by what was
     /// [remembered](Self::remember).
     pub fn force(&mut self, time: f64, centre: [f64; 2]) -> Force {
-        let chips = self.instructions.run(Moment { milling: self, time, centre });
+        let chips = self.instructions.run(Moment { removal: self, time, centre });
         let sum = |parts: [f64; LANES]| parts.iter().sum::<f64>() * self.slice;
         let (cosines, sines) = (sum(chips.cosine), sum(chips.sine));
         let Coefficients { tangential, radial, axial } = self.coefficients;

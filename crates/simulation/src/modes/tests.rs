@@ -73,7 +73,7 @@ fn one_joint_swings_as_the_formula_says() {
     assert!(creeping.len() == 2 && creeping.iter().all(|mode| (mode.damping_ratio - 1.0).abs() < 1e-12));
 }
 
-/// At zero frequency the tip answers with the static compliance of the arm, and reciprocally at any.
+/// At zero frequency the tip responds with the static compliance of the arm, and reciprocally at any.
 #[test]
 fn the_response_starts_from_the_static_compliance() {
     let AnyArm::Eighteen(arm) = AnyArm::new(&tx200(), &spindle(), Variant::Backlash, &start()).unwrap() else {

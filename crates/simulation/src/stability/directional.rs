@@ -3,7 +3,7 @@
 use crate::milling::{Coefficients, Cut, Cutter};
 use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, Milling};
+use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, MillingDirection};
 
 /// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`. N/m
 ///

@@ -135,7 +135,7 @@ impl<'a> SemiDiscretisation<'a> {
 
     /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to `most`. m
     ///
-    /// Depths are looked at from a thousandth of `most` up, each a fifth larger than the one before, so a narrow island of
+    /// Depths are examined from a thousandth of `most` up, each a fifth larger than the one before, so a narrow island of
     /// instability may be missed.
     pub fn critical_depth(&self, most: f64) -> Option<f64> {
         let [mut low, mut high] = [0.0, most / 1000.0];

@@ -1,4 +1,4 @@
-//! How the tool tip answers to forces, as a state-space model.
+//! Response of the tool tip to forces, as a state-space model.
 
 use crate::modes::LinearArm;
 use nalgebra::{Complex, DMatrix, Matrix2x3, Vector3};

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::arm::{Arm, Variant, testing};
-use crate::milling::{Coefficients, Cut, Cutter, Milling, Tooth};
+use crate::milling::{Coefficients, Cut, Cutter, MaterialRemoval, Tooth};
 use crate::modes::LinearArm;
 use crate::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
@@ -118,7 +118,7 @@ fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: u
     let size = n + 2 * intervals;
     let mut whole = DMatrix::<f64>::identity(size, size);
     let [_, _, rising] = plant.step(1e-9);
-    // B from the answer to a force over a very short time.
+    // B from the response to a force over a very short time.
     let b = rising * 2.0 / 1e-9;
     for interval in 0..intervals {
         let mut mean = Matrix2::zeros();

@@ -6,7 +6,7 @@ use crate::milling::{Cut, Cutter};
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
 use stead_model::cutting::EngagementError;
 
-/// The answer of a tool tip at many frequencies, from which the zero-order solution is read at any spindle speed.
+/// The frequency response of a tool tip, from which the zero-order solution is read at any spindle speed.
 ///
 /// With `F = b K q(omega) u`, K the mean coefficients of all teeth and `q = mean_j (1 - e^(-i omega tau_j))`, motion of a frequency
 /// omega keeps its size where `b q(omega) lambda(omega) = 1` for an eigenvalue lambda of `K G(i omega)` (Altintas and Budak 1995,

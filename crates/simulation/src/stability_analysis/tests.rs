@@ -5,6 +5,7 @@ use crate::motion::{Motion, Pass, Ramp};
 use crate::path_stability::{PathConfiguration, PathStabilityAnalysis, smallest};
 use crate::stability::Kind;
 use std::f64::consts::{PI, TAU};
+use stead_model::cutting::MillingDirection;
 
 fn setup(variant: Variant, damping_scale: f64) -> Setup {
     let pass = Pass { start: start(), direction: Vector3::x(), length: 0.1 };
@@ -70,7 +71,7 @@ fn a_survey_of_the_published_steel_cut() {
     assert!(calm.modes[0].damping_ratio > 5.0 * found.modes[0].damping_ratio);
 }
 
-/// At rest the tip yields as springs and Jacobian say; a station of a path is the same arm as a place on a pass.
+/// At rest the tip yields as springs and Jacobian say; a configuration of a path is the same arm as a place on a pass.
 #[test]
 fn answers_and_stations_are_those_of_the_arm() {
     let (cutter, cut) = steel();

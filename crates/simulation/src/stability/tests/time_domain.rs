@@ -7,7 +7,7 @@ use super::*;
 fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize, lean: f64) -> bool {
     let cut = Cut { axial_depth: depth, ..*cut };
     let (turn, dt) = (cut.steps_per_turn, cut.step());
-    let mut milling = Milling::new(cutter, &cut).unwrap();
+    let mut milling = MaterialRemoval::new(cutter, &cut).unwrap();
     let feed = 0.1e-3 * cutter.teeth().len() as f64 / turn as f64;
     let (k, c) = (MASS * OMEGA * OMEGA, 2.0 * DAMPING * OMEGA * MASS);
     let effective = MASS + dt / 2.0 * c + dt * dt / 4.0 * k;

@@ -15,7 +15,7 @@ const STEPS: usize = 3600;
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a missing or unknown key, a value of the wrong kind or out of range.
-pub(super) fn chatter_from(table: &Table<'_>) -> Result<PathStabilityAnalysis, InputError> {
+pub(super) fn path_stability_from(table: &Table<'_>) -> Result<PathStabilityAnalysis, InputError> {
     const OWN: [&str; 3] = ["variant", "damping_scale", "max_depth_mm"];
     let keys: [&str; MILLING_KEYS.len() + OWN.len()] =
         std::array::from_fn(|k| *MILLING_KEYS.get(k).unwrap_or(&OWN[k.saturating_sub(MILLING_KEYS.len())]));
