@@ -17,7 +17,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
 pub(super) fn command() -> clap::Command {
     let command = Arguments::command();
     let overview = overview(&command);
-    command.help_template(format!(
+    // The texts are laid out by hand: no wrapping.
+    command.term_width(0).help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"
     ))
 }
@@ -42,8 +43,8 @@ fn overview(command: &clap::Command) -> String {
 
 pub(super) const STEAD: &str = "\
 Start with: stead place configs/caro-2013.toml
-`stead COMMAND --help` shows examples, the files that a command writes and its exit codes. With --json a command prints one
-JSON document on standard output; notes, warnings, progress and errors go to standard error.
+`stead COMMAND --help` shows examples, the files that a command writes and its exit codes.
+With --json a command prints one JSON document on standard output. Notes, warnings, progress and errors go to standard error.
 
 Exit codes: 0 done; 1 the job failed or nothing is feasible; 2 wrong usage or bad input.";
 
