@@ -38,7 +38,13 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         let agreement = printed.agreement(&assessment);
         (printed, agreement)
     });
-    let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course };
+    let context = AssessmentContext {
+        inputs: run.inputs,
+        notes: run.notes,
+        range_share: run.range_share,
+        printed,
+        course: run.course,
+    };
     let written = write_assessment(&out.folder, &run.study, &assessment, &context);
     let document = || assess_json(&assessment, &context, &Timing { wall, threads });
     let where_to = |folder| format!("; results in {folder}");

@@ -13,7 +13,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     let outcome = compensate(&run.job).inspect_err(|failure| {
         if options.json {
-            print(&json::bytes(&not_compensated_json(failure)));
+            print(&json::bytes(&not_compensated_json(&run, failure)));
         }
         out.give_up();
     })?;

@@ -29,7 +29,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     watcher.finish();
     let outcome = outcome.inspect_err(|nothing| {
         if options.json {
-            print(&json::bytes(&evaluation::infeasible_json(nothing)));
+            print(&json::bytes(&evaluation::infeasible_json(nothing, &Context::new(&run, search))));
         }
         out.give_up();
         if watcher.should_stop() {
@@ -43,8 +43,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         Some(chatter) => Some(on_threads(options.threads, || path_stability(&run.problem, chatter, plans))?.0?),
         None => None,
     };
-    let (inputs, reference) = (run.inputs.clone(), run.reference.clone());
-    let context = Context { inputs, search, transfer: run.transfer, reference, stability };
+    let context = Context { stability, ..Context::new(&run, search) };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
     let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.

@@ -21,33 +21,80 @@ pub struct Timing {
     pub threads: usize,
 }
 
+/// The layout of every JSON document of stead; raised when a key goes or changes its meaning, not when one is added.
+pub const FORMAT: u32 = 1;
+
+/// A JSON document of stead: whatever it reports, it states `format`, `version`, `inputs`, `notes` and `warnings`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Document(Map<String, Value>);
+
+impl Document {
+    /// A document on what was computed from these files, without notes and warnings yet.
+    pub fn new(inputs: &[InputFile]) -> Self {
+        let inputs = inputs.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 }));
+        Self(Map::from_iter([
+            ("format".to_owned(), json!(FORMAT)),
+            ("version".to_owned(), json!(env!("CARGO_PKG_VERSION"))),
+            ("inputs".to_owned(), inputs.collect()),
+            ("notes".to_owned(), json!([])),
+            ("warnings".to_owned(), json!([])),
+        ]))
+    }
+
+    /// States what the result rests on: assumptions made and values left at their defaults.
+    pub fn notes(self, notes: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.messages("notes", notes)
+    }
+
+    /// States why the result may not be what was wanted.
+    pub fn warnings(self, warnings: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.messages("warnings", warnings)
+    }
+
+    fn messages(mut self, key: &str, messages: impl IntoIterator<Item = impl ToString>) -> Self {
+        if let Some(Value::Array(list)) = self.0.get_mut(key) {
+            list.extend(messages.into_iter().map(|message| json!(message.to_string())));
+        }
+        self
+    }
+
+    /// The document with the entries of a result, which is a JSON object.
+    pub fn with(mut self, result: Value) -> Value {
+        if let Value::Object(entries) = result {
+            self.0.extend(entries);
+        }
+        Value::Object(self.0)
+    }
+}
+
 /// What `stead place --json` prints.
 pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
-    let mut document = common(outcome, context, true);
-    document.insert("cases".to_owned(), cases(outcome, true));
-    document.insert("threads".to_owned(), json!(timing.threads));
-    document.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
+    let mut entries = common(outcome, context, true);
+    entries.insert("cases".to_owned(), cases(outcome, true));
+    entries.insert("threads".to_owned(), json!(timing.threads));
+    entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
-    document.insert("states_per_second".to_owned(), rate);
-    Value::Object(document)
+    entries.insert("states_per_second".to_owned(), rate);
+    context.document().with(Value::Object(entries))
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
 pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> Value {
-    let mut document = common(outcome, context, false);
-    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
-    document.insert("robot".to_owned(), json!(problem.robot.name()));
-    document.insert("seed".to_owned(), json!(context.search.seed));
-    document.insert("inputs".to_owned(), inputs(&context.inputs));
-    document.insert("search".to_owned(), search(context));
-    document.insert("transfer".to_owned(), transfer_settings(context));
-    document.insert("cell".to_owned(), cell(problem));
-    document.insert("constraints".to_owned(), constraints(problem));
-    document.insert("criterion".to_owned(), criterion(problem));
-    document.insert("redundancy".to_owned(), redundancy(problem));
-    document.insert("task".to_owned(), task(problem));
-    document.insert("cases".to_owned(), cases(outcome, false));
-    Value::Object(document)
+    let mut entries = common(outcome, context, false);
+    let settings = [
+        ("robot", json!(problem.robot.name())),
+        ("seed", json!(context.search.seed)),
+        ("search", search(context)),
+        ("transfer", transfer_settings(context)),
+        ("cell", cell(problem)),
+        ("constraints", constraints(problem)),
+        ("criterion", criterion(problem)),
+        ("redundancy", redundancy(problem)),
+        ("task", task(problem)),
+        ("cases", cases(outcome, false)),
+    ];
+    entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    context.document().with(Value::Object(entries))
 }
 
 /// A document as the bytes of a file or of standard output: indented, with a line break at the end.
@@ -179,11 +226,6 @@ fn refinement(refinement: &Refinement) -> Value {
         "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
         "status": refinement.statuses.join("; "),
     })
-}
-
-/// The files that a result depends on, as every JSON document states them.
-pub fn inputs(files: &[InputFile]) -> Value {
-    files.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 })).collect()
 }
 
 fn search(context: &Context) -> Value {

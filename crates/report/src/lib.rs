@@ -28,6 +28,7 @@ pub use output::{Folder, ReportError};
 
 use stability::PathStability;
 use std::path::PathBuf;
+use stead_format::Run;
 use stead_format::input::{InputFile, Reference};
 use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
@@ -38,6 +39,8 @@ use stead_placement::settings::{SearchSettings, TransferSettings};
 pub struct Context {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the result rests on: assumptions made and values left at their defaults.
+    pub notes: Vec<String>,
     /// How hard the search was, and its seed.
     pub search: SearchSettings,
     /// The assumptions behind the times of the moves.
@@ -46,6 +49,25 @@ pub struct Context {
     pub reference: Option<Reference>,
     /// How deep may be cut along the path, where that was asked for.
     pub stability: Option<PathStability>,
+}
+
+impl Context {
+    /// What a run file says, with a search of this seed.
+    pub fn new(run: &Run, search: SearchSettings) -> Self {
+        Self {
+            inputs: run.inputs.clone(),
+            notes: run.notes.clone(),
+            search,
+            transfer: run.transfer,
+            reference: run.reference.clone(),
+            stability: None,
+        }
+    }
+
+    /// A JSON document on what was computed from the run file.
+    pub fn document(&self) -> json::Document {
+        json::Document::new(&self.inputs).notes(&self.notes)
+    }
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,

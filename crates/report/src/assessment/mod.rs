@@ -21,6 +21,8 @@ use stead_model::cutting::Course;
 pub struct AssessmentContext {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the result rests on: assumptions made and values left at their defaults.
+    pub notes: Vec<String>,
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.

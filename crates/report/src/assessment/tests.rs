@@ -23,7 +23,16 @@ fn study(from: &str, to: &str) -> (Study, AssessmentContext) {
         let agreement = printed.agreement(&assessment);
         (printed, agreement)
     });
-    (run.study, AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course })
+    (
+        run.study,
+        AssessmentContext {
+            inputs: run.inputs,
+            notes: run.notes,
+            range_share: run.range_share,
+            printed,
+            course: run.course,
+        },
+    )
 }
 
 fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
@@ -85,7 +94,13 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
     std::fs::write(folder.path().join("study.toml"), text).unwrap();
     let run = read_assessment(&folder.path().join("study.toml")).unwrap();
     let assessment = assess(&run.study, &|_, _| true).unwrap();
-    let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed: None, course: None };
+    let context = AssessmentContext {
+        inputs: run.inputs,
+        notes: run.notes,
+        range_share: run.range_share,
+        printed: None,
+        course: None,
+    };
     let document = assess_json(&assessment, &context, &Timing { wall: 0.0, threads: 1 });
     assert_eq!(document["robots"][0]["configurations"].as_array().unwrap().len(), 2);
     assert_eq!(document["robots"][1]["configurations"].as_array().unwrap().len(), 4);

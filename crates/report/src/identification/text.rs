@@ -156,7 +156,7 @@ fn scale_note(run: &IdentifyRun, found: &Identified) -> Option<String> {
 }
 
 /// What the user should know about the result though nothing failed.
-fn notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
+pub(super) fn notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
     let mut notes = Vec::new();
     let layout = Layout::new(&run.problem.sheet, found.varying, run.problem.angle_tolerance);
     for parameter in &found.held {

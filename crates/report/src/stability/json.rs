@@ -1,6 +1,6 @@
 //! The JSON document of a survey.
 
-use super::super::json;
+use super::super::json::Document;
 use super::super::number::Unit;
 use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
 use serde_json::{Map, Value, json};
@@ -10,11 +10,9 @@ use stead_simulation::survey::{Depths, Survey};
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
 pub fn stability_json(run: &SimulationRun, survey: &Survey) -> Value {
-    let mut document = verdict(&survey.depths);
+    let mut entries = verdict(&survey.depths);
     let rate = survey.depths.verdict.growth_rate();
     let rest = [
-        ("version", json!(env!("CARGO_PKG_VERSION"))),
-        ("inputs", json::inputs(&run.inputs)),
         ("robot", json!(run.setup.robot.name())),
         ("variant", json!(run.setup.variant.word())),
         ("damping_scale", json!(run.setup.damping_scale)),
@@ -27,8 +25,8 @@ pub fn stability_json(run: &SimulationRun, survey: &Survey) -> Value {
         ("modes", modes(&survey.modes)),
         ("lobes", lobes(survey)),
     ];
-    document.extend(rest.map(|(key, value)| (key.to_owned(), value)));
-    Value::Object(document)
+    entries.extend(rest.map(|(key, value)| (key.to_owned(), value)));
+    Document::new(&run.inputs).with(Value::Object(entries))
 }
 
 /// Critical depths and verdict.

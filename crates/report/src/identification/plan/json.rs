@@ -1,6 +1,6 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
-use super::super::super::json::inputs;
+use super::super::super::json::Document;
 use super::super::super::number::Unit;
 use super::super::{URAD, key, rounded};
 use super::warnings;
@@ -34,10 +34,8 @@ pub fn plan_json(run: &PlanRun, plan: &Plan) -> Value {
         value.insert("lever_mm".to_owned(), json!(Unit::PLACE_MM.number(hardly.lever)));
         Value::Object(value)
     });
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
+    Document::new(&run.inputs).notes(&run.notes).warnings(warnings(run, plan)).with(json!({
         "robot": request.robot.name(),
-        "inputs": inputs(&run.inputs),
         "seed": request.seed,
         "load_n": Unit::FORCE_N.number(request.load),
         "noise_mm": request.noise * 1e3,
@@ -64,8 +62,7 @@ pub fn plan_json(run: &PlanRun, plan: &Plan) -> Value {
         "travel_deg": Unit::ANGLE_DEG.number(plan.travel),
         "unseen": plan.blind.iter().map(unseen).collect::<Vec<_>>(),
         "hardly_seen": hardly.collect::<Vec<_>>(),
-        "warnings": warnings(run, plan),
-    })
+    }))
 }
 
 /// Null where there is no finite number.
