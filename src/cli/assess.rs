@@ -7,7 +7,7 @@ use std::time::Instant;
 use stead_assessment::study::assess;
 use stead_format::read_assessment;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use stead_report::json::Timing;
+use stead_report::document::Timing;
 
 pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let mut run = read_assessment(&options.config)?;

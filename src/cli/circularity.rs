@@ -8,9 +8,9 @@ use stead_assessment::roundness::{Roundness, RoundnessError, assess};
 use stead_format::input::InputError;
 use stead_format::{PointFile, read_points};
 use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
-use stead_report::json;
-use stead_report::number::figures;
+use stead_report::document;
 use stead_report::output::Folder;
+use stead_report::units::figures;
 
 pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let file = read_points(&options.points)?;
@@ -21,7 +21,7 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
         files_written(write_circularity(&folder, &file, &found))?;
     }
     if options.json {
-        print(&json::bytes(&circularity_json(&file, &found)));
+        print(&document::bytes(&circularity_json(&file, &found)));
     } else {
         let where_to = options.out.as_ref().map(|out| format!("\nresults in {}\n", out.display()));
         print((circularity_text(&file, &found) + &where_to.unwrap_or_default()).as_bytes());

@@ -5,7 +5,8 @@ use super::score::mention_cell;
 use super::{Failure, print, say};
 use stead_format::read_run;
 use stead_placement::feasibility::explain;
-use stead_report::{Context, evaluation, json};
+use stead_report::document;
+use stead_report::placement::{Context, evaluation};
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
@@ -25,7 +26,7 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let postures = explain(&run.problem, &pose, options.point, beta);
     let context = Context::new(&run, run.search);
     if options.json {
-        print(&json::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures, &context)));
+        print(&document::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures, &context)));
     } else {
         print(evaluation::explain_text(&placement, options.point, beta, &postures).as_bytes());
     }

@@ -6,8 +6,9 @@ use stead_format::read_run;
 use stead_placement::outcome::{CANCELLED, Plan, PlanPoint};
 use stead_placement::place::score;
 use stead_placement::problem::{Criterion, Placement, Problem};
+use stead_report::document;
+use stead_report::placement::{Context, evaluation};
 use stead_report::stability::PathStability;
-use stead_report::{Context, evaluation, json};
 use stead_simulation::chatter::{Chatter, Station};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
@@ -30,7 +31,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
             Ok(score) => evaluation::score_json(score, &context),
             Err(nothing) => evaluation::infeasible_json(nothing, &context),
         };
-        print(&json::bytes(&document));
+        print(&document::bytes(&document));
     } else if let Ok(score) = &scored {
         mention_cancellation(&run.problem, score.best.mean);
         print(evaluation::score_text(score, &context).as_bytes());

@@ -1,11 +1,11 @@
 //! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv` and `polar.svg`.
 
-use super::json::{Document, bytes};
-use super::number::fixed;
 use super::output::{Folder, ReportError};
 use super::picture;
-use super::tables::table;
-use super::text::aligned;
+use crate::columns::aligned;
+use crate::csv_file::table;
+use crate::document::{Document, bytes};
+use crate::units::fixed;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use stead_assessment::circle::Fit;

@@ -1,11 +1,11 @@
 //! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, and a table for people.
 
-use super::json::{Document, bytes, placement};
-use super::number::{Unit, fixed};
 use super::output::{Folder, ReportError};
 use super::picture;
-use super::tables::{table, vector};
-use super::text::aligned;
+use crate::columns::aligned;
+use crate::csv_file::{table, vector};
+use crate::document::{Document, bytes, placement};
+use crate::units::{Unit, fixed};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
 //! planned by a shortest path over the grid, with an invented search.
 
-use super::Context;
+use crate::placement::Context;
 use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
 use stead_model::cutting::{Course, Engagement, MillingTool, Rotation};

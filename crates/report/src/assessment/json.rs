@@ -1,8 +1,8 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
-use super::super::json::{Document, Timing};
-use super::super::number::Unit;
 use super::{AssessmentContext, elbow, load};
+use crate::document::{Document, Timing};
+use crate::units::Unit;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};

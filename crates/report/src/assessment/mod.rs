@@ -8,7 +8,7 @@ pub use json::{assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
-use super::{cutting, json as documents, picture};
+use super::{cutting, document as documents, picture};
 use std::path::PathBuf;
 use stead_assessment::map::Elbow;
 use stead_assessment::printed::{Agreement, Printed};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::json::Timing;
+use crate::document::Timing;
 use serde_json::Value;
 use std::path::Path;
 use stead_assessment::study::assess;

@@ -1,8 +1,8 @@
 //! `certificate.json`.
 
 use super::{Certificate, Ended, Proof};
-use crate::json::{Document, placement};
-use crate::number::Unit;
+use crate::document::{Document, placement};
+use crate::units::Unit;
 use serde_json::{Value, json};
 
 /// The content of `certificate.json`, and what `stead place --json` prints under `certificate`. `best` and `worst` are null

@@ -1,9 +1,9 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
-use super::super::json::Document;
-use super::super::number::Unit;
 use super::text::notes;
 use super::{URAD, key, rounded};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::Parameter;

@@ -1,8 +1,8 @@
 //! The table for people.
 
-use super::super::number::fixed;
-use super::super::text::aligned;
 use super::{URAD, key};
+use crate::columns::aligned;
+use crate::units::fixed;
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::{Layout, Parameter};
 use stead_calibration::identification::outcome::Estimate;

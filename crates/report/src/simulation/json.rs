@@ -1,9 +1,9 @@
 //! The JSON documents of a simulated pass.
 
-use super::super::json::Document;
-use super::super::number::Unit;
 use super::super::stability::{HERTZ, RATE, RPM, SHARE, kind_word};
 use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;

@@ -1,8 +1,8 @@
 //! The JSON document of a survey.
 
-use super::super::json::Document;
-use super::super::number::Unit;
 use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;

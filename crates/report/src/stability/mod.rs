@@ -13,9 +13,9 @@ pub use path::PathStability;
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
-use super::number::Unit;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
 use stead_simulation::stability::Kind;
@@ -44,7 +44,7 @@ pub fn write_stability(folder: &Folder, run: &SimulationRun, survey: &Survey) ->
         ("modes.csv", modes(survey)?),
         ("frequency-response.csv", responses(survey)?),
         ("lobes.csv", lobes(survey)?),
-        ("summary.json", super::json::bytes(&stability_json(run, survey))),
+        ("summary.json", crate::document::bytes(&stability_json(run, survey))),
         ("frequency-response.svg", picture::frequency_response(survey)?.into_bytes()),
         ("lobes.svg", picture::lobes(survey, &run.cut, run.plan.deepest)?.into_bytes()),
     ];

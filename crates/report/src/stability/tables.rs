@@ -1,9 +1,9 @@
 //! The CSV tables of a survey.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{ANSWER, DEPTH_MM, HERTZ, RPM, SHARE};
+use crate::csv_file::table;
+use crate::units::Unit;
 use stead_simulation::survey::Survey;
 
 /// Amplitudes of the tip, from m to mm, for a joint that swings by 1 rad.

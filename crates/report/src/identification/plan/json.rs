@@ -1,9 +1,9 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
-use super::super::super::json::Document;
-use super::super::super::number::Unit;
 use super::super::{URAD, key, rounded};
 use super::warnings;
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::plan::Plan;
 use stead_calibration::identification::plan::blind::{Blind, Reason};

@@ -3,69 +3,15 @@
 //! Both have the cases, the refinements and the counts. The printed document adds the plans point by point and how long
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
-use super::number::Unit;
-use super::{Context, words};
+use super::Context;
+use crate::document::{Timing, placement, put_deviation};
+use crate::names;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
-use stead_format::input::InputFile;
 use stead_placement::lookup::{Axis, Unsuited};
 use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
-use stead_placement::problem::{Interval, Placement, Problem};
+use stead_placement::problem::{Interval, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
-
-/// How long a computation took.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timing {
-    /// Time on the clock. s
-    pub wall: f64,
-    /// Threads used.
-    pub threads: usize,
-}
-
-/// The layout of every JSON document of stead; raised when a key goes or changes its meaning, not when one is added.
-pub const FORMAT: u32 = 1;
-
-/// A JSON document of stead: whatever it reports, it states `format`, `version`, `inputs`, `notes` and `warnings`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Document(Map<String, Value>);
-
-impl Document {
-    /// A document on what was computed from these files, without notes and warnings yet.
-    pub fn new(inputs: &[InputFile]) -> Self {
-        let inputs = inputs.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 }));
-        Self(Map::from_iter([
-            ("format".to_owned(), json!(FORMAT)),
-            ("version".to_owned(), json!(env!("CARGO_PKG_VERSION"))),
-            ("inputs".to_owned(), inputs.collect()),
-            ("notes".to_owned(), json!([])),
-            ("warnings".to_owned(), json!([])),
-        ]))
-    }
-
-    /// States what the result rests on: assumptions made and values left at their defaults.
-    pub fn notes(self, notes: impl IntoIterator<Item = impl ToString>) -> Self {
-        self.messages("notes", notes)
-    }
-
-    /// States why the result may not be what was wanted.
-    pub fn warnings(self, warnings: impl IntoIterator<Item = impl ToString>) -> Self {
-        self.messages("warnings", warnings)
-    }
-
-    fn messages(mut self, key: &str, messages: impl IntoIterator<Item = impl ToString>) -> Self {
-        if let Some(Value::Array(list)) = self.0.get_mut(key) {
-            list.extend(messages.into_iter().map(|message| json!(message.to_string())));
-        }
-        self
-    }
-
-    /// The document with the entries of a result, which is a JSON object.
-    pub fn with(mut self, result: Value) -> Value {
-        if let Value::Object(entries) = result {
-            self.0.extend(entries);
-        }
-        Value::Object(self.0)
-    }
-}
 
 /// What `stead place --json` prints.
 pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
@@ -95,11 +41,6 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
     context.document().with(Value::Object(entries))
-}
-
-/// A document as the bytes of a file or of standard output: indented, with a line break at the end.
-pub fn bytes(document: &Value) -> Vec<u8> {
-    format!("{document:#}\n").into_bytes()
 }
 
 fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {
@@ -173,24 +114,6 @@ fn case(case: &Case, with_plan: bool) -> Value {
     value
 }
 
-/// Adds a standard deviation to an object where the robot's uncertainty is known.
-pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
-    if let (Some(deviation), Value::Object(map)) = (deviation, object) {
-        map.insert(key.to_owned(), number(unit, deviation));
-    }
-}
-
-/// A placement as every JSON document states it.
-pub fn placement(placement: &Placement) -> Value {
-    json!({
-        "x_mm": number(Unit::PLACE_MM, placement.x),
-        "y_mm": number(Unit::PLACE_MM, placement.y),
-        "z_mm": number(Unit::PLACE_MM, placement.z),
-        "q4": number(Unit::PLAIN, placement.q4()),
-        "yaw_deg": number(Unit::ANGLE_DEG, placement.yaw),
-    })
-}
-
 fn plan_point(point: &PlanPoint) -> Value {
     let mut value = json!({
         "point": point.point,
@@ -216,7 +139,7 @@ fn transfer(transfer: &Transfer) -> Value {
 
 fn refinement(refinement: &Refinement) -> Value {
     json!({
-        "search": words::goal(refinement.goal),
+        "search": names::goal(refinement.goal),
         "start": placement(&refinement.start),
         "start_mean_mm": number(Unit::DEFLECTION_MM, refinement.start_mean),
         "end": placement(&refinement.end),

@@ -1,10 +1,10 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
 use super::Context;
-use super::json::{placement as placement_json, put_deviation};
-use super::number::{Unit, fixed};
-use super::text::aligned;
-use super::words;
+use crate::columns::aligned;
+use crate::document::{placement as placement_json, put_deviation};
+use crate::names;
+use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_placement::feasibility::{Explanation, Finding};
 use stead_placement::outcome::Plan;
@@ -63,7 +63,7 @@ pub fn score_text(score: &Score, context: &Context) -> String {
     let row = |name: &str, plan: &Plan| {
         let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
         row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
-        row.push(words::postures_within(&plan.postures, 60));
+        row.push(names::postures_within(&plan.postures, 60));
         row
     };
     let mut header = vec!["plan", "mean mm", "max mm"];
