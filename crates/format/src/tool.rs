@@ -17,7 +17,7 @@ pub use engagement::EngagementKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_model::cutting::{Milling, Rotation, Side};
+use stead_model::cutting::{MillingDirection, Rotation, Side};
 
 /// Speeds beyond this are those of no spindle. rpm
 pub const FASTEST_RPM: f64 = 1e6;
@@ -30,7 +30,7 @@ ranges! {
 }
 
 words!(Rotation: "clockwise" => Rotation::Clockwise, "counterclockwise" => Rotation::Counterclockwise);
-words!(Milling: "conventional" => Milling::Conventional, "climb" => Milling::Climb);
+words!(MillingDirection: "conventional" => MillingDirection::Conventional, "climb" => MillingDirection::Climb);
 words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "none" => None);
 
 /// The cutter: its geometry, its sense of rotation and the coefficients of its forces. Which of the optional keys are needed
@@ -82,7 +82,7 @@ pub struct ToolTable {
 #[serde(deny_unknown_fields)]
 pub struct CutTable {
     /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
-    pub milling: Option<Word<Milling>>,
+    pub milling: Option<Word<MillingDirection>>,
     /// Width of the cut, across the feed.
     pub radial_depth_mm: Option<Mm<Positive>>,
     /// Depth of the cut, along the tool axis.

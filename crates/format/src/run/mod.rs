@@ -29,7 +29,7 @@ use stead_model::task::Task;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
-use stead_simulation::chatter::Chatter;
+use stead_simulation::path_stability::PathStabilityAnalysis;
 use tables::{check_confidence, check_tables};
 
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which its
@@ -83,7 +83,7 @@ pub struct Run {
     /// Published figures to print beside ours.
     pub reference: Option<Reference>,
     /// What is to be cut along the path, where its stability is asked for.
-    pub chatter: Option<Chatter>,
+    pub path_stability: Option<PathStabilityAnalysis>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
 }
@@ -123,12 +123,12 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
     let robot_file = robot_field.named_file()?;
     let robot_source = TomlFile::new(&robot_file.file, robot_file.bytes)?;
-    let chatter = match &run.stability {
-        Some(table) => Some(table.chatter(&Cutting::required(cutting.as_ref(), &at)?, &at.key("stability"))?),
+    let path_stability = match &run.stability {
+        Some(table) => Some(table.analysis(&Cutting::required(cutting.as_ref(), &at)?, &at.key("stability"))?),
         None => None,
     };
-    let robot = match &chatter {
-        Some(chatter) => moving_robot_from(&robot_source, chatter.variant >= Variant::Orthogonal)?,
+    let robot = match &path_stability {
+        Some(analysis) => moving_robot_from(&robot_source, analysis.variant >= Variant::Orthogonal)?,
         None => robot_from(&robot_source)?,
     };
     check_confidence(&criterion, &robot, &at.key("criterion"))?;
@@ -151,7 +151,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, inputs, reference, chatter, notes })
+    Ok(Run { problem, search, transfer, certificate, inputs, reference, path_stability, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the cutter and its cut, which may be there for the stability

@@ -3,13 +3,13 @@
 use crate::input::InputError;
 use crate::place::Place;
 use crate::scalars::Word;
-use crate::simulation::{DampingScale, deepest};
+use crate::simulation::{DampingScale, max_depth};
 use crate::tool::Cutting;
 use crate::units::{Mm, Number, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_simulation::arm::Variant;
-use stead_simulation::chatter::Chatter;
+use stead_simulation::path_stability::PathStabilityAnalysis;
 
 /// Slices of the cutter: enough for mean coefficients.
 const SLICES: usize = 32;
@@ -32,12 +32,12 @@ pub struct PathStabilityTable {
 impl PathStabilityTable {
     /// # Errors
     /// [`InputError`] with file, line and field: a cutter and a cut that do not go together, a depth beyond the flutes.
-    pub(super) fn chatter(&self, cutting: &Cutting<'_>, at: &Place<'_>) -> Result<Chatter, InputError> {
+    pub(super) fn analysis(&self, cutting: &Cutting<'_>, at: &Place<'_>) -> Result<PathStabilityAnalysis, InputError> {
         let (cutter, cut) = cutting.cutter_and_cut(1.0, SLICES, STEPS)?;
-        Ok(Chatter {
+        Ok(PathStabilityAnalysis {
             variant: self.variant.map_or(Variant::Springs, |word| word.0),
             damping_scale: self.damping_scale.map_or(1.0, |scale| scale.si()),
-            deepest: deepest(self.max_depth_mm, &cutter, at)?,
+            max_depth: max_depth(self.max_depth_mm, &cutter, at)?,
             cutter,
             cut,
         })

@@ -10,9 +10,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_model::robot::{Robot, angles::yaw_from_q4};
+use stead_placement::lookup::LookupTable;
 use stead_placement::problem::{self, Cell, Constraints, Criterion, Problem, Redundancy};
 use stead_placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
-use stead_placement::table::Table as StateTable;
 
 ranges! {
     /// From -1 to 1.
@@ -172,7 +172,7 @@ impl SearchTable {
 /// Refuses to promise a lookup table where the problem does not allow one.
 pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
     if search.tables == Tables::Always
-        && let Err(unsuited) = StateTable::shape_for(problem)
+        && let Err(unsuited) = LookupTable::shape_for(problem)
     {
         let reason = format!("asks for a table, but there can be none: {unsuited}");
         return Err(at.key("tables").error(reason, "\"auto\" or \"never\""));

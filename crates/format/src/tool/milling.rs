@@ -109,11 +109,11 @@ impl Cutting<'_> {
             CutError::Positive { .. } | CutError::Slices => {
                 cut.key("spindle_rpm").error(format!("makes no cut: {error}"), "finite numbers above 0")
             }
-            CutError::Steps { least, .. } => {
+            CutError::Steps { min, .. } => {
                 let problem = format!("has teeth so close that {steps_per_turn} steps a turn do not tell them apart");
                 let pitch = tool.key("pitch_deg");
                 let at = if pitch.is_given() { pitch } else { tool.key("teeth") };
-                at.error(problem, format!("at least {least} steps a turn"))
+                at.error(problem, format!("at least {min} steps a turn"))
             }
         }
     }

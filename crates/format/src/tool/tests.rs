@@ -58,7 +58,7 @@ concave_corners = 'right'
             diameter: 0.016,
             teeth: 4,
             rotation: Rotation::Counterclockwise,
-            milling: Milling::Climb,
+            milling: MillingDirection::Climb,
             radial_depth: 0.002,
             axial_depth: 0.005,
             feed_per_tooth: 0.05e-3,

@@ -1,0 +1,212 @@
+//! Boxes of placements, most promising first: the search that bounds from below and from above share.
+
+use super::region::Region;
+use crate::outcome::Goal;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// How far the search has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// No placement has a mean score below, or, of the worst, above. m
+    pub bound: f64,
+    /// Boxes still open.
+    pub open: usize,
+    /// Boxes model so far.
+    pub nodes: usize,
+}
+
+/// The caller's side of a certificate. Called from one thread.
+pub trait Watch {
+    /// Takes the state of the search; false to end it with what it has.
+    fn goes_on(&mut self, state: &State) -> bool;
+}
+
+/// A bound of what placements of the cell are worth: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// The mean score that was compared with. m
+    pub value: f64,
+    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding; or, of the
+    /// worst, none with its best plan has a mean score above. m
+    pub bound: f64,
+    /// Whether the rate of beta was kept.
+    pub with_rate: bool,
+    /// Boxes model.
+    pub nodes: usize,
+    /// Why the search ended.
+    pub end: End,
+    /// Boxes that may hold placements better (of the worst: worse) than `value` by more than the gap asked for, each with its
+    /// own bound. m
+    pub open: Vec<(Region, f64)>,
+}
+
+/// Why a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The gap asked for is reached.
+    Reached,
+    /// The caller ended it.
+    Stopped,
+    /// What is left open is smaller than the tables can tell apart.
+    Exhausted,
+}
+
+impl Bound {
+    /// How much better (of the worst: worse) than the value a placement may be, relative to the value.
+    pub fn gap(&self) -> f64 {
+        (1.0 - self.bound / self.value).abs()
+    }
+}
+
+/// Boxes taken at once; the result depends on it, so it is fixed.
+const BATCH: usize = 64;
+/// Half widths of the boxes that tables are first asked for in detail: radius and height (m), yaw (rad).
+const START: [f64; 3] = [0.009, 0.0125, 0.0157];
+/// Boxes whose half widths are this much smaller are not cut further.
+const SMALLEST: f64 = 1.0 / 256.0;
+/// What rounding may have taken from a bound, relative to it.
+const ROUNDING: f64 = 1e-9;
+
+/// The side to cut a box at, and its half width in terms of the start.
+pub(super) fn widest(region: &Region) -> (usize, f64) {
+    let size = |k: usize| region.half[k] / START[k];
+    (1..3).fold((0, size(0)), |(side, most), k| if size(k) > most { (k, size(k)) } else { (side, most) })
+}
+
+/// The halves of a box; `None` where it is not to be cut further.
+pub(super) fn halves(region: &Region) -> Option<[Region; 2]> {
+    let (side, size) = widest(region);
+    (size > SMALLEST).then(|| region.split(side))
+}
+
+/// A box whose bound is known.
+pub(super) struct Open<T> {
+    /// What the sum over the points does not get past in it. m
+    pub bound: f64,
+    pub region: Region,
+    /// What else is known of it.
+    pub known: T,
+}
+
+/// What a search is for.
+pub(super) struct BranchAndBound {
+    /// From below, or from above.
+    pub goal: Goal,
+    /// The mean score that is compared with. m
+    pub value: f64,
+    /// What is asked for, relative to the value.
+    pub gap: f64,
+    /// Whether the rate of beta is kept.
+    pub with_rate: bool,
+    /// Number of path points.
+    pub points: usize,
+}
+
+/// A box in the queue.
+struct Queued<T> {
+    /// The bound, its sign changed where small bounds come first.
+    rank: f64,
+    /// Of equal ranks the greater one comes first.
+    priority: u64,
+    open: Open<T>,
+}
+
+impl<T> PartialEq for Queued<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<T> Eq for Queued<T> {}
+
+impl<T> PartialOrd for Queued<T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<T> Ord for Queued<T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.rank.total_cmp(&other.rank).then(self.priority.cmp(&other.priority))
+    }
+}
+
+impl BranchAndBound {
+    /// 1 where great bounds come first, -1 where small ones do.
+    fn sign(&self) -> f64 {
+        match self.goal {
+            Goal::Best => -1.0,
+            Goal::Worst => 1.0,
+        }
+    }
+
+    /// What the sum over the points has to get past for a box to be of interest. m
+    pub fn ceiling(&self) -> f64 {
+        let sign = self.sign();
+        self.value * self.points as f64 * (1.0 + sign * self.gap) * (1.0 - sign * ROUNDING)
+    }
+
+    /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
+    ///
+    /// `nodes` is the number of boxes model before; `parts` gives those of a box, `None` where it is not to be cut further.
+    /// Where bounds are the same, the younger box comes first: what cannot be told apart is found by going down, not by cutting
+    /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
+    /// The result does not depend on the number of threads.
+    pub fn explore<T: Send + Sync>(
+        &self,
+        start: Vec<Open<T>>,
+        mut nodes: usize,
+        watch: &mut dyn Watch,
+        parts: impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
+    ) -> Bound {
+        let (sign, count) = (self.sign(), self.points as f64);
+        let ceiling = sign * self.ceiling();
+        let queued = |open: Open<T>, priority: u64| Queued { rank: sign * open.bound, priority, open };
+        let mut number = 0;
+        let mut heap = BinaryHeap::new();
+        for open in start {
+            number += 1;
+            heap.push(queued(open, if self.goal == Goal::Best { number } else { u64::MAX - number }));
+        }
+        let mut stuck: Vec<Queued<T>> = Vec::new();
+        let mut end = End::Reached;
+        while let Some(first) = heap.peek() {
+            // Whatever becomes of the others, the bound stays there.
+            if stuck.iter().any(|stuck| stuck.rank >= first.rank) {
+                break;
+            }
+            if !watch.goes_on(&State { bound: first.open.bound / count, open: heap.len() + stuck.len(), nodes }) {
+                end = End::Stopped;
+                break;
+            }
+            let batch: Vec<_> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
+            let results: Vec<_> = batch.par_iter().map(|queued| parts(&queued.open)).collect();
+            for (whole, parts) in batch.into_iter().zip(results) {
+                let Some(parts) = parts else {
+                    stuck.push(whole);
+                    continue;
+                };
+                nodes += parts.len();
+                for part in parts {
+                    number += 1;
+                    let part = queued(part, number);
+                    if part.rank > ceiling {
+                        heap.push(part);
+                    }
+                }
+            }
+        }
+        if end == End::Reached && !stuck.is_empty() {
+            end = End::Exhausted;
+        }
+        let mut left = heap.into_sorted_vec();
+        left.reverse();
+        left.extend(stuck);
+        let farthest = left.iter().map(|queued| queued.rank).fold(ceiling, f64::max);
+        let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
+        let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
+        Bound { value: self.value, bound, with_rate: self.with_rate, nodes, end, open }
+    }
+}

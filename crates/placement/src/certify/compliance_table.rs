@@ -1,0 +1,265 @@
+//! How the arm yields all over the cell: nodes over radius, height and heading, made when they are first asked for.
+//!
+//! A node speaks for everything within one step of it in radius and height, so that one of them answers for any region of up
+//! to half a step around any state, and within half a step in heading: headings are cut into cells once and for all. It says
+//! that none of its states is allowed, or gives an affine model of the compliances with what that leaves out.
+
+use super::arm::{Arm, ArmCompliance};
+use super::enclosure::Enclosure;
+use super::interval::Interval;
+use super::interval_simd::{Lanes, WIDTH};
+use super::number::PAIR;
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+use stead_model::robot::PostureClass;
+
+/// What is known of the states around a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Node {
+    /// None of them is allowed.
+    Empty,
+    /// Nothing is known of them.
+    Unknown,
+    /// How they yield.
+    Known(AffineModel),
+}
+
+/// An affine model of the states around a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AffineModel {
+    /// Value and gradient of m, d1, d2 and the two vertical compliances at the node.
+    pub values: [[f32; 4]; FUNCTIONS],
+    /// What these leave out: of m, of the length of (d1, d2), and of that of the vertical ones.
+    pub remainder: [f32; 3],
+    /// Whether all the states are sure to be allowed.
+    pub sure: bool,
+}
+
+/// The extent of a table: what placements of the cell can ask for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    /// Radius, from and to. m
+    pub radius: (f64, f64),
+    /// Height, from and to. m
+    pub height: (f64, f64),
+}
+
+/// Steps of the coarsest level; each level has half the steps of the one before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Steps {
+    /// Radius and height. m
+    pub length: f64,
+    /// Number of cells of heading, a power of two, 64 or more.
+    pub headings: usize,
+}
+
+/// Functions modelled: see [`AffineModel::values`].
+pub(super) const FUNCTIONS: usize = 5;
+
+/// Neighbouring headings made at once.
+const CHUNK: usize = 16;
+
+#[derive(Debug)]
+pub(super) struct ComplianceTable {
+    extent: Extent,
+    steps: Steps,
+    levels: Vec<Level>,
+}
+
+#[derive(Debug)]
+struct Level {
+    counts: [usize; 3],
+    chunks: Vec<OnceLock<Box<[Node; CHUNK]>>>,
+}
+
+impl ComplianceTable {
+    pub fn new(extent: Extent, steps: Steps, levels: usize) -> Self {
+        let levels = (0..levels)
+            .map(|level| {
+                let length = steps.length / (1u64 << level) as f64;
+                let along = |(from, to): (f64, f64)| ((to - from) / length).ceil() as usize + 1;
+                let counts = [along(extent.radius), along(extent.height), steps.headings << level];
+                let chunks = counts[0] * counts[1] * (counts[2] / CHUNK) * 4;
+                Level { counts, chunks: std::iter::repeat_with(OnceLock::new).take(chunks).collect() }
+            })
+            .collect();
+        Self { levels, extent, steps }
+    }
+
+    /// What a table takes before its first node is made. bytes
+    pub fn bytes(extent: Extent, steps: Steps, levels: usize) -> u64 {
+        let along = |(from, to): (f64, f64), length: f64| ((to - from) / length).ceil() + 1.0;
+        let one = |level: usize| {
+            let length = steps.length / (1u64 << level) as f64;
+            let chunks = ((steps.headings << level) / CHUNK * 4) as f64;
+            along(extent.radius, length) * along(extent.height, length) * chunks
+        };
+        ((0..levels).map(one).sum::<f64>() * size_of::<OnceLock<Box<[Node; CHUNK]>>>() as f64) as u64
+    }
+
+    /// Radii and heights, and steps.
+    pub fn grid(&self) -> (Extent, Steps) {
+        (self.extent, self.steps)
+    }
+
+    /// Number of levels.
+    pub fn depth(&self) -> usize {
+        self.levels.len()
+    }
+
+    /// Number of cells of heading at a level.
+    pub fn headings(&self, level: usize) -> usize {
+        self.steps.headings << level
+    }
+
+    /// Steps in radius and height at a level. m
+    pub fn length(&self, level: usize) -> f64 {
+        self.steps.length / (1u64 << level) as f64
+    }
+
+    /// The finest level whose nodes answer for regions of that half size in radius and height; `None` for larger ones.
+    pub fn level(&self, half: f64) -> Option<usize> {
+        (0..self.levels.len()).rev().find(|level| self.answers(*level, [half, half]))
+    }
+
+    /// Whether the nodes of a level answer for everything within those distances of a radius and height.
+    pub fn answers(&self, level: usize, reach: [f64; 2]) -> bool {
+        reach[0].max(reach[1]) <= 0.5 * self.length(level) * (1.0 + 1e-9)
+    }
+
+    /// The node nearest to a radius and height, and how far they are from it; `None` outside the table.
+    #[inline]
+    pub fn nearest(&self, level: usize, r: f64, z: f64) -> Option<([usize; 2], [f64; 2])> {
+        let length = self.length(level);
+        let place = |value: f64, from: f64, count: usize| {
+            let k = (value - from) / length + 0.5;
+            if k < 0.0 { None } else { Some(k as usize).filter(|k| *k < count) }
+        };
+        let counts = &self.levels[level].counts;
+        let (i, j) = (place(r, self.extent.radius.0, counts[0])?, place(z, self.extent.height.0, counts[1])?);
+        let [at_r, at_z] = self.place(level, [i, j]);
+        Some(([i, j], [r - at_r, z - at_z]))
+    }
+
+    /// Radius and height of a node. m
+    pub fn place(&self, level: usize, [i, j]: [usize; 2]) -> [f64; 2] {
+        let length = self.length(level);
+        [self.extent.radius.0 + length * i as f64, self.extent.height.0 + length * j as f64]
+    }
+
+    /// Whether there is such a node.
+    pub fn holds(&self, level: usize, [i, j]: [usize; 2]) -> bool {
+        self.levels.get(level).is_some_and(|l| i < l.counts[0] && j < l.counts[1])
+    }
+
+    /// Middle of a cell of heading. rad
+    pub fn heading(&self, level: usize, cell: usize) -> f64 {
+        TAU / self.headings(level) as f64 * (cell as f64 + 0.5)
+    }
+
+    /// The node of a cell of heading.
+    #[inline]
+    pub fn node(&self, arm: &Arm, level: usize, at: [usize; 2], cell: usize, class: PostureClass) -> &Node {
+        let stored = &self.levels[level];
+        let chunk =
+            ((at[0] * stored.counts[1] + at[1]) * (stored.counts[2] / CHUNK) + cell / CHUNK) * 4 + class.index();
+        let nodes = stored.chunks[chunk].get_or_init(|| {
+            let mut nodes = Box::new([Node::Empty; CHUNK]);
+            let first = cell / CHUNK * CHUNK;
+            for start in (0..CHUNK).step_by(WIDTH) {
+                let some: [Node; WIDTH] = self.made(arm, level, self.place(level, at), first + start, class);
+                nodes[start..start + WIDTH].copy_from_slice(&some);
+            }
+            nodes
+        });
+        &nodes[cell % CHUNK]
+    }
+
+    fn made(&self, arm: &Arm, level: usize, [r, z]: [f64; 2], cell: usize, class: PostureClass) -> [Node; WIDTH] {
+        let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
+        let place: [[f64; 3]; WIDTH] = std::array::from_fn(|k| [r, z, self.heading(level, cell + k)]);
+        nodes_over(arm, &place, half, class)
+    }
+}
+
+/// What is known of four regions (radius, height, heading) of those half widths.
+pub(super) fn nodes_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [Node; WIDTH] {
+    match enclosed(arm, place, half, class) {
+        None => [Node::Empty; WIDTH],
+        Some(y) => std::array::from_fn(|k| judged(arm, &y, k, half)),
+    }
+}
+
+/// The closed form over four regions (radius, height, heading).
+fn enclosed(
+    arm: &Arm,
+    place: &[[f64; 3]; WIDTH],
+    half: [f64; 3],
+    class: PostureClass,
+) -> Option<ArmCompliance<Enclosure>> {
+    let ends = place.map(|p| sine_cosine_over(p[2] - half[2], p[2] + half[2]));
+    let middle = place.map(|p| libm::sincos(p[2]));
+    let (sine, cosine) = Enclosure::heading(
+        [Lanes(middle.map(|m| m.0)), Lanes(middle.map(|m| m.1))],
+        [
+            Interval::between(Lanes(ends.map(|e| e.0.0)), Lanes(ends.map(|e| e.0.1))),
+            Interval::between(Lanes(ends.map(|e| e.1.0)), Lanes(ends.map(|e| e.1.1))),
+        ],
+        half,
+    );
+    let radius = Enclosure::variable(Lanes(place.map(|p| p[0])), 0, half);
+    let height = Enclosure::variable(Lanes(place.map(|p| p[1])), 1, half);
+    arm.evaluate(radius, height, sine, cosine, class)
+}
+
+fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Node {
+    if y.lost.lane(lane) {
+        return Node::Empty;
+    }
+    if !y.regular[2].lane(lane) {
+        return Node::Unknown;
+    }
+    let holds = |c: usize| y.constraints[c].value.low().0[lane] >= 0.0;
+    let within = |joint: usize| match arm.is_wide(joint) {
+        None => true,
+        Some(true) => holds(1 + 2 * joint) || holds(2 + 2 * joint),
+        Some(false) => holds(1 + 2 * joint) && holds(2 + 2 * joint),
+    };
+    let sure = y.conditioned.lane(lane) && [0, 5, 6, 7].into_iter().all(holds) && within(0) && within(1);
+    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1]];
+    let values = functions.map(|f| {
+        let f = f.middle();
+        [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
+    });
+    let most = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
+    let mut remainder = [0.0; 3];
+    for (p, (i, j)) in PAIR.iter().enumerate() {
+        let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
+        remainder[0] += most(0, p) * factor;
+        remainder[1] += libm::hypot(most(1, p), most(2, p)) * factor;
+        remainder[2] += libm::hypot(most(3, p), most(4, p)) * factor;
+    }
+    // And what is lost by writing the values with fewer digits.
+    let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
+    let lost = [size(0), size(1) + size(2), size(3) + size(4)];
+    let remainder = [0, 1, 2].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    if remainder.iter().all(|r| *r < 1e30) {
+        Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure })
+    } else {
+        Node::Unknown
+    }
+}
+
+/// Least and largest sine and cosine between two angles less than a turn apart. rad
+fn sine_cosine_over(from: f64, to: f64) -> ((f64, f64), (f64, f64)) {
+    let (s0, c0) = libm::sincos(from);
+    let (s1, c1) = libm::sincos(to);
+    // Whether an angle of that kind (plus whole turns) is between.
+    let holds = |angle: f64| ((to - angle) / TAU).floor() > ((from - angle) / TAU).floor();
+    let range = |a: f64, b: f64, top: f64| {
+        let high = if holds(top) { 1.0 } else { a.max(b) };
+        let low = if holds(top + PI) { -1.0 } else { a.min(b) };
+        (low, high)
+    };
+    (range(s0, s1, PI / 2.0), range(c0, c1, 0.0))
+}

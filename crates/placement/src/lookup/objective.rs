@@ -1,0 +1,187 @@
+//! What a placement is worth by the table: dynamic programming over its scores.
+//!
+//! The rules are those of [`crate::redundancy::band`], but for the steps and turns of the joints.
+
+use super::interpolate::{PlacedPath, PolarPoint, Rows};
+use super::{BetaGrid, LookupTable};
+use crate::redundancy::Worth;
+use std::ops::Range as Span;
+use stead_model::robot::Posture;
+
+/// Scratch space of one thread.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    pub(super) rows: Rows,
+    scores: Vec<f32>,
+    /// Smallest sums of scores so far, over beta.
+    costs: Vec<f32>,
+    windows: [Vec<f32>; 2],
+    /// For each segment the class that won last.
+    favourites: Vec<usize>,
+}
+
+impl LookupTable<'_> {
+    /// Space for one thread to look along a grid of beta.
+    pub fn workspace(&self, grid: &BetaGrid) -> Workspace {
+        let row = || vec![0.0; grid.count];
+        Workspace {
+            rows: Rows::new(self, grid),
+            scores: row(),
+            costs: row(),
+            windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
+            favourites: vec![0; self.problem.task.segments().len()],
+        }
+    }
+
+    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best plan on a grid of beta, with the
+    /// posture scheme found exactly or given (one posture per segment), to the accuracy of the table.
+    pub fn objective(
+        &self,
+        pose: &[f64; 4],
+        grid: &BetaGrid,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Worth {
+        let placed = self.place(pose);
+        let mut sum = 0.0;
+        let (mut points, mut segments) = (0, 0);
+        for (index, span) in self.problem.task.segments().iter().enumerate() {
+            let only = scheme.map(|s| s[index].class().index());
+            let asked = |class: usize| only.is_none_or(|asked| asked == class);
+            let mut best = f64::INFINITY;
+            // The class that won last time goes first: the others can then mostly be given up on the way.
+            let first = workspace.favourites[index];
+            for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
+                if let Some(cost) = self.through(&placed, span.clone(), class, grid, best, workspace) {
+                    best = cost;
+                    workspace.favourites[index] = class;
+                }
+            }
+            if best.is_finite() {
+                sum += best;
+                continue;
+            }
+            let Workspace { rows, scores, .. } = workspace;
+            let is_blocked = |point: &usize| {
+                let polar = self.polar_point(&placed, *point);
+                let mut classes = (0..4).filter(|class| asked(*class));
+                let mut is_allowed = |polar: &PolarPoint, class: usize| {
+                    self.interpolate(polar, class, grid, rows, scores) && scores.iter().any(|score| score.is_finite())
+                };
+                polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
+            };
+            let blocked = span.clone().filter(is_blocked).count();
+            points += blocked;
+            segments += usize::from(blocked == 0);
+        }
+        if points > 0 {
+            Worth::Infeasible { points, segments: 0 }
+        } else if segments > 0 {
+            Worth::Infeasible { points, segments }
+        } else {
+            Worth::Feasible(sum / self.points.len() as f64)
+        }
+    }
+
+    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`. m
+    fn through(
+        &self,
+        placed: &PlacedPath,
+        span: Span<usize>,
+        class: usize,
+        grid: &BetaGrid,
+        bound: f64,
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
+        let Workspace { rows, scores, costs, windows, .. } = workspace;
+        // Costs are relative to this, so that long sums keep their digits.
+        let mut base = 0.0;
+        for (place, point) in span.enumerate() {
+            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, rows, scores) {
+                return None;
+            }
+            if place == 0 {
+                costs.copy_from_slice(scores);
+                if !costs.iter().any(|cost| cost.is_finite()) {
+                    return None;
+                }
+            } else if !advance(costs, scores, grid.reaches[point], (bound - base) as f32, windows) {
+                return None;
+            }
+            if place % RENEWAL == RENEWAL - 1 {
+                let least = costs.iter().copied().fold(f32::INFINITY, f32::min);
+                costs.iter_mut().for_each(|cost| *cost -= least);
+                base += f64::from(least);
+            }
+        }
+        let cost = base + f64::from(costs.iter().copied().fold(f32::INFINITY, f32::min));
+        (cost < bound).then_some(cost)
+    }
+}
+
+/// After so many points costs are made relative to the smallest.
+const RENEWAL: usize = 64;
+
+/// Adds to each score the smallest cost within `reach`, cyclically: the new costs. False when none is below `bound`.
+fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
+    let count = costs.len();
+    let least = |a: f32, b: f32| if b < a { b } else { a };
+    let mut any = false;
+    if 2 * reach + 1 >= count {
+        let best = costs.iter().copied().fold(f32::INFINITY, f32::min);
+        for (cost, score) in costs.iter_mut().zip(scores) {
+            *cost = best + score;
+            any |= *cost < bound;
+        }
+        return any;
+    }
+    // Minima over windows of 1, 2, 4, ... values, then two of the widest that make up the band.
+    let length = count + 2 * reach;
+    let [now, next] = windows;
+    now[..reach].copy_from_slice(&costs[count - reach..]);
+    now[reach..reach + count].copy_from_slice(costs);
+    now[reach + count..length].copy_from_slice(&costs[..reach]);
+    let band = 2 * reach + 1;
+    let mut width = 1;
+    while 2 * width <= band {
+        let kept = length + 1 - 2 * width;
+        let (a, b) = (&now[..kept], &now[width..width + kept]);
+        for (out, (a, b)) in next[..kept].iter_mut().zip(a.iter().zip(b)) {
+            *out = least(*a, *b);
+        }
+        std::mem::swap(now, next);
+        width *= 2;
+    }
+    let (a, b) = (&now[..count], &now[band - width..band - width + count]);
+    for ((cost, score), (a, b)) in costs.iter_mut().zip(scores).zip(a.iter().zip(b)) {
+        *cost = least(*a, *b) + score;
+        any |= *cost < bound;
+    }
+    any
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn advance_agrees_with_plain_loops(
+            pairs in prop::collection::vec((0.0..1.0_f32, 0.0..1.0_f32, 0..10_u8), 3..60), reach in 0..40_usize, bound in 0.5..3.0_f32
+        ) {
+            let count = pairs.len();
+            let reach = reach.min(count / 2);
+            let before: Vec<f32> = pairs.iter().map(|p| if p.2 < 3 { f32::INFINITY } else { p.0 }).collect();
+            let scores: Vec<f32> = pairs.iter().map(|p| if p.2 > 7 { f32::INFINITY } else { p.1 }).collect();
+            let mut costs = before.clone();
+            let mut windows = [vec![0.0; 2 * count], vec![0.0; 2 * count]];
+            let any = advance(&mut costs, &scores, reach, bound, &mut windows);
+            for k in 0..count {
+                let near = (0..=2 * reach).map(|shift| before[(k + count + shift - reach) % count]);
+                prop_assert_eq!(costs[k], near.fold(f32::INFINITY, f32::min) + scores[k]);
+            }
+            prop_assert_eq!(any, costs.iter().any(|cost| *cost < bound));
+        }
+    }
+}

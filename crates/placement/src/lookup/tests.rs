@@ -1,0 +1,320 @@
+//! The table against the ordinary evaluator and the planner, and with parts of the formula broken on purpose.
+
+use super::super::feasibility::explain;
+use super::super::genetic::rank;
+use super::super::outcome::Goal;
+use super::super::problem::{Interval, Placement, Redundancy};
+use super::super::redundancy::{Extremum, Worth};
+use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
+use super::sample::field;
+use super::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stead_model::robot::{PostureClass, Robot};
+use stead_model::task::{PathPoint, Task, ToolPath};
+
+/// Errors in all directions counted.
+fn robust() -> Problem {
+    let mut problem = slanted();
+    problem.criterion.force_uncertainty = 0.1;
+    problem
+}
+
+/// Joint 1 cannot get all the way round, and turns with a compensator beside joint 2.
+fn limited() -> Problem {
+    let mut problem = with_laws(five_segments(), &[(1, compensated(0.2, 1e-6 / 3.32))]);
+    let mut joints = problem.robot.joints().clone();
+    (joints[0].min, joints[0].max) = (-1.75, 1.2);
+    problem.robot = Robot::new("limited", joints).unwrap();
+    problem
+}
+
+/// What a table says of drawn states beside what the ordinary evaluator says: relative root mean square of the errors, largest
+/// error, and share of disputes.
+fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
+    let problem = table.problem();
+    let redundancy = Redundancy { beta_count: count, ..problem.redundancy };
+    let grid = BetaGrid::new(problem, count);
+    let mut workspace = table.workspace(&grid);
+    let mut random = ChaCha8Rng::seed_from_u64(99);
+    let (mut states, mut disputed, mut squares, mut errors, mut largest) = (0, 0, 0.0, 0.0, 0.0_f64);
+    for _ in 0..draws {
+        let [x, y, z] = problem.cell.position;
+        let pose = [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width());
+        let point = random.random_range(0..problem.task.points().len());
+        let k = random.random_range(0..count);
+        let all = explain(problem, &pose, point, redundancy.beta(k));
+        for class in PostureClass::ALL {
+            let mut scores = vec![f32::INFINITY; count];
+            if let Some(polar) = table.polar_point(&table.place(&pose), point)
+                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.rows, &mut scores)
+            {
+                scores.fill(f32::INFINITY);
+            }
+            let postures = class.postures().map(|posture| &all[usize::from(posture.number()) - 1]);
+            let ordinary = postures.into_iter().find(|e| e.is_allowed()).and_then(|e| e.state.as_ref());
+            match (ordinary.map(|s| s.score()), scores[k].is_finite()) {
+                (None, false) => continue,
+                (Some(score), true) => {
+                    let error = f64::from(scores[k]) - score;
+                    squares += score * score;
+                    errors += error * error;
+                    largest = largest.max(error.abs());
+                }
+                _ => disputed += 1,
+            }
+            states += 1;
+        }
+    }
+    let mean = squares / f64::from(states);
+    Accuracy {
+        states: states as usize,
+        rms: libm::sqrt(errors / squares),
+        largest: largest / libm::sqrt(mean),
+        disputed: f64::from(disputed) / f64::from(states),
+    }
+}
+
+#[test]
+fn errs_no_more_than_it_says() {
+    for (name, problem) in [
+        ("five segments", five_segments()),
+        ("slanted", slanted()),
+        ("robust", robust()),
+        ("limited", limited()),
+        ("hanging", hanging()),
+    ] {
+        let table = LookupTable::new(&problem).unwrap();
+        let stated = table.accuracy();
+        assert!(stated.states > 200 && stated.rms < 2e-4 && stated.disputed < 0.02, "{name}: {stated:?}");
+        // The grid of the headings, a finer one, one that shares little with it.
+        for (count, draws) in [(120, 1500), (360, 500), (50, 500)] {
+            let found = compared(&table, count, draws);
+            assert!(found.states > 200, "{name} {count}: {found:?}");
+            assert!(found.rms < 4.0 * stated.rms + 2e-6, "{name} {count}: {found:?} {stated:?}");
+            assert!(found.largest < 8.0 * stated.largest + 1e-5, "{name} {count}: {found:?} {stated:?}");
+            assert!(found.disputed < 0.02, "{name} {count}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn every_broken_part_of_the_formula_is_seen() {
+    type Mutation = (&'static str, fn(&mut LookupTable<'_>));
+    fn scale(table: &mut LookupTable<'_>, wanted: usize, change: impl Fn(f32) -> f32) {
+        let headings = table.shape.headings;
+        let (block, range) = (table.shape.block(), wanted * headings..(wanted + 1) * headings);
+        for row in table.data.chunks_mut(block) {
+            row[range.clone()].iter_mut().for_each(|value| *value = change(*value));
+        }
+    }
+    let mutations: [Mutation; 10] = [
+        ("r^2 / k1 left out", |table| table.first_compliance = 0.0),
+        ("sign of m", |table| scale(table, field::MEAN, |v| -v)),
+        ("sign of d1", |table| scale(table, field::DIFFERENCE, |v| -v)),
+        ("sign of d2", |table| scale(table, field::MIXED, |v| -v)),
+        ("sign of c_rz", |table| scale(table, field::VERTICAL, |v| -v)),
+        ("sign of c_tz", |table| scale(table, field::VERTICAL + 1, |v| -v)),
+        ("sense of the heading against the azimuth", |table| table.sense = -table.sense),
+        ("axis 1 elsewhere by a step", |table| table.shape.radius.first += table.shape.radius.step),
+        ("heights off by a step", |table| table.shape.height.first -= table.shape.height.step),
+        ("no limits", |table| scale(table, field::ROOM, |_| 1.0)),
+    ];
+    let problem = slanted();
+    let sound = LookupTable::new(&problem).unwrap();
+    let stated = sound.accuracy();
+    let is_fine = |found: &Accuracy| found.rms < 4.0 * stated.rms + 2e-6 && found.disputed < 0.02;
+    assert!(is_fine(&compared(&sound, 120, 300)));
+    for (name, mutate) in mutations {
+        let mut broken = sound.clone();
+        mutate(&mut broken);
+        if name == "no limits" {
+            broken.alive.fill(true);
+        }
+        let found = compared(&broken, 120, 300);
+        assert!(!is_fine(&found), "{name} is not seen: {found:?}");
+        assert!(!is_fine(&broken.accuracy()), "{name} is not reported");
+    }
+}
+
+fn drawn_poses(problem: &Problem, count: usize) -> Vec<[f64; 4]> {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let [x, y, z] = problem.cell.position;
+    let bounds = [x, y, z, problem.cell.yaw];
+    (0..count).map(|_| bounds.map(|b| b.min + random.random::<f64>() * b.width())).collect()
+}
+
+#[test]
+fn worth_agrees_with_the_planner() {
+    // The workpiece that hangs is where limits bind all over: there the table errs at their edges.
+    for (problem, close_share, most_above) in [(five_segments(), 8, 0), (robust(), 8, 0), (hanging(), 6, 5)] {
+        let planner = Planner::new(&problem);
+        let table = LookupTable::new(&problem).unwrap();
+        let grid = BetaGrid::of(&planner);
+        let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
+        let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
+        for (k, pose) in drawn_poses(&problem, 40).iter().enumerate() {
+            let planned = planner.worth(pose, Extremum::Smallest, None, &mut space);
+            let looked = table.objective(pose, &grid, None, &mut looking);
+            // A fresh workspace, with nothing kept from the placement before, says the same.
+            assert_eq!(table.objective(pose, &grid, None, &mut table.workspace(&grid)), looked);
+            let (Some(planned), Some(looked)) = (planned.mean(), looked.mean()) else {
+                disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
+                continue;
+            };
+            // What the table leaves out, turns and steps of the joints, can only make it find less.
+            let error = (looked / planned - 1.0).abs();
+            assert!(error < 0.02, "{k}: {planned} {looked}");
+            close += usize::from(error < 1e-4);
+            above += usize::from(looked > planned * (1.0 + 1e-4));
+            feasible += 1;
+            if error < 1e-4
+                && let Ok(plans) = planner.plan(pose, Extremum::Smallest, None, &mut space)
+            {
+                let mut scheme: Vec<_> = plans.iter().map(|plan| plan.posture).collect();
+                let held = table.objective(pose, &grid, Some(&scheme), &mut looking).mean().unwrap();
+                assert!((held / looked - 1.0).abs() < 1e-3);
+                scheme[2] = stead_model::robot::Posture::ALL[(usize::from(scheme[2].number()) + 3) % 8];
+                let other = table.objective(pose, &grid, Some(&scheme), &mut looking);
+                assert!(rank(Goal::Best, other, Worth::Feasible(held * (1.0 - 1e-6))).is_gt());
+            }
+        }
+        assert!(feasible > 12 && close * 10 >= feasible * close_share, "{close} of {feasible}");
+        assert!(above <= most_above, "{above} of {feasible}");
+        assert!(disputed < 4, "{disputed}");
+    }
+}
+
+#[test]
+fn what_nothing_reaches_is_counted_as_the_planner_counts_it() {
+    let mut problem = five_segments();
+    problem.cell.position[1] = Interval { min: -3.4, max: -2.2 };
+    let planner = Planner::new(&problem);
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::of(&planner);
+    let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
+    let (mut blocked, mut apart) = (0, 0);
+    for pose in drawn_poses(&problem, 30) {
+        let planned = planner.worth(&pose, Extremum::Smallest, None, &mut space);
+        let looked = table.objective(&pose, &grid, None, &mut looking);
+        if let (Worth::Infeasible { points: a, .. }, Worth::Infeasible { points: b, .. }) = (planned, looked) {
+            blocked += a;
+            apart += a.abs_diff(b);
+        }
+    }
+    assert!(blocked > 300 && apart * 20 < blocked, "{blocked} {apart}");
+}
+
+#[test]
+fn a_long_path_keeps_its_digits() {
+    let mut problem = five_segments();
+    let first = problem.task.points()[0];
+    let count = 20_000;
+    let points = (0..count).map(|k| {
+        let along = 0.3 * f64::from(k) / f64::from(count);
+        (1, PathPoint { position: first.position + first.feed * along, ..first })
+    });
+    let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+    let wrenches = vec![problem.task.wrenches()[0]; count as usize];
+    problem.task = Task::new(path, wrenches).unwrap();
+    // Beta stays: between points this close the planner saves its steps up, which the table does not.
+    problem.redundancy.max_beta_rate = 0.0;
+    let planner = Planner::new(&problem);
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::of(&planner);
+    let pose = [0.0, -1.8, -0.4, 0.7];
+    let planned = planner.worth(&pose, Extremum::Smallest, None, &mut planner.workspace()).mean().unwrap();
+    let looked = table.objective(&pose, &grid, None, &mut table.workspace(&grid)).mean().unwrap();
+    assert!((looked / planned - 1.0).abs() < 2e-5, "{looked} {planned}");
+}
+
+#[test]
+fn steps_of_beta_are_the_planners() {
+    let problem = five_segments();
+    for planner in [Planner::new(&problem), Planner::finer(&problem)] {
+        let grid = BetaGrid::of(&planner);
+        for (point, reach) in grid.reaches.iter().enumerate() {
+            assert_eq!(*reach, planner.step(point, Extremum::Smallest).reach);
+        }
+    }
+}
+
+#[test]
+fn polishing_gets_better_inside_the_cell() {
+    let mut problem = five_segments();
+    problem.cell.yaw = Interval { min: 0.2, max: 2.4 };
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::new(&problem, 120);
+    let mut workspace = table.workspace(&grid);
+    for (goal, start) in [(Goal::Best, [0.1, -1.8, -0.4, 1.0]), (Goal::Worst, [-0.1, -2.0, -0.4, 0.6])] {
+        let before = table.objective(&start, &grid, None, &mut workspace);
+        let (end, worth, evaluations) = table.coordinate_search(&start, goal, None, &grid, &mut workspace);
+        assert!(rank(goal, worth, before).is_lt() && evaluations > 20, "{goal:?} {before:?} {worth:?}");
+        assert_eq!(worth, table.objective(&end, &grid, None, &mut workspace));
+        let [x, y, z, yaw] = end;
+        assert!(problem.cell.contains(&Placement { x, y, z, yaw }), "{end:?}");
+    }
+}
+
+#[test]
+fn the_same_table_for_any_number_of_threads() {
+    let problem = slanted();
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let table = LookupTable::new(&problem).unwrap();
+            (table.data.iter().map(|v| v.to_bits()).collect::<Vec<_>>(), table.accuracy())
+        })
+    };
+    let one = build(1);
+    assert!(one == build(2) && one == build(5));
+}
+
+#[test]
+fn what_a_table_cannot_hold_is_refused_with_the_reason() {
+    let refused = |problem: &Problem| LookupTable::shape_for(problem).unwrap_err();
+    let mut tilted = five_segments();
+    let (sine, cosine) = libm::sincos(0.01);
+    let path = tilted.task.path();
+    let points = path.points().iter().enumerate().map(|(k, point)| {
+        let axis = if k == 40 { Vector3::new(sine, 0.0, cosine) } else { point.axis };
+        (path.segment_of(k) as u32 + 1, PathPoint { axis, ..*point })
+    });
+    let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+    tilted.task = Task::new(path, tilted.task.wrenches().to_vec()).unwrap();
+    assert_eq!(refused(&tilted), Unsuited::Tilted { point: 40 });
+
+    let mut twisted = five_segments();
+    let mut wrenches = twisted.task.wrenches().to_vec();
+    wrenches[7].moment.z = 1.0;
+    twisted.task = Task::new(twisted.task.path().clone(), wrenches).unwrap();
+    assert_eq!(refused(&twisted), Unsuited::Moment { point: 7 });
+
+    for joint in [0, 3, 5] {
+        let mut joints = five_segments().robot.joints().clone();
+        (joints[joint].min, joints[joint].max) = (-2.0, 2.0);
+        joints[joint].compliance = stead_model::robot::Compliance::Range { at_min: 1e-6, at_max: 2e-6 };
+        let problem = Problem { robot: Robot::new("law", joints).unwrap(), ..five_segments() };
+        assert_eq!(refused(&problem), Unsuited::Law { joint: joint + 1 });
+    }
+
+    let mut uncertain = with_uncertainty(five_segments(), 0.1);
+    assert!(LookupTable::shape_for(&uncertain).is_ok());
+    uncertain.criterion.confidence = 2.0;
+    assert_eq!(refused(&uncertain), Unsuited::Uncertain);
+
+    let mut leaning = five_segments();
+    let mut joints = leaning.robot.joints().clone();
+    joints[0].alpha = 0.1;
+    leaning.robot = Robot::new("leaning", joints).unwrap();
+    assert_eq!(refused(&leaning), Unsuited::BaseNotVertical);
+
+    let mut huge = five_segments();
+    let mut joints = huge.robot.joints().clone();
+    (joints[2].a, joints[3].d) = (120.0, 120.0);
+    huge.robot = Robot::new("crane", joints).unwrap();
+    huge.cell.position = [Interval { min: -1e3, max: 1e3 }; 3];
+    let Unsuited::TooLarge { bytes, most } = refused(&huge) else { panic!("a crane's table does not fit") };
+    assert!(bytes > most && most == MAX_BYTES);
+    assert!(refused(&huge).to_string().contains(" GB, and at most 1.1 GB are allowed"), "{}", refused(&huge));
+}
