@@ -8,6 +8,7 @@ use std::path::Path;
 use stead_assessment::map::{Elbow, Map};
 use stead_assessment::study::{Study, assess};
 use stead_format::read_assessment;
+use stead_numerics::monitor::Monitor;
 
 fn main() {
     divan::main();
@@ -23,9 +24,9 @@ fn published() -> Study {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
     let study = published();
-    let maps = assess(&study, &|_, _| true).expect("the shipped study is good");
+    let maps = assess(&study, &Monitor::silent()).expect("the shipped study is good");
     let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
-    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| true));
+    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &Monitor::silent()));
 }
 
 /// One map of the KR 500 on one processor, with so many times finer a grid.

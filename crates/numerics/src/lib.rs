@@ -1,4 +1,6 @@
-//! What every job computes with: numbers that carry derivatives, and the widest vectors of the processor.
+//! What every job computes with: numbers that carry derivatives, the widest vectors of the processor, and the
+//! monitor of long jobs.
 
+pub mod monitor;
 pub mod scalar;
 pub mod simd;

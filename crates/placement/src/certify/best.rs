@@ -1,15 +1,16 @@
 //! The best placement: a lower bound of what placements are worth.
 
 use super::bound::Bounded;
-use super::frontier::{Bound, End, Open, Search, State, Watch, halves, widest};
+use super::frontier::{Bound, End, Open, Search, halves, widest};
 use super::prepare::{Unfit, certifiable, prepared};
 use super::reduced::Reduced;
 use super::region::Region;
 use super::tube::Tube;
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use rayon::prelude::*;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Bounds from below what placements of a problem are worth, until no placement can be better than `value` (mean score, m)
 /// by more than `gap` (relative).
@@ -19,16 +20,19 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
     let (bounded, whole) = prepared(problem, &compliances, with_rate);
+    let search = Search { sense: Sense::Min, value, gap, with_rate, points: bounded.points.len() };
     // Of no placement anything is known until the tables are made.
-    let unknown = State { bound: 0.0, open: 1, nodes: 0 };
-    let Some(reduced) = Reduced::new(&bounded, || watch.goes_on(&unknown)) else {
-        return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped, open: vec![(whole, 0.0)] });
+    let reduced = match Reduced::new(&bounded, || search.report(monitor, 0.0, 1, 0)) {
+        Ok(reduced) => reduced,
+        Err(stop) => {
+            let open = vec![(whole, 0.0)];
+            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
+        }
     };
-    let search = Search { goal: Goal::Best, value, gap, with_rate, points: bounded.points.len() };
     let ceiling = search.ceiling();
     let mut nodes = 0;
     let tube = Arc::new(Tube::full(bounded.points.len(), bounded.table.headings(0)));
@@ -37,7 +41,7 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
         .map(|(bound, region)| Open { bound, region, known: Arc::clone(&tube) })
         .collect();
     drop(reduced);
-    Ok(search.explore(start, nodes, watch, |open| parts(&bounded, open, ceiling)))
+    Ok(search.explore(start, nodes, monitor, |open| parts(&bounded, open, ceiling)))
 }
 
 /// The boxes that the reduced tables leave open.

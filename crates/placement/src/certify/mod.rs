@@ -42,7 +42,7 @@ mod worst;
 mod tests;
 
 pub use best::best;
-pub use frontier::{Bound, End, State, Watch};
+pub use frontier::{Bound, End};
 pub use prepare::{Unfit, certifiable};
 pub use region::Region;
 pub use relaxed::relaxed_value;

@@ -4,13 +4,14 @@
 
 use super::above::{Over, Seen};
 use super::bound::Bounded;
-use super::frontier::{Bound, Open, Search, Watch, halves, widest};
+use super::frontier::{Bound, Open, Search, halves, widest};
 use super::prepare::{Unfit, certifiable, prepared};
 use super::region::Region;
 use super::table::{Steps, Table};
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first look.
 const STEPS: Steps = Steps { length: 0.05, headings: 64 };
@@ -30,17 +31,17 @@ type Looked = Open<Option<Arc<Seen>>>;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
     let (bounded, whole) = prepared(problem, &compliances, false);
     let (extent, _) = bounded.table.grid();
     let bounded = Bounded { table: Table::new(extent, STEPS, LEVELS), ..bounded };
-    let search = Search { goal: Goal::Worst, value, gap, with_rate: false, points: bounded.points.len() };
+    let search = Search { sense: Sense::Max, value, gap, with_rate: false, points: bounded.points.len() };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
     let start = first(&bounded, whole).into_iter().map(unknown).collect();
-    Ok(search.explore(start, 0, watch, |open| parts(&bounded, open, ceiling)))
+    Ok(search.explore(start, 0, monitor, |open| parts(&bounded, open, ceiling)))
 }
 
 /// The boxes to begin with, together all of the cell.

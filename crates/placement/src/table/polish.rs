@@ -4,10 +4,10 @@
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
 
 use super::{Lane, Table, Workspace};
-use crate::genetic::rank;
-use crate::outcome::Goal;
 use crate::problem::Placement;
-use crate::redundancy::Worth;
+use crate::redundancy::Objective;
+use crate::search::rank;
+use crate::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;
 use stead_model::robot::Posture;
@@ -24,16 +24,16 @@ const GROWTH: f64 = 1.7;
 const MOST_LOOKS: usize = 150;
 
 impl Table<'_> {
-    /// The best placement (in the sense of the goal) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
+    /// The best placement (in the sense of the sense) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
     /// worth by the table, and the number of placements looked at; never worse than the start.
     pub fn polish(
         &self,
         start: &[f64; 4],
-        goal: Goal,
+        sense: Sense,
         scheme: Option<&[Posture]>,
         lane: &Lane,
         workspace: &mut Workspace,
-    ) -> ([f64; 4], Worth, usize) {
+    ) -> ([f64; 4], Objective, usize) {
         let mut best = *start;
         let mut worth = self.worth(start, lane, scheme, workspace);
         let mut looks = 1;
@@ -47,7 +47,7 @@ impl Table<'_> {
                     }
                     looks += 1;
                     let there = self.worth(&pose, lane, scheme, workspace);
-                    let better = rank(goal, there, worth) == Ordering::Less;
+                    let better = rank(sense, there, worth) == Ordering::Less;
                     if better {
                         (best, worth) = (pose, there);
                         // The next step goes the same way first.

@@ -4,7 +4,7 @@
 
 use super::look::{Rows, Site, Spot};
 use super::{Lane, Table};
-use crate::redundancy::Worth;
+use crate::redundancy::Objective;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 
@@ -35,7 +35,13 @@ impl Table<'_> {
 
     /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best plan on a grid of beta, with the
     /// posture scheme found exactly or given (one posture per segment), to the accuracy of the table.
-    pub fn worth(&self, pose: &[f64; 4], lane: &Lane, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
+    pub fn worth(
+        &self,
+        pose: &[f64; 4],
+        lane: &Lane,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Objective {
         let site = self.site(pose);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
@@ -69,11 +75,11 @@ impl Table<'_> {
             segments += usize::from(blocked == 0);
         }
         if points > 0 {
-            Worth::Infeasible { points, segments: 0 }
+            Objective::Infeasible { points, segments: 0 }
         } else if segments > 0 {
-            Worth::Infeasible { points, segments }
+            Objective::Infeasible { points, segments }
         } else {
-            Worth::Feasible(sum / self.stations.len() as f64)
+            Objective::Feasible(sum / self.stations.len() as f64)
         }
     }
 

@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::path::Path;
 use stead_assessment::study::assess;
 use stead_format::read_assessment;
+use stead_numerics::monitor::Monitor;
 
 /// The published study, table-compatible, on a coarse map, with one piece of the file replaced.
 fn study(from: &str, to: &str) -> (Study, AssessmentContext) {
@@ -18,7 +19,7 @@ fn study(from: &str, to: &str) -> (Study, AssessmentContext) {
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).unwrap();
     let run = read_assessment(&file).unwrap_or_else(|e| panic!("{e}"));
-    let assessment = assess(&run.study, &|_, _| true).unwrap();
+    let assessment = assess(&run.study, &Monitor::silent()).unwrap();
     let printed = run.printed.map(|printed| {
         let agreement = printed.agreement(&assessment);
         (printed, agreement)
@@ -33,7 +34,7 @@ fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
 #[test]
 fn tables_and_documents_tell_the_same() {
     let (study, context) = study("radius_mm", "radius_mm");
-    let assessment = assess(&study, &|_, _| true).unwrap();
+    let assessment = assess(&study, &Monitor::silent()).unwrap();
     let printed = context.printed.as_ref().map(|(printed, _)| printed);
     let document = assess_json(&assessment, &context, &Timing { wall: 1.5, threads: 2 });
     let table = rows(&tables::circularity(&assessment, printed).unwrap());
@@ -84,7 +85,7 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
                 x_mm = [2600, 2700]\ny_mm = [1300, 1500]\nstep_mm = 100\n";
     std::fs::write(folder.path().join("study.toml"), text).unwrap();
     let run = read_assessment(&folder.path().join("study.toml")).unwrap();
-    let assessment = assess(&run.study, &|_, _| true).unwrap();
+    let assessment = assess(&run.study, &Monitor::silent()).unwrap();
     let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed: None, course: None };
     let document = assess_json(&assessment, &context, &Timing { wall: 0.0, threads: 1 });
     assert_eq!(document["robots"][0]["configurations"].as_array().unwrap().len(), 2);

@@ -8,6 +8,8 @@ use super::candidates::{Purpose, stream};
 use nalgebra::{SMatrix, SymmetricEigen};
 use rand::RngExt;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// The free numbers only, each in a unit in which the sum over a set of mean configurations has a diagonal of one.
 type Packed = [[f64; NUMBERS]; NUMBERS];
@@ -151,22 +153,25 @@ pub fn worths(criterion: &Criterion, informations: &[Information], sets: &[Vec<u
     sets.iter().map(|set| criterion.of(&sum(set))).collect()
 }
 
-/// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `progress` is told how
-/// many more starts are done and says whether to go on. The result does not depend on the number of threads; ties go to the first.
+/// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `None` when
+/// `monitor` asked to stop. The result does not depend on the number of threads; ties go to the first.
 pub fn choose(
     criterion: &Criterion,
     informations: &[Information],
     size: usize,
     starts: &[Vec<usize>],
-    progress: &(dyn Fn(usize) -> bool + Sync),
+    monitor: &Monitor,
 ) -> Option<Chosen> {
+    let (done, total) = (AtomicUsize::new(0), starts.len() + 1);
     let parts: Vec<Packed> = informations.iter().map(|information| criterion.packed(information)).collect();
     let improved: Vec<Option<Chosen>> = (0..=starts.len())
         .into_par_iter()
         .map(|start| {
             let set = if start == 0 { greedy(criterion, &parts, size) } else { starts[start - 1].clone() };
-            let chosen = improve(criterion, &parts, set, &|| progress(0));
-            if progress(1) { Some(chosen) } else { None }
+            let chosen = improve(criterion, &parts, set, monitor);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            monitor.report(Progress::Steps { stage: "choosing", done, total });
+            (!monitor.should_stop()).then_some(chosen)
         })
         .collect();
     let mut best: Option<Chosen> = None;
@@ -222,12 +227,7 @@ fn best_addition(
     best
 }
 
-fn improve(
-    criterion: &Criterion,
-    parts: &[Packed],
-    mut set: Vec<usize>,
-    goes_on: &(dyn Fn() -> bool + Sync),
-) -> Chosen {
+fn improve(criterion: &Criterion, parts: &[Packed], mut set: Vec<usize>, monitor: &Monitor) -> Chosen {
     let mut is_in = vec![false; parts.len()];
     set.iter().for_each(|index| is_in[*index] = true);
     let mut worth = criterion.worth(&sum_of(parts, &set));
@@ -247,7 +247,7 @@ fn improve(
                 (set, worth, has_changed) = (trial, exact, true);
             }
         }
-        if !has_changed || !goes_on() {
+        if !has_changed || monitor.should_stop() {
             break;
         }
     }

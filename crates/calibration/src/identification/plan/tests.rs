@@ -58,7 +58,7 @@ fn request(seed: u64) -> Request {
 }
 
 fn planned(request: &Request) -> Plan {
-    plan(request, &|_, _| true).unwrap()
+    plan(request, &Monitor::silent()).unwrap()
 }
 
 /// Candidates' informations, and the criterion over all numbers.
@@ -123,7 +123,7 @@ fn exchange_finds_the_best_of_all_sets() {
         assert_eq!(sets.len(), 1001);
         let best = worths(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
         let starts: Vec<_> = (0..6).map(|draw| random_set(seed, draw, 4, 14)).collect();
-        let found = choose(&criterion, &informations, 4, &starts, &|_| true).unwrap();
+        let found = choose(&criterion, &informations, 4, &starts, &Monitor::silent()).unwrap();
         assert!((found.worth / best - 1.0).abs() < 1e-9, "{} {best}", found.worth);
     }
 }
@@ -278,7 +278,7 @@ fn candidates_keep_to_limits_levels_volume_and_deflection() {
         assert!(request.points.iter().all(|point| request.volume.contains(&flange.point(point))));
     }
     let none = Request { volume: Volume { least_radius: 9.0, ..Volume::OPEN }, ..request };
-    assert!(matches!(plan(&none, &|_, _| true), Err(PlanError::TooFewCandidates { found: 0, .. })));
+    assert!(matches!(plan(&none, &Monitor::silent()), Err(PlanError::TooFewCandidates { found: 0, .. })));
 }
 
 #[test]
@@ -305,7 +305,9 @@ fn the_plan_is_the_same_on_any_number_of_threads() {
         pool.install(|| planned(&request))
     };
     assert_eq!(on(1), on(3));
-    assert_eq!(plan(&request, &|_, _| false), Err(PlanError::Stopped));
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert_eq!(plan(&request, &stopped), Err(PlanError::Stopped));
 }
 
 #[test]
@@ -313,7 +315,7 @@ fn counts_that_cannot_do_are_refused() {
     let refused = |change: fn(&mut Request)| {
         let mut request = Request { candidates: 50, ..request(1) };
         change(&mut request);
-        plan(&request, &|_, _| true).unwrap_err()
+        plan(&request, &Monitor::silent()).unwrap_err()
     };
     assert!(matches!(refused(|r| r.configurations = 2), PlanError::Law(_)));
     assert!(matches!(
