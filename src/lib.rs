@@ -12,7 +12,7 @@
 //! | floor | rooms | what they hold |
 //! |---|---|---|
 //! | 6 | the binary | starts the command line, returns its exit code |
-//! | 5 | [`cli`] | one file per subcommand; no physics |
+//! | 5 | `cli` | one file per subcommand; no physics |
 //! | 4 | [`config`], [`report`] | files to checked domain objects; results to CSV, JSON and pictures |
 //! | 3 | [`placement`], [`assessment`], [`identification`], [`compensation`], [`simulation`] | the jobs: where to put the workpiece; how good a robot is, and how round a profile; how much its joints yield; what to command so that the loaded tool follows the path; how the arm moves while it mills, and whether that stays calm |
 //! | 2 | [`stiffness`], [`cutting`] | how the arm yields, what pushes along a tool path |

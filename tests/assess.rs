@@ -1,7 +1,5 @@
 //! `stead assess` from outside: what it prints and writes, that threads do not matter, and what it refuses.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 
 const STUDY: &str = "configs/klimchik-2017.toml";

@@ -1,8 +1,6 @@
 //! Bad input from outside: exit code 2, a message that says what and where, nothing on standard output, and every file of
 //! the user as it was.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended, RUN};
 
 const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";

@@ -1,7 +1,5 @@
 //! `stead place --certify` from outside: a short path in a small cell, so that it takes seconds.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended, RUN};
 use serde_json::Value;
 

@@ -1,7 +1,5 @@
 //! `stead compensate` from outside: the corrected path of the shipped plan, what remains of it in reality, and what is refused.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! What the grid of beta costs: the printed plans against plans on a grid four times finer, on the shipped results.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may panic, in its helpers too")]
-
 use serde_json::Value;
 use std::path::Path;
 use stead_format::read_run;

@@ -1,7 +1,5 @@
 //! `stead identify fit` from outside: what it prints and writes, and what it refuses.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
 use stead_calibration::identification::Configuration;

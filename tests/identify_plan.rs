@@ -1,7 +1,5 @@
 //! `stead identify plan` from outside: the plan, the sheet, the way from it to an identified robot, and what it refuses.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;

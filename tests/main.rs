@@ -1,5 +1,7 @@
 //! Everything that is tested from outside: the command line, and independent oracles.
 
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test may panic, in its helpers too")]
+
 mod assess;
 mod bad_input;
 mod certify;

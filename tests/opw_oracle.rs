@@ -3,8 +3,6 @@
 //! That crate counts joint angles 2 and 3 from the arm pointing straight up, and tilting forward; the flange frame is the
 //! same.
 
-#![allow(clippy::unwrap_used, reason = "a test")]
-
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rs_opw_kinematics::glam::DVec3;

@@ -1,7 +1,5 @@
 //! `stead place` from outside, on the published case with a small search.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended, RUN};
 use serde_json::Value;
 use sha2::{Digest, Sha256};

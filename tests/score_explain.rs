@@ -1,7 +1,5 @@
 //! `stead score` and `stead explain` from outside, on the published case.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended, RUN};
 use serde_json::Value;
 use std::process::Stdio;

@@ -1,7 +1,5 @@
 //! `stead simulate` from outside.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 use serde_json::Value;
 

@@ -1,7 +1,5 @@
 //! `stead stability` from outside, and critical depths along a path in `place` and `score`.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, Ended};
 use serde_json::Value;
 

@@ -1,7 +1,5 @@
 //! A robot file that says how well its compliances are known: `stead score`, `explain` and `place` from outside.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
-
 use crate::common::{Bench, RUN};
 use serde_json::Value;
 

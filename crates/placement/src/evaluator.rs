@@ -2,11 +2,11 @@
 //!
 //! Whatever goes on from the search is looked at by the planner in any case.
 
+use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::Generation;
 use super::redundancy::{self, Objective, Planner};
 use super::search::{Candidate, rank};
 use super::sense::Sense;
-use super::table::{self, Lane, Table};
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::Monitor;
@@ -15,15 +15,15 @@ use stead_numerics::monitor::Monitor;
 #[derive(Debug, Clone)]
 pub struct Evaluator<'a> {
     planner: &'a Planner<'a>,
-    table: Option<&'a Table<'a>>,
-    lane: Lane,
+    table: Option<&'a LookupTable<'a>>,
+    grid: BetaGrid,
 }
 
 /// Scratch space of one thread.
 #[derive(Debug)]
 pub struct Workspace {
     planner: Option<redundancy::Workspace>,
-    table: Option<table::Workspace>,
+    table: Option<lookup::Workspace>,
 }
 
 /// What goes on from a search.
@@ -48,13 +48,13 @@ const SAME: [f64; 3] = [0.005, 0.005, 0.02];
 
 /// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
 fn apart<'s>(
-    table: &Table<'_>,
+    table: &LookupTable<'_>,
     sorted: Vec<(&'s Candidate, Candidate)>,
     most: usize,
 ) -> Vec<(&'s Candidate, Candidate)> {
     let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
     for (start, end) in sorted {
-        let place = table.reduced(&end.pose);
+        let place = table.cylindrical(&end.pose);
         let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]
@@ -73,13 +73,13 @@ const CANDIDATES: usize = 3;
 
 impl<'a> Evaluator<'a> {
     /// Looks through the table, if there is one; it must be for the planner's problem.
-    pub fn new(planner: &'a Planner<'a>, table: Option<&'a Table<'a>>) -> Self {
-        Self { planner, table, lane: Lane::of(planner) }
+    pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
+        Self { planner, table, grid: BetaGrid::of(planner) }
     }
 
     /// The same, looking through the table on a grid of beta that many times finer than the planner's.
     pub fn with_finer_lookup(mut self, parts: usize) -> Self {
-        self.lane = Lane::new(self.planner.problem(), self.planner.grid().beta_count * parts);
+        self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
         self
     }
 
@@ -89,14 +89,14 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The table, if there is one.
-    pub fn table(&self) -> Option<&'a Table<'a>> {
+    pub fn table(&self) -> Option<&'a LookupTable<'a>> {
         self.table
     }
 
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
         match self.table {
-            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.lane)) },
+            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.grid)) },
             None => Workspace { planner: Some(self.planner.workspace()), table: None },
         }
     }
@@ -105,7 +105,7 @@ impl<'a> Evaluator<'a> {
     /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
     pub fn objective(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
         match (self.table, &mut workspace.table) {
-            (Some(table), Some(space)) => table.worth(pose, &self.lane, scheme, space),
+            (Some(table), Some(space)) => table.objective(pose, &self.grid, scheme, space),
             _ => self.planned_objective(pose, scheme, workspace),
         }
     }
@@ -180,7 +180,7 @@ impl<'a> Evaluator<'a> {
     /// A candidate polished on the table, and the number of placements looked at.
     fn polish(
         &self,
-        table: &Table<'_>,
+        table: &LookupTable<'_>,
         start: &Candidate,
         sense: Sense,
         monitor: &Monitor,
@@ -189,7 +189,7 @@ impl<'a> Evaluator<'a> {
         match &mut workspace.table {
             Some(space) if !monitor.should_stop() => {
                 let scheme = start.scheme.as_deref();
-                let (pose, objective, looks) = table.polish(&start.pose, sense, scheme, &self.lane, space);
+                let (pose, objective, looks) = table.coordinate_search(&start.pose, sense, scheme, &self.grid, space);
                 (Candidate { pose, objective, ..start.clone() }, looks)
             }
             _ => (start.clone(), 0),

@@ -3,7 +3,7 @@
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
-//! - [`table`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
+//! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
 //!   planner.
 //! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
@@ -18,6 +18,7 @@ pub mod certify;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
+pub mod lookup;
 pub mod outcome;
 pub mod place;
 pub mod problem;
@@ -26,7 +27,6 @@ pub mod refine;
 pub mod search;
 pub mod sense;
 pub mod settings;
-pub mod table;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

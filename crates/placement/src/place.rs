@@ -3,6 +3,7 @@
 use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
+use super::lookup::{LookupTable, Unsuited};
 use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
@@ -10,7 +11,6 @@ use super::refine::{Solution, planned, refine};
 use super::search::{self, Candidate, Found};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
-use super::table::{Table, Unsuited};
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -70,7 +70,7 @@ pub fn place(
 ) -> Result<Outcome, Infeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
-        Tables::Auto | Tables::Always => Some(Table::new(problem)),
+        Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
         Tables::Never => None,
     };
     let mut tabled = table.as_ref().map(|table| match table {
@@ -78,7 +78,7 @@ pub fn place(
         Err(unsuited) => Err(unsuited.clone()),
     });
     let mut table = table.and_then(Result::ok);
-    let search = |table: Option<&Table<'_>>| {
+    let search = |table: Option<&LookupTable<'_>>| {
         let evaluator = Evaluator::new(&planner, table);
         Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
     };

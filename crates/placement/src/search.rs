@@ -5,7 +5,7 @@
 //! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
 //! many points and segments fail.
 //!
-//! Candidates are looked at through a table where the task allows one ([`super::table`]), and then the basins that go on, and
+//! Candidates are looked at through a table where the task allows one ([`super::lookup`]), and then the basins that go on, and
 //! the best of every generation, are looked at by the planner: only averages are the table's.
 //!
 //! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
@@ -296,8 +296,8 @@ pub fn distinct(cell: &Cell, sorted: &[Candidate], most: usize) -> Vec<Candidate
 
 #[cfg(test)]
 mod tests {
+    use super::super::lookup::LookupTable;
     use super::super::redundancy::Planner;
-    use super::super::table::Table;
     use super::super::testing::five_segments;
     use super::*;
 
@@ -314,7 +314,7 @@ mod tests {
             let run = |threads: usize, seed: u64| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 pool.install(|| {
-                    let table = looks_through_table.then(|| Table::new(&problem).unwrap());
+                    let table = looks_through_table.then(|| LookupTable::new(&problem).unwrap());
                     let evaluator = Evaluator::new(&planner, table.as_ref());
                     search(&evaluator, &SearchSettings { seed, ..small() }, Sense::Min, &Monitor::silent())
                 })

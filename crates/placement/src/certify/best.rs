@@ -1,11 +1,11 @@
 //! The best placement: a lower bound of what placements are worth.
 
-use super::bound::Bounded;
-use super::frontier::{Bound, End, Open, Search, halves, widest};
-use super::prepare::{Unfit, certifiable, prepared};
-use super::reduced::Reduced;
+use super::active_cells::ActiveCells;
+use super::branch_and_bound::{Bound, BranchAndBound, End, Open, halves, widest};
+use super::coarse_bounds::CoarseBounds;
+use super::lower_bound::Model;
+use super::model::{Unfit, certifiable, prepared};
 use super::region::Region;
-use super::tube::Tube;
 use crate::problem::Problem;
 use crate::sense::Sense;
 use rayon::prelude::*;
@@ -23,11 +23,11 @@ use stead_numerics::monitor::Monitor;
 pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (bounded, whole) = prepared(problem, &compliances, with_rate);
-    let search = Search { sense: Sense::Min, value, gap, with_rate, points: bounded.points.len() };
+    let (model, whole) = prepared(problem, &compliances, with_rate);
+    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len() };
     // Of no placement anything is known until the tables are made.
-    let reduced = match Reduced::new(&bounded, || search.report(monitor, 0.0, 1, 0)) {
-        Ok(reduced) => reduced,
+    let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
+        Ok(coarse) => coarse,
         Err(stop) => {
             let open = vec![(whole, 0.0)];
             return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
@@ -35,19 +35,19 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &
     };
     let ceiling = search.ceiling();
     let mut nodes = 0;
-    let tube = Arc::new(Tube::full(bounded.points.len(), bounded.table.headings(0)));
-    let start = survivors(&bounded, &reduced, whole, ceiling, &mut nodes)
+    let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
+    let start = survivors(&model, &coarse, whole, ceiling, &mut nodes)
         .into_iter()
-        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&tube) })
+        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
         .collect();
-    drop(reduced);
-    Ok(search.explore(start, nodes, monitor, |open| parts(&bounded, open, ceiling)))
+    drop(coarse);
+    Ok(search.explore(start, nodes, monitor, |open| parts(&model, open, ceiling)))
 }
 
-/// The boxes that the reduced tables leave open.
+/// The boxes that the coarse tables leave open.
 fn survivors(
-    bounded: &Bounded,
-    reduced: &Reduced,
+    model: &Model,
+    coarse: &CoarseBounds,
     whole: Region,
     ceiling: f64,
     nodes: &mut usize,
@@ -56,10 +56,10 @@ fn survivors(
     let mut left = Vec::new();
     while !open.is_empty() {
         *nodes += open.len();
-        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| reduced.below(bounded, region)).collect();
+        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| coarse.lower_bound(model, region)).collect();
         let mut next = Vec::new();
         for (region, bound) in open.iter().zip(bounds) {
-            if bound.is_some_and(|bound| bound >= ceiling) || !bounded.yaws.allow(region) {
+            if bound.is_some_and(|bound| bound >= ceiling) || !model.yaws.allow(region) {
                 continue;
             }
             match widest(region) {
@@ -73,16 +73,16 @@ fn survivors(
 }
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
-fn parts(bounded: &Bounded, open: &Open<Arc<Tube>>, ceiling: f64) -> Option<Vec<Open<Arc<Tube>>>> {
-    let halves = halves(&open.region)?.into_iter().filter(|half| bounded.yaws.allow(half));
+fn parts(model: &Model, open: &Open<Arc<ActiveCells>>, ceiling: f64) -> Option<Vec<Open<Arc<ActiveCells>>>> {
+    let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
     let bounds = halves.map(|region| {
-        let level = bounded.level(&region).unwrap_or(0);
-        let mut tube = (*open.known).clone();
-        while tube.level < level {
-            tube = tube.halved();
+        let level = model.level(&region).unwrap_or(0);
+        let mut active = (*open.known).clone();
+        while active.level < level {
+            active = active.halved();
         }
-        let found = bounded.below(&region, &tube, ceiling);
-        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.tube) }
+        let found = model.lower_bound(&region, &active, ceiling);
+        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.active) }
     });
     Some(bounds.collect())
 }

@@ -29,8 +29,8 @@ fn objective(problem: &Problem, pose: &[f64; 4], sense: Sense) -> Objective {
 #[test]
 fn agrees_with_the_prototype_at_the_published_optimum() {
     let problem = with_prototype_steps(five_segments());
-    let best = worth(&problem, &published_optimum(), Sense::Min).mean().unwrap();
-    let worst = worth(&problem, &published_optimum(), Sense::Max).mean().unwrap();
+    let best = objective(&problem, &published_optimum(), Sense::Min).mean().unwrap();
+    let worst = objective(&problem, &published_optimum(), Sense::Max).mean().unwrap();
     // Printed with four and three digits.
     assert!((best * 1e3 - 0.5357).abs() < 1e-3 * 0.5357, "{best}");
     assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
@@ -188,7 +188,7 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
         assert!(after * sense.sign() <= before * sense.sign());
         let mut fine_grid = problem.clone();
         fine_grid.redundancy.beta_count = 1440;
-        let grid = worth(&fine_grid, &pose, sense).mean().unwrap() * 105.0;
+        let grid = objective(&fine_grid, &pose, sense).mean().unwrap() * 105.0;
         assert!(after * sense.sign() < grid * sense.sign() + 2e-4 * grid, "{before} {after} {grid}");
     }
 }
@@ -289,7 +289,7 @@ fn beta_keeps_its_pace_where_points_are_close() {
     let mean = |beta_count: usize, share: f64| {
         let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
         let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
-        super::tests::worth(&Problem { redundancy, ..dense.clone() }, &pose, sense).mean().unwrap()
+        super::tests::objective(&Problem { redundancy, ..dense.clone() }, &pose, sense).mean().unwrap()
     };
     let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
     // Spread steps leave the grid, so that they may come out a little below the finest.
