@@ -15,7 +15,7 @@ use divan::{Bencher, black_box};
 use published::{poses, problem};
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::Instructions;
-use stead_placement::evaluate::batch::{BatchEvaluator, Flips, States};
+use stead_placement::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use stead_placement::redundancy::Planner;
 use stead_placement::redundancy::transition::{self, Step};
 use stead_placement::sense::Sense;

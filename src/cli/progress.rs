@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_report::certificate::MOST_GAP_PERCENT;
-use stead_report::number::figures;
+use stead_report::units::figures;
 
 /// Shows the progress of the jobs of one command, and stops them at Ctrl-C.
 pub(super) struct Terminal {

@@ -1,6 +1,6 @@
 //! Circularity over a plane of the cell (Klimchik 2017, Fig. 15 to 19).
 
-use super::benchmark::{Benchmark, Obstacle, Profile, Trial};
+use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
 use stead_model::robot::{PostureClass, Robot};
 use stead_numerics::monitor::Monitor;
@@ -92,10 +92,10 @@ impl<const N: usize> Map<N> {
         monitor: &Monitor,
         row_done: &(dyn Fn() + Sync),
     ) -> Self {
-        let trial = Trial::new(benchmark, robot);
+        let deflected = DeflectedCircle::new(benchmark, robot);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
-            let mill = |index: usize| trial.circularity(grid.place(index), class, loads, profile);
+            let mill = |index: usize| deflected.circularity(grid.place(index), class, loads, profile);
             if monitor.should_stop() {
                 return vec![Err(Obstacle::Reach); grid.counts[0]];
             }

@@ -1,15 +1,17 @@
 //! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, and a table for people.
 
-use super::json;
-use super::number::{Unit, fixed};
 use super::output::{Folder, ReportError};
 use super::picture;
-use super::tables::{table, vector};
-use super::text::aligned;
+use crate::columns::aligned;
+use crate::csv_file::{table, vector};
+use crate::document::{Document, bytes, placement};
+use crate::units::{Unit, fixed};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use stead_calibration::compensation::{Compensated, Figures, Model, NotCompensated, Outcome, reduction};
+use stead_calibration::compensation::{
+    CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, reduction,
+};
 use stead_format::CompensateRun;
 
 /// Places and deflections, from m to mm, to a tenth of the finest tolerance that is of use.
@@ -28,11 +30,11 @@ const PER_CENT: Unit = Unit { factor: 100.0, decimals: 6 };
 pub fn write_compensation(
     folder: &Folder,
     run: &CompensateRun,
-    outcome: &Outcome,
+    outcome: &CompensatedPath,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
         ("corrected-path.csv", corrected_path(outcome)?),
-        ("summary.json", json::bytes(&compensation_json(run, outcome))),
+        ("summary.json", bytes(&compensation_json(run, outcome))),
         ("compensation.svg", picture::compensation(outcome)?.into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
@@ -77,11 +79,11 @@ const CORRECTED_PATH: [&str; 29] = [
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn corrected_path(outcome: &Outcome) -> Result<Vec<u8>, ReportError> {
+pub fn corrected_path(outcome: &CompensatedPath) -> Result<Vec<u8>, ReportError> {
     table("the table of the corrected path", &CORRECTED_PATH, outcome.points.iter().enumerate().map(row))
 }
 
-fn row((index, point): (usize, &Compensated)) -> Vec<String> {
+fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
     // The tool's z axis points out of the spindle.
     let axis: Vector3<f64> = -point.command.rotation.column(2);
     let mut row = vec![index.to_string(), point.segment.to_string()];
@@ -99,26 +101,17 @@ fn row((index, point): (usize, &Compensated)) -> Vec<String> {
 }
 
 /// What `stead compensate --json` prints, and the content of `summary.json`.
-pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
+pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Value {
     let settings = &run.job.settings;
-    let placement = &run.placement;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "inputs": json::inputs(&run.inputs),
+    document(run).with(json!({
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
         "model": model(settings.model),
         "alpha": settings.alpha,
         "tolerance_mm": settings.tolerance * 1e3,
-        "max_iterations": settings.most_iterations,
-        "placement": {
-            "x_mm": Unit::PLACE_MM.number(placement.x),
-            "y_mm": Unit::PLACE_MM.number(placement.y),
-            "z_mm": Unit::PLACE_MM.number(placement.z),
-            "q4": Unit::PLAIN.number(placement.q4()),
-            "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
-        },
+        "max_iterations": settings.max_iterations,
+        "placement": placement(&run.placement),
         "points": outcome.points.len(),
         "iterations": outcome.iterations(),
         "before": figures(&deflections[0]),
@@ -133,36 +126,40 @@ pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
             "max_mm": PLACE_MM.number(outcome.figures(|point| point.correction.linear.norm()).max),
             "max_deg": ANGLE_DEG.number(outcome.figures(|point| point.correction.angular.norm()).max),
         },
-    })
+    }))
+}
+
+fn document(run: &CompensateRun) -> Document {
+    Document::new(&run.inputs).notes(&run.notes)
 }
 
 /// What `stead compensate --json` prints where points cannot be compensated.
-pub fn not_compensated_json(failure: &NotCompensated) -> Value {
+pub fn not_compensated_json(run: &CompensateRun, failure: &NotCompensated) -> Value {
     let failed: Vec<Value> =
         failure.failed.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect();
-    json!({ "points": failure.of, "failed": failed })
+    document(run).with(json!({ "points": failure.of, "failed": failed }))
 }
 
-fn figures(figures: &Figures) -> Value {
+fn figures(figures: &MeanAndMax) -> Value {
     json!({ "mean_mm": PLACE_MM.number(figures.mean), "max_mm": PLACE_MM.number(figures.max) })
 }
 
-fn percent(pair: [Figures; 2]) -> Value {
+fn percent(pair: [MeanAndMax; 2]) -> Value {
     reduction(pair).map_or(Value::Null, |share| json!(PER_CENT.number(share)))
 }
 
-fn model(model: Model) -> &'static str {
+fn model(model: DeflectionModel) -> &'static str {
     match model {
-        Model::Equilibrium => "equilibrium",
-        Model::Linear => "linear",
+        DeflectionModel::Equilibrium => "equilibrium",
+        DeflectionModel::Linear => "linear",
     }
 }
 
 /// The table for people.
-pub fn compensation_text(run: &CompensateRun, outcome: &Outcome) -> String {
+pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> String {
     let model = match run.job.settings.model {
-        Model::Equilibrium => "the static equilibrium",
-        Model::Linear => "the linear displacement",
+        DeflectionModel::Equilibrium => "the static equilibrium",
+        DeflectionModel::Linear => "the linear displacement",
     };
     let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
     let played = if run.has_reality {

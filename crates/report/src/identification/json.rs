@@ -1,8 +1,9 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
-use super::super::json::inputs;
-use super::super::number::Unit;
+use super::text::notes;
 use super::{URAD, key, rounded};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::Parameter;
@@ -23,13 +24,11 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         .map(|(index, rms)| json!({ "configuration": sheet.configurations[index].name, "rms_mm": millimetres(rms) }));
     let unpredicted: Vec<&str> =
         found.prediction.unpredicted.iter().map(|index| sheet.configurations[*index].name.as_str()).collect();
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
+    Document::new(&run.inputs).notes(&run.notes).warnings(notes(run, found)).with(json!({
         "robot": found.robot.name(),
-        "inputs": inputs(&run.inputs),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
-        "compliances": found.seen.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
+        "compliances": found.compliances.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
         "compensator": compensator(found),
         "arm": found.arm.iter().map(|estimate| {
             let (name, factor) = key(&estimate.parameter);
@@ -41,7 +40,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         "noise_mm": millimetres(found.noise),
         "noise_estimated": found.is_noise_estimated,
         "noise_ratio": rounded(libm::sqrt(found.variance_ratio), 6),
-        "degrees_of_freedom": found.degrees,
+        "degrees_of_freedom": found.degrees_of_freedom,
         "residual_rms_mm": millimetres(found.residual_rms),
         "outliers": found.outliers().map(|row| outlier(run, row)).collect::<Vec<_>>(),
         "outliers_searched": found.are_outliers_searched,
@@ -52,7 +51,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
             "unpredicted": unpredicted,
         },
         "setup": setup(run, found),
-    })
+    }))
 }
 
 /// Lengths, with the digits of any deflection and more where they are tiny.

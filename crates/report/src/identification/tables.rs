@@ -1,9 +1,9 @@
 //! The CSV files of an identification.
 
-use super::super::number::{Unit, fixed};
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{URAD, key, rounded, unit};
+use crate::csv_file::table;
+use crate::units::{Unit, fixed};
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::model::Parameter;
 use stead_format::IdentifyRun;
@@ -19,7 +19,7 @@ fn number(value: f64) -> String {
 /// numbers of the robot file, each with its standard deviation and 95 % interval.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
     let header = ["parameter", "unit", "angle_deg", "value", "std", "low", "high"];
-    let seen = found.seen.iter().map(|estimate| {
+    let seen = found.compliances.iter().map(|estimate| {
         let joint = match estimate.parameter {
             Parameter::Joint(joint) => joint,
             Parameter::Group(_) => found.varying.unwrap_or_default(),

@@ -1,0 +1,189 @@
+//! What has been estimated, put together: intervals, the arm, rows, prediction error.
+
+use super::cross_validation::{compliances, leave_one_out};
+use super::distribution::{half_width, tail};
+use super::error::IdentifyError;
+use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
+use super::model::{Layout, Noise, Observation, Parameter};
+use super::normal_equations::FreeParameters;
+use super::outcome::{Estimate, Identified, RowResult};
+use super::outliers::{ROUNDING, RobustEstimate};
+use super::problem::Problem;
+use super::setup::{Setup, SetupFit};
+use super::sheet::Reading;
+use nalgebra::Vector6;
+use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
+
+/// A compliance so many standard deviations below zero is not below it by chance.
+const NEGATIVE: f64 = 6.0;
+
+/// Everything that has been estimated, to be put together.
+pub(super) struct Assembly<'a> {
+    /// What was asked.
+    pub problem: &'a Problem,
+    /// The compliances sought.
+    pub layout: &'a Layout,
+    /// Base transform and reference points.
+    pub setup: Setup,
+    /// How well those fit the unloaded readings.
+    pub fit: SetupFit,
+    /// The equations of all readings.
+    pub equations: &'a [Observation],
+    /// Which compliances are free.
+    pub free: &'a FreeParameters,
+    /// The estimate without outliers.
+    pub robust: RobustEstimate,
+    /// What the equations were divided by.
+    pub noise: Noise,
+}
+
+impl Assembly<'_> {
+    /// All of it, with the law of the varying joint fitted. `held` are the parameters that are not free.
+    pub fn assemble(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
+        let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
+        let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
+        let is_noise_estimated = self.problem.noise.is_none();
+        // Equations have unit variance where the noise is known; else the residuals tell their variance.
+        let variance = if is_noise_estimated { robust.variance } else { 1.0 };
+        let width = half_width(is_noise_estimated.then_some(robust.degrees));
+        let compliances = self.compliances(variance, width);
+        self.refuse_negative(&compliances)?;
+        let arm = fit(&robust.normal, self.free.joints, &robust.solution, &layout.angles, law)?;
+        let estimates = self.arm(&arm, variance, width)?;
+        let robot = self.robot(&arm)?;
+        let rows = self.rows(&arm);
+        let mut prediction = leave_one_out(sheet, layout, self.equations, &robust.kept, &arm);
+        let difference = libm::sqrt(2.0) * self.noise.position;
+        prediction.rms *= difference;
+        prediction.worst = prediction.worst.map(|(index, rms)| (index, rms * difference));
+        let inside = || rows.iter().filter(|row| !row.is_outlier);
+        let squares: f64 = inside().map(|row| (row.measured - row.predicted).norm_squared()).sum();
+        Ok(Identified {
+            compliances,
+            varying: layout.varying,
+            arm: estimates,
+            covariance: &arm.covariance * variance,
+            robot,
+            held,
+            residual_rms: libm::sqrt(squares / (3 * inside().count()).max(1) as f64),
+            noise: self.noise.position * libm::sqrt(variance),
+            is_noise_estimated,
+            variance_ratio: robust.variance / variance,
+            degrees_of_freedom: robust.degrees,
+            are_outliers_searched: robust.is_searched,
+            law_probability: self.law_probability(&arm),
+            prediction,
+            setup: self.setup.clone(),
+            setup_fit: self.fit.clone(),
+            rows,
+        })
+    }
+
+    fn compliances(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
+        let solution = &self.robust.solution;
+        let covariance = |group: Option<usize>| solution.covariance(self.layout.varying, group);
+        let whole = covariance(None);
+        let estimate = |parameter: Parameter| {
+            let joint = self.layout.joint(parameter);
+            let (value, square) = match parameter {
+                Parameter::Joint(_) => (solution.joints[joint], whole[(joint, joint)]),
+                Parameter::Group(group) => (solution.groups[group], covariance(Some(group))[(joint, joint)]),
+            };
+            interval(parameter, self.layout.angle(parameter), value, libm::sqrt(square * variance), width)
+        };
+        self.layout.parameters().into_iter().filter(|parameter| self.free.contains(*parameter)).map(estimate).collect()
+    }
+
+    /// Refuses what no noise explains: a joint that turns against its load.
+    fn refuse_negative(&self, compliances: &[Estimate<Parameter>]) -> Result<(), IdentifyError> {
+        let worst = compliances.iter().filter(|e| e.value < -NEGATIVE * e.deviation).min_by(|a, b| {
+            let [a, b] = [a, b].map(|e| e.value / e.deviation.max(f64::MIN_POSITIVE));
+            a.total_cmp(&b)
+        });
+        worst.map_or(Ok(()), |estimate| {
+            Err(IdentifyError::Negative {
+                joint: self.layout.joint(estimate.parameter) + 1,
+                value_urad: estimate.value * 1e6,
+                deviation_urad: estimate.deviation * 1e6,
+            })
+        })
+    }
+
+    fn arm(&self, arm: &ArmFit, variance: f64, width: f64) -> Result<Vec<Estimate<ArmParameter>>, IdentifyError> {
+        let deviation = |index: usize| libm::sqrt(arm.covariance[(index, index)] * variance);
+        for (index, parameter) in arm.parameters.iter().enumerate() {
+            if parameter.quantity == Quantity::Compliance && arm.values[index] <= 0.0 {
+                return Err(IdentifyError::NotPositive {
+                    joint: parameter.joint + 1,
+                    value_urad: arm.values[index] * 1e6,
+                    deviation_urad: deviation(index) * 1e6,
+                });
+            }
+        }
+        let estimates = arm.parameters.iter().enumerate();
+        Ok(estimates.map(|(index, p)| interval(*p, None, arm.values[index], deviation(index), width)).collect())
+    }
+
+    /// The starting arm with the numbers that have been estimated.
+    fn robot(&self, arm: &ArmFit) -> Result<Robot, RobotError> {
+        let value = |joint: usize, quantity: Quantity| {
+            let place = arm.parameters.iter().position(|p| p.joint == joint && p.quantity == quantity);
+            place.map(|place| arm.values[place])
+        };
+        let start = &self.problem.robot;
+        start.with_compliances(std::array::from_fn(|joint| {
+            let Some(alone) = value(joint, Quantity::Compliance) else { return start.joints()[joint].compliance };
+            match (self.problem.varying, value(joint, Quantity::SpringStiffness), value(joint, Quantity::FreeLength)) {
+                (Some((_, Law::Spring(geometry))), Some(spring_stiffness), Some(free_length)) => {
+                    let (a, l, alpha) = (geometry.a, geometry.l, geometry.alpha);
+                    let compensator = Compensator { spring_stiffness, a, l, alpha, free_length };
+                    Compliance::Compensated { alone, compensator }
+                }
+                _ => Compliance::Constant(alone),
+            }
+        }))
+    }
+
+    fn rows(&self, arm: &ArmFit) -> Vec<RowResult> {
+        let difference = libm::sqrt(2.0) * self.noise.position;
+        let row = |(index, reading): (usize, &Reading)| {
+            let equation = &self.equations[index];
+            let compliances = compliances(self.layout, arm, reading.configuration);
+            let linear = |vector: Vector6<f64>| vector.fixed_rows::<3>(0).into_owned() * difference;
+            RowResult {
+                line: reading.line,
+                configuration: reading.configuration,
+                point: reading.point,
+                measured: linear(equation.deflection),
+                predicted: linear(equation.design * compliances),
+                studentised: self.robust.studentised[index],
+                is_outlier: !self.robust.kept[index],
+            }
+        };
+        self.problem.sheet.readings.iter().enumerate().map(row).collect()
+    }
+
+    /// How likely it is that the law of the varying joint costs as much as it does beside one compliance for each angle.
+    fn law_probability(&self, arm: &ArmFit) -> Option<f64> {
+        let unknowns = match self.problem.varying?.1 {
+            Law::Constant => 1,
+            Law::Spring(_) => 3,
+        };
+        let free = self.free.groups.iter().filter(|free| **free).count();
+        let (more, degrees) = (free.checked_sub(unknowns).filter(|more| *more > 0)?, self.robust.degrees);
+        // The increase is a quadratic form in the difference of the two solutions.
+        let normal = &self.robust.normal;
+        let joints = arm.joints - self.robust.solution.joints;
+        let mut cost = (normal.shared * joints).dot(&joints);
+        for (index, group) in normal.groups.iter().enumerate() {
+            let difference = arm.groups[index].0 - self.robust.solution.groups[index];
+            cost += (2.0 * group.coupling.dot(&joints) + group.diagonal * difference) * difference;
+        }
+        let floor = if self.problem.noise.is_some() { 1.0 } else { ROUNDING * ROUNDING };
+        Some(tail(cost / more as f64 / self.robust.variance.max(floor), more, degrees.max(1)))
+    }
+}
+
+fn interval<P>(parameter: P, angle: Option<f64>, value: f64, deviation: f64, width: f64) -> Estimate<P> {
+    Estimate { parameter, angle, value, deviation, interval: [value - width * deviation, value + width * deviation] }
+}

@@ -1,0 +1,293 @@
+//! Normal equations of the compliances, kept sparse: configurations with different angles of the varying joint share no
+//! column but those of the other joints, so that the matrix is an arrow and everything below is linear in its size.
+
+use super::model::{Layout, Observation, Parameter};
+use super::sheet::Sheet;
+use nalgebra::{DMatrix, Matrix6, SymmetricEigen, Vector6};
+
+/// Sums over readings: of the products of columns, and of columns and deflections.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalEquations {
+    /// The varying joint, whose row and column of `shared` are zero.
+    pub varying: Option<usize>,
+    /// Products of the columns of the joints that do not vary.
+    pub shared: Matrix6<f64>,
+    /// Those with the deflections.
+    pub shared_rhs: Vector6<f64>,
+    /// The same for each distinct angle of the varying joint.
+    pub groups: Vec<Group>,
+    /// Sum of the weights.
+    pub weight: f64,
+}
+
+/// The part of one distinct angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Group {
+    /// Product of its column with those of the other joints.
+    pub coupling: Vector6<f64>,
+    /// Product with itself.
+    pub diagonal: f64,
+    /// Product with the deflections.
+    pub rhs: f64,
+    /// Sum of the weights.
+    pub weight: f64,
+}
+
+/// Which parameters are free; the others keep the values they are given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FreeParameters {
+    /// Joints; the varying one is not among them.
+    pub joints: [bool; 6],
+    /// Distinct angles.
+    pub groups: Vec<bool>,
+}
+
+impl FreeParameters {
+    /// Holds a parameter; whether it was free before.
+    fn hold(&mut self, parameter: Parameter) -> bool {
+        let slot = match parameter {
+            Parameter::Joint(joint) => &mut self.joints[joint],
+            Parameter::Group(group) => &mut self.groups[group],
+        };
+        std::mem::replace(slot, false)
+    }
+
+    /// Whether a parameter is free.
+    pub fn contains(&self, parameter: Parameter) -> bool {
+        match parameter {
+            Parameter::Joint(joint) => self.joints[joint],
+            Parameter::Group(group) => self.groups[group],
+        }
+    }
+}
+
+/// Compliances of all parameters, and the covariance of the free ones for equations of unit variance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// Of the joints that do not vary. rad/(N m)
+    pub joints: Vector6<f64>,
+    /// At the distinct angles. rad/(N m)
+    pub groups: Vec<f64>,
+    /// Covariance of the joints; zero for what is not free.
+    pub covariance: Matrix6<f64>,
+    /// For each distinct angle: how its estimate follows an error of the joints, and its own variance for given joints.
+    pub follow: Vec<(Vector6<f64>, f64)>,
+}
+
+/// A combination of parameters that the readings do not see.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unidentifiable {
+    /// The parameters in it, the one with the largest share first. One alone cannot be seen at all.
+    pub parameters: Vec<Parameter>,
+}
+
+/// A column whose root mean square is less than this part of the largest is taken for zero: what is left is rounding.
+const ZERO_COLUMN: f64 = 1e-8;
+/// Columns of unit length whose smallest singular value squared is less than this part of the largest are dependent.
+const DEPENDENT: f64 = 1e-11;
+/// Parameters with less than this share of a dependence are not named.
+const SHARE: f64 = 0.05;
+
+impl NormalEquations {
+    /// Sums over all readings with these weights, one for each reading.
+    pub fn new(sheet: &Sheet, layout: &Layout, observations: &[Observation], weights: &[f64]) -> Self {
+        let group = Group { coupling: Vector6::zeros(), diagonal: 0.0, rhs: 0.0, weight: 0.0 };
+        let mut normal = Self {
+            varying: layout.varying,
+            shared: Matrix6::zeros(),
+            shared_rhs: Vector6::zeros(),
+            groups: vec![group; layout.angles.len()],
+            weight: 0.0,
+        };
+        for ((reading, observation), weight) in sheet.readings.iter().zip(observations).zip(weights) {
+            if *weight > 0.0 {
+                normal.add(observation, layout.group(reading.configuration), *weight);
+            }
+        }
+        normal
+    }
+
+    fn add(&mut self, observation: &Observation, group: Option<usize>, weight: f64) {
+        let mut products = observation.design.tr_mul(&observation.design) * weight;
+        let mut rhs = observation.design.tr_mul(&observation.deflection) * weight;
+        if let (Some(joint), Some(group)) = (self.varying, group) {
+            let group = &mut self.groups[group];
+            group.diagonal += products[(joint, joint)];
+            group.rhs += rhs[joint];
+            group.weight += weight;
+            products.fill_row(joint, 0.0);
+            group.coupling += products.column(joint);
+            products.fill_column(joint, 0.0);
+            rhs[joint] = 0.0;
+        }
+        self.shared += products;
+        self.shared_rhs += rhs;
+        self.weight += weight;
+    }
+
+    /// All parameters free.
+    pub fn all_free(&self) -> FreeParameters {
+        FreeParameters {
+            joints: std::array::from_fn(|joint| self.varying != Some(joint)),
+            groups: vec![true; self.groups.len()],
+        }
+    }
+
+    /// Parameters whose columns are nothing but rounding.
+    fn zero_columns(&self, free: &FreeParameters) -> Vec<Parameter> {
+        let mean = |square: f64, weight: f64| if weight > 0.0 { square / weight } else { 0.0 };
+        let joint = |joint: usize| mean(self.shared[(joint, joint)], self.weight);
+        let group = |group: usize| mean(self.groups[group].diagonal, self.groups[group].weight);
+        let largest = (0..6).map(joint).chain((0..self.groups.len()).map(group)).fold(0.0, f64::max);
+        let joints = (0..6)
+            .filter(|j| free.joints[*j] && joint(*j) <= ZERO_COLUMN * ZERO_COLUMN * largest)
+            .map(Parameter::Joint);
+        let groups =
+            (0..self.groups.len()).filter(|g| free.groups[*g] && group(*g) <= ZERO_COLUMN * ZERO_COLUMN * largest);
+        joints.chain(groups.map(Parameter::Group)).collect()
+    }
+
+    /// Everything that the readings do not see: dead columns first, or, where there are none, dependent ones.
+    pub fn unidentifiable(&self, free: &FreeParameters) -> Vec<Unidentifiable> {
+        let zero_columns = self.zero_columns(free);
+        if !zero_columns.is_empty() {
+            return zero_columns.into_iter().map(|parameter| Unidentifiable { parameters: vec![parameter] }).collect();
+        }
+        let joints = free_joints(free);
+        if joints.is_empty() {
+            return vec![];
+        }
+        let scale = joints.iter().map(|j| 1.0 / libm::sqrt(self.shared[(*j, *j)])).collect::<Vec<_>>();
+        let reduced = self.reduced(free);
+        let size = joints.len();
+        let scaled = DMatrix::from_fn(size, size, |a, b| reduced[(joints[a], joints[b])] * scale[a] * scale[b]);
+        let eigen = SymmetricEigen::new(scaled);
+        let dependent = (0..size).filter(|k| eigen.eigenvalues[*k] <= DEPENDENT);
+        let name = |k: usize| {
+            let mut shares: Vec<(Parameter, f64)> =
+                joints.iter().enumerate().map(|(a, j)| (Parameter::Joint(*j), eigen.eigenvectors[(a, k)])).collect();
+            let along = joints.iter().enumerate().fold(Vector6::zeros(), |mut along: Vector6<f64>, (a, j)| {
+                along[*j] = eigen.eigenvectors[(a, k)] * scale[a];
+                along
+            });
+            for (index, group) in self.groups.iter().enumerate().filter(|(index, _)| free.groups[*index]) {
+                let share = -group.coupling.dot(&along) / libm::sqrt(group.diagonal);
+                shares.push((Parameter::Group(index), share));
+            }
+            shares.retain(|(_, share)| share.abs() > SHARE);
+            shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+            Unidentifiable { parameters: shares.into_iter().map(|(parameter, _)| parameter).collect() }
+        };
+        dependent.map(name).collect()
+    }
+
+    /// The parameters that can be told, and what the readings do not see, all of it: of every combination the first parameter is
+    /// taken out until the others can be told.
+    pub fn identifiable(&self) -> (FreeParameters, Vec<Unidentifiable>) {
+        let mut free = self.all_free();
+        let mut all: Vec<Unidentifiable> = Vec::new();
+        loop {
+            let unidentifiable = self.unidentifiable(&free);
+            let known = all.len();
+            for unidentifiable in unidentifiable {
+                if unidentifiable.parameters.first().is_some_and(|first| free.hold(*first)) {
+                    all.push(unidentifiable);
+                }
+            }
+            if all.len() == known {
+                return (free, all);
+            }
+        }
+    }
+
+    /// Products of the joints' columns less what the free groups explain of them (Schur complement).
+    fn reduced(&self, free: &FreeParameters) -> Matrix6<f64> {
+        let groups = self.groups.iter().zip(&free.groups).filter(|(_, free)| **free);
+        groups.fold(self.shared, |sum, (group, _)| sum - group.coupling * group.coupling.transpose() / group.diagonal)
+    }
+
+    /// The least-squares estimate (Klimchik et al. 2017, eq. 18), with what is not free held at the values of `held`;
+    /// nothing where the matrix is singular.
+    pub fn solve(&self, free: &FreeParameters, held: (&Vector6<f64>, &[f64])) -> Option<Solution> {
+        let (mut joints, mut groups) = (*held.0, held.1.to_vec());
+        for (joint, is_free) in free.joints.iter().enumerate() {
+            if *is_free || self.varying == Some(joint) {
+                joints[joint] = 0.0;
+            }
+        }
+        for (value, is_free) in groups.iter_mut().zip(&free.groups) {
+            if *is_free {
+                *value = 0.0;
+            }
+        }
+        // What the held parameters do is taken off, then what the free groups explain.
+        let mut rhs = self.shared_rhs - self.shared * joints;
+        for (group, value) in self.groups.iter().zip(&groups) {
+            rhs -= group.coupling * *value;
+        }
+        let group_rhs: Vec<f64> =
+            self.groups.iter().zip(&groups).map(|(g, v)| g.rhs - g.coupling.dot(&joints) - g.diagonal * v).collect();
+        for ((group, rest), is_free) in self.groups.iter().zip(&group_rhs).zip(&free.groups) {
+            if *is_free {
+                rhs -= group.coupling * (*rest / group.diagonal);
+            }
+        }
+        let covariance = inverse(&self.reduced(free), free)?;
+        let step = covariance * rhs;
+        let mut follow = Vec::with_capacity(groups.len());
+        for (index, group) in self.groups.iter().enumerate() {
+            if free.groups[index] {
+                groups[index] = (group_rhs[index] - group.coupling.dot(&step)) / group.diagonal;
+                follow.push((-group.coupling / group.diagonal, 1.0 / group.diagonal));
+            } else {
+                follow.push((Vector6::zeros(), 0.0));
+            }
+        }
+        Some(Solution { joints: joints + step, groups, covariance, follow })
+    }
+}
+
+/// The free joints in order.
+fn free_joints(free: &FreeParameters) -> Vec<usize> {
+    (0..6).filter(|joint| free.joints[*joint]).collect()
+}
+
+/// The inverse over the free joints, zero elsewhere.
+fn inverse(matrix: &Matrix6<f64>, free: &FreeParameters) -> Option<Matrix6<f64>> {
+    let joints = free_joints(free);
+    let scale: Vec<f64> = joints.iter().map(|j| 1.0 / libm::sqrt(matrix[(*j, *j)])).collect();
+    let size = joints.len();
+    let scaled = DMatrix::from_fn(size, size, |a, b| matrix[(joints[a], joints[b])] * scale[a] * scale[b]);
+    let inverse = scaled.cholesky()?.inverse();
+    let mut whole = Matrix6::zeros();
+    for a in 0..size {
+        for b in 0..size {
+            whole[(joints[a], joints[b])] = (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b];
+        }
+    }
+    Some(whole)
+}
+
+impl Solution {
+    /// The six compliances in a configuration of a group. rad/(N m)
+    pub fn compliances(&self, varying: Option<usize>, group: Option<usize>) -> Vector6<f64> {
+        let mut compliances = self.joints;
+        if let (Some(joint), Some(group)) = (varying, group) {
+            compliances[joint] = self.groups[group];
+        }
+        compliances
+    }
+
+    /// Their covariance, for equations of unit variance.
+    pub fn covariance(&self, varying: Option<usize>, group: Option<usize>) -> Matrix6<f64> {
+        let mut covariance = self.covariance;
+        if let (Some(joint), Some(group)) = (varying, group) {
+            let (follow, own) = &self.follow[group];
+            let cross = self.covariance * follow;
+            covariance.set_column(joint, &cross);
+            covariance.set_row(joint, &cross.transpose());
+            covariance[(joint, joint)] = follow.dot(&cross) + own;
+        }
+        covariance
+    }
+}

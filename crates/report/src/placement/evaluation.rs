@@ -1,0 +1,157 @@
+//! Reports of single evaluations: `stead score` and `stead explain`.
+
+use super::Context;
+use crate::columns::aligned;
+use crate::document::{placement as placement_json, put_deviation};
+use crate::names;
+use crate::units::{Unit, fixed};
+use serde_json::{Value, json};
+use stead_placement::feasibility::{Explanation, Finding};
+use stead_placement::outcome::Plan;
+use stead_placement::place::{Infeasible, Score};
+use stead_placement::problem::Placement;
+
+/// Degrees with the digits that a comparison with another program needs.
+const FINE_DEG: Unit = Unit { decimals: 6, ..Unit::ANGLE_DEG };
+/// Millimetres likewise.
+const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
+
+/// What `stead score --json` prints, with the critical depths along both plans where they were asked for.
+pub fn score_json(score: &Score, context: &Context) -> Value {
+    let plan = |plan: &Plan| {
+        let mut value = json!({
+            "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
+            "max_mm": Unit::DEFLECTION_MM.number(plan.max),
+            "postures": plan.postures,
+        });
+        put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
+        value
+    };
+    let mut entries = json!({
+        "placement": placement_json(&score.placement),
+        "feasible": true,
+        "best": plan(&score.best),
+        "worst": plan(&score.worst),
+    });
+    if let Some(stability) = &context.stability {
+        entries["stability"] = stability.document(true);
+    }
+    context.document().with(entries)
+}
+
+/// What `stead score --json` and `stead place --json` print when nothing is feasible.
+pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
+    let finding = |finding: &Finding| {
+        json!({
+            "segment": finding.segment,
+            "first_point": finding.points.0,
+            "last_point": finding.points.1,
+            "message": finding.to_string(),
+        })
+    };
+    context.document().with(json!({
+        "placement": placement_json(&nothing.placement),
+        "feasible": false,
+        "best": Value::Null,
+        "worst": Value::Null,
+        "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),
+    }))
+}
+
+/// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
+pub fn score_text(score: &Score, context: &Context) -> String {
+    let row = |name: &str, plan: &Plan| {
+        let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
+        row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
+        row.push(names::postures_within(&plan.postures, 60));
+        row
+    };
+    let mut header = vec!["plan", "mean mm", "max mm"];
+    header.extend(score.best.mean_deviation.map(|_| "std mm"));
+    header.push("postures");
+    let last = header.len() - 1;
+    let header = header.into_iter().map(str::to_owned).collect();
+    let rows = [header, row("best", &score.best), row("worst", &score.worst)];
+    let stability = context.stability.as_ref().map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
+    format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
+}
+
+/// What `stead explain --json` prints.
+pub fn explain_json(
+    placement: &Placement,
+    point: usize,
+    beta: f64,
+    postures: &[Explanation; 8],
+    context: &Context,
+) -> Value {
+    let posture = |e: &Explanation| {
+        let state = e.state.as_ref();
+        let mut value = json!({
+            "posture": e.posture,
+            "joints_deg": state.map(|s| s.joints.map(|angle| FINE_DEG.number(angle))),
+            "inverse_condition": state.map(|s| Unit::PLAIN.number(s.inverse_condition)),
+            "normal_deflection_mm": state.map(|s| FINE_MM.number(s.normal_part.abs())),
+            "score_mm": state.map(|s| FINE_MM.number(s.score())),
+            "feasible": e.is_allowed(),
+            "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        });
+        put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.deviation));
+        value
+    };
+    context.document().with(json!({
+        "placement": placement_json(placement),
+        "point": point,
+        "beta_deg": FINE_DEG.number(beta),
+        "postures": postures.iter().map(posture).collect::<Vec<_>>(),
+    }))
+}
+
+/// The table of `stead explain`.
+pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> String {
+    let states = || postures.iter().filter_map(|e| e.state.as_ref());
+    let mut header =
+        vec!["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
+    header.extend(states().find_map(|s| s.deviation).map(|_| "std mm"));
+    header.push("");
+    let last = header.len() - 1;
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    let mut broken = String::new();
+    for e in postures {
+        let mut row = vec![e.posture.to_string()];
+        match &e.state {
+            Some(s) => {
+                row.extend(s.joints.map(|angle| fixed(angle.to_degrees(), 3)));
+                row.extend([fixed(s.inverse_condition, 4), fixed(s.normal_part.abs() * 1e3, 5)]);
+                row.extend(s.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
+            }
+            None => row.extend((1..last).map(|_| "-".to_owned())),
+        }
+        row.push(if e.is_allowed() { "allowed" } else { "refused" }.to_owned());
+        rows.push(row);
+        for violation in &e.violations {
+            broken.push_str(&format!("  posture {}: {violation}\n", e.posture));
+        }
+    }
+    let mut text = format!(
+        "{}, point {point}, beta {} deg\n\n{}",
+        place_text(placement),
+        fixed(beta.to_degrees(), 3),
+        aligned(&rows, &[last])
+    );
+    if !broken.is_empty() {
+        text.push_str("\nbroken constraints\n");
+        text.push_str(&broken);
+    }
+    text
+}
+
+fn place_text(placement: &Placement) -> String {
+    format!(
+        "x {} mm, y {} mm, z {} mm, Q4 {} (yaw {} deg)",
+        fixed(placement.x * 1e3, 1),
+        fixed(placement.y * 1e3, 1),
+        fixed(placement.z * 1e3, 1),
+        fixed(placement.q4(), 4),
+        fixed(placement.yaw.to_degrees(), 2)
+    )
+}

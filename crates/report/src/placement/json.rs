@@ -1,0 +1,224 @@
+//! The JSON documents: what `stead place --json` prints, and `summary.json`.
+//!
+//! Both have the cases, the refinements and the counts. The printed document adds the plans point by point and how long
+//! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
+
+use super::Context;
+use crate::document::{Timing, placement, put_deviation};
+use crate::names;
+use crate::units::Unit;
+use serde_json::{Map, Value, json};
+use stead_placement::lookup::{Axis, Unsuited};
+use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
+use stead_placement::problem::{Interval, Problem};
+use stead_placement::settings::{PostureSearch, Tables};
+
+/// What `stead place --json` prints.
+pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
+    let mut entries = common(outcome, context, true);
+    entries.insert("cases".to_owned(), cases(outcome, true));
+    entries.insert("threads".to_owned(), json!(timing.threads));
+    entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
+    let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
+    entries.insert("states_per_second".to_owned(), rate);
+    context.document().with(Value::Object(entries))
+}
+
+/// The content of `summary.json`: byte for byte the same for the same inputs and settings.
+pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> Value {
+    let mut entries = common(outcome, context, false);
+    let settings = [
+        ("robot", json!(problem.robot.name())),
+        ("seed", json!(context.search.seed)),
+        ("search", search(context)),
+        ("transfer", transfer_settings(context)),
+        ("cell", cell(problem)),
+        ("constraints", constraints(problem)),
+        ("criterion", criterion(problem)),
+        ("redundancy", redundancy(problem)),
+        ("task", task(problem)),
+        ("cases", cases(outcome, false)),
+    ];
+    entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    context.document().with(Value::Object(entries))
+}
+
+fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {
+    let reference = context
+        .reference
+        .as_ref()
+        .map_or(Value::Null, |reference| json!({ "source": reference.source, "case_mm": reference.case_mm }));
+    let refinements: Vec<Value> = outcome.refinements.iter().map(refinement).collect();
+    let mut document = Map::from_iter([
+        ("evaluations".to_owned(), json!(outcome.evaluations)),
+        ("states".to_owned(), json!(outcome.states)),
+        ("table".to_owned(), outcome.tabled.as_ref().map_or(Value::Null, tabled)),
+        ("interrupted".to_owned(), json!(outcome.interrupted)),
+        ("refinements".to_owned(), Value::Array(refinements)),
+        ("reference".to_owned(), reference),
+    ]);
+    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), found.document(with_points))));
+    document
+}
+
+/// Errors of a table, relative.
+const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
+
+/// The table that the search looked through, or why there is none.
+fn tabled(tabled: &Result<Tabled, Unsuited>) -> Value {
+    match tabled {
+        Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),
+        Ok(Tabled { shape, accuracy }) => {
+            let axis = |axis: &Axis| {
+                json!({
+                    "first_mm": number(Unit::PLACE_MM, axis.first),
+                    "step_mm": number(Unit::PLACE_MM, axis.step),
+                    "count": axis.count,
+                })
+            };
+            json!({
+                "used": true,
+                "radius": axis(&shape.radius),
+                "height": axis(&shape.height),
+                "headings": shape.headings,
+                "states": shape.states(),
+                "bytes": shape.bytes(),
+                "compared_states": accuracy.states,
+                "rms_error": number(TABLE_ERROR, accuracy.rms),
+                "largest_error": number(TABLE_ERROR, accuracy.largest),
+                "disputed_share": number(TABLE_ERROR, accuracy.disputed),
+            })
+        }
+    }
+}
+
+fn cases(outcome: &Outcome, with_plans: bool) -> Value {
+    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans)).collect()
+}
+
+fn case(case: &Case, with_plan: bool) -> Value {
+    let mut value = json!({
+        "case": case.number(),
+        "placement": placement(&case.placement),
+        "mean_mm": number(Unit::DEFLECTION_MM, case.plan.mean),
+        "max_mm": number(Unit::DEFLECTION_MM, case.plan.max),
+        "postures": case.plan.postures,
+        "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
+        "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
+        "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
+    });
+    put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, case.plan.mean_deviation);
+    if with_plan && let Value::Object(map) = &mut value {
+        map.insert("plan".to_owned(), case.plan.points.iter().map(plan_point).collect());
+    }
+    value
+}
+
+fn plan_point(point: &PlanPoint) -> Value {
+    let mut value = json!({
+        "point": point.point,
+        "segment": point.segment,
+        "beta_deg": number(Unit::ANGLE_DEG, point.beta),
+        "posture": point.posture,
+        "joints_deg": point.joints.map(|angle| number(Unit::ANGLE_DEG, angle)),
+        "inverse_condition": number(Unit::PLAIN, point.inverse_condition),
+        "normal_mm": number(Unit::DEFLECTION_MM, point.normal_part),
+        "score_mm": number(Unit::DEFLECTION_MM, point.score),
+    });
+    put_deviation(&mut value, "std_mm", Unit::DEFLECTION_MM, point.deviation);
+    value
+}
+
+fn transfer(transfer: &Transfer) -> Value {
+    json!({
+        "after_segment": transfer.after_segment,
+        "duration_s": optional(Unit::TIME_S, transfer.duration),
+        "travel_deg": number(Unit::ANGLE_DEG, transfer.travel),
+    })
+}
+
+fn refinement(refinement: &Refinement) -> Value {
+    json!({
+        "search": names::sense(refinement.sense),
+        "start": placement(&refinement.start),
+        "start_mean_mm": number(Unit::DEFLECTION_MM, refinement.start_mean),
+        "end": placement(&refinement.end),
+        "end_mean_mm": number(Unit::DEFLECTION_MM, refinement.end_mean),
+        "rounds": refinement.rounds,
+        "iterations": refinement.iterations,
+        "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
+        "status": refinement.statuses.join("; "),
+    })
+}
+
+fn search(context: &Context) -> Value {
+    let postures = match context.search.postures {
+        PostureSearch::Exact => "exact",
+        PostureSearch::Genetic => "genetic",
+    };
+    let tables = match context.search.tables {
+        Tables::Auto => "auto",
+        Tables::Always => "always",
+        Tables::Never => "never",
+    };
+    json!({
+        "population": context.search.population,
+        "generations": context.search.generations,
+        "postures": postures,
+        "basins": context.search.basins,
+        "tables": tables,
+    })
+}
+
+fn transfer_settings(context: &Context) -> Value {
+    json!({
+        "acceleration_time_s": number(Unit::TIME_S, context.transfer.acceleration_time),
+        "jerk_time_s": number(Unit::TIME_S, context.transfer.jerk_time),
+    })
+}
+
+fn cell(problem: &Problem) -> Value {
+    let [x, y, z] = problem.cell.position.map(|bounds| interval(Unit::PLACE_MM, &bounds));
+    json!({ "x_mm": x, "y_mm": y, "z_mm": z, "yaw_deg": interval(Unit::ANGLE_DEG, &problem.cell.yaw) })
+}
+
+/// The confidence is stated where there is something to be confident of.
+fn criterion(problem: &Problem) -> Value {
+    let mut value = json!({ "force_uncertainty": problem.criterion.force_uncertainty });
+    if let (Some(_), Value::Object(map)) = (problem.robot.uncertainty(), &mut value) {
+        map.insert("confidence".to_owned(), json!(problem.criterion.confidence));
+    }
+    value
+}
+
+fn constraints(problem: &Problem) -> Value {
+    json!({
+        "min_inverse_condition": problem.constraints.min_inverse_condition,
+        "characteristic_length_mm": number(Unit::PLACE_MM, problem.constraints.characteristic_length),
+        "max_deflection_mm": optional(Unit::DEFLECTION_MM, problem.constraints.max_deflection),
+    })
+}
+
+fn redundancy(problem: &Problem) -> Value {
+    json!({
+        "beta_count": problem.redundancy.beta_count,
+        "feed_mm_per_s": number(Unit::SPEED_MM_PER_S, problem.redundancy.feed),
+        "max_beta_rate_deg_per_mm": number(Unit::RATE_DEG_PER_MM, problem.redundancy.max_beta_rate),
+    })
+}
+
+fn task(problem: &Problem) -> Value {
+    json!({ "points": problem.task.points().len(), "segments": problem.task.segments().len() })
+}
+
+fn interval(unit: Unit, interval: &Interval) -> Value {
+    json!([number(unit, interval.min), number(unit, interval.max)])
+}
+
+fn number(unit: Unit, value: f64) -> Value {
+    json!(unit.number(value))
+}
+
+fn optional(unit: Unit, value: Option<f64>) -> Value {
+    value.map_or(Value::Null, |value| number(unit, value))
+}

@@ -1,0 +1,220 @@
+//! The CSV files. One function makes one file; every column carries its unit.
+
+use crate::csv_file::{table, vector};
+use crate::names;
+use crate::output::ReportError;
+use crate::units::{Unit, fixed};
+use stead_format::input::Reference;
+use stead_model::robot::turns::turns;
+use stead_model::task::ToolPath;
+use stead_placement::outcome::{Cases, DeflectionMap, Generation, Plan, PlanPoint, Refinement};
+use stead_placement::problem::{Placement, Problem};
+
+const PLAN: [&str; 27] = [
+    "point",
+    "segment",
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "beta_deg",
+    "posture",
+    "turn_1",
+    "turn_4",
+    "turn_6",
+    "theta1_deg",
+    "theta2_deg",
+    "theta3_deg",
+    "theta4_deg",
+    "theta5_deg",
+    "theta6_deg",
+    "inverse_condition",
+    "force_x_n",
+    "force_y_n",
+    "force_z_n",
+    "deflection_x_mm",
+    "deflection_y_mm",
+    "deflection_z_mm",
+    "normal_mm",
+    "feed_mm",
+    "axial_mm",
+    "score_mm",
+];
+
+/// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
+/// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg. The last column, `std_mm`, is there
+/// where the robot's uncertainty is known: the standard deviation of `normal_mm`.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn plan(plan: &Plan) -> Result<Vec<u8>, ReportError> {
+    let mut header = PLAN.to_vec();
+    header.extend(plan.mean_deviation.map(|_| "std_mm"));
+    table("the table of a plan", &header, plan.points.iter().map(plan_row))
+}
+
+fn plan_row(point: &PlanPoint) -> Vec<String> {
+    let mut row = vec![point.point.to_string(), point.segment.to_string()];
+    row.extend(vector(Unit::PLACE_MM, &point.position));
+    row.extend([Unit::ANGLE_DEG.text(point.beta), point.posture.to_string()]);
+    row.extend([0, 3, 5].map(|j| turns(point.joints[j]).to_string()));
+    row.extend(point.joints.map(|angle| Unit::ANGLE_DEG.text(angle)));
+    row.push(Unit::PLAIN.text(point.inverse_condition));
+    row.extend(vector(Unit::FORCE_N, &point.force));
+    row.extend(vector(Unit::DEFLECTION_MM, &point.deflection));
+    let parts = [point.normal_part, point.feed_part, point.axial_part, point.score];
+    row.extend(parts.map(|part| Unit::DEFLECTION_MM.text(part)));
+    row.extend(point.deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
+    row
+}
+
+/// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
+/// the ratio where case 1 is a cancellation. The last column, `mean_std_mm`, is there where the robot's uncertainty is
+/// known: the standard deviation of the mean of |`normal_mm`|.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn placements(cases: &Cases, reference: Option<&Reference>) -> Result<Vec<u8>, ReportError> {
+    let mut header = vec![
+        "case",
+        "x_mm",
+        "y_mm",
+        "z_mm",
+        "q4",
+        "yaw_deg",
+        "postures",
+        "mean_mm",
+        "max_mm",
+        "ratio_to_case_1",
+        "reference_mm",
+        "cutting_s",
+        "transfer_s",
+        "cycle_s",
+    ];
+    header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
+    let rows = cases.all().into_iter().enumerate().map(|(index, case)| {
+        let mut row = vec![case.number().to_string()];
+        row.extend(placement(&case.placement, true));
+        row.push(names::postures(&case.plan.postures));
+        row.extend([case.plan.mean, case.plan.max].map(|value| Unit::DEFLECTION_MM.text(value)));
+        row.push(Unit::PLAIN.text_or_empty(cases.ratio(case)));
+        row.push(reference.map_or_else(String::new, |reference| reference.case_mm[index].to_string()));
+        row.push(Unit::TIME_S.text(case.cycle.cutting));
+        let total = case.cycle.total();
+        row.push(Unit::TIME_S.text_or_empty(total.map(|total| total - case.cycle.cutting)));
+        row.push(Unit::TIME_S.text_or_empty(total));
+        row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
+        row
+    });
+    table("the table of placements", &header, rows)
+}
+
+/// `convergence.csv`: both genetic searches, generation by generation.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
+    let header = ["search", "generation", "best_mm", "average_mm", "feasible", "population", "evaluations"];
+    let rows = generations.iter().map(|state| {
+        vec![
+            names::sense(state.sense).to_owned(),
+            state.generation.to_string(),
+            Unit::DEFLECTION_MM.text_or_empty(state.best),
+            Unit::DEFLECTION_MM.text_or_empty(state.average),
+            state.feasible.to_string(),
+            state.population.to_string(),
+            state.evaluations.to_string(),
+        ]
+    });
+    table("the table of the convergence", &header, rows)
+}
+
+/// `deflection-map-*.csv`: every state of the grid with its smallest score over the allowed postures, or the reason why
+/// there is none.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>, ReportError> {
+    let header = ["point", "segment", "beta_deg", "score_mm", "posture", "reason"];
+    let path = problem.task.path();
+    let rows = map.rows.iter().enumerate().flat_map(|(point, row)| {
+        row.iter().enumerate().map(move |(k, cell)| {
+            let beta_deg = -180.0 + 360.0 * k as f64 / map.beta_count as f64;
+            let mut fields = vec![point.to_string(), segment(path, point), fixed(beta_deg, Unit::ANGLE_DEG.decimals)];
+            fields.extend(match cell {
+                Ok(cell) => [Unit::DEFLECTION_MM.text(cell.score), cell.posture.to_string(), String::new()],
+                Err(blocked) => [String::new(), String::new(), names::reason(*blocked)],
+            });
+            fields
+        })
+    });
+    table("the table of a deflection map", &header, rows)
+}
+
+fn segment(path: &ToolPath, point: usize) -> String {
+    (path.segment_of(point) + 1).to_string()
+}
+
+/// `transfers.csv`: the joint moves between segments. The duration is empty where a joint speed is not known.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn transfers(cases: &Cases) -> Result<Vec<u8>, ReportError> {
+    let header = ["case", "after_segment", "duration_s", "travel_deg"];
+    let rows = cases.all().into_iter().flat_map(|case| {
+        case.cycle.transfers.iter().map(|transfer| {
+            vec![
+                case.number().to_string(),
+                transfer.after_segment.to_string(),
+                Unit::TIME_S.text_or_empty(transfer.duration),
+                Unit::ANGLE_DEG.text(transfer.travel),
+            ]
+        })
+    });
+    table("the table of transfers", &header, rows)
+}
+
+/// `refinements.csv`: each gradient refinement with its start and end.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
+    let header = [
+        "search",
+        "start_x_mm",
+        "start_y_mm",
+        "start_z_mm",
+        "start_yaw_deg",
+        "start_mean_mm",
+        "end_x_mm",
+        "end_y_mm",
+        "end_z_mm",
+        "end_yaw_deg",
+        "end_mean_mm",
+        "rounds",
+        "iterations",
+        "kkt_residual_mm",
+        "status",
+    ];
+    let rows = refinements.iter().map(|refinement| {
+        let mut row = vec![names::sense(refinement.sense).to_owned()];
+        row.extend(placement(&refinement.start, false));
+        row.push(Unit::DEFLECTION_MM.text(refinement.start_mean));
+        row.extend(placement(&refinement.end, false));
+        row.push(Unit::DEFLECTION_MM.text(refinement.end_mean));
+        row.extend([refinement.rounds.to_string(), refinement.iterations.to_string()]);
+        row.push(Unit::RESIDUAL_MM.text(refinement.kkt_residual));
+        row.push(refinement.statuses.join("; "));
+        row
+    });
+    table("the table of refinements", &header, rows)
+}
+
+/// x, y, z in mm, Q4 where asked for, and the yaw in degrees.
+fn placement(placement: &Placement, with_q4: bool) -> Vec<String> {
+    let mut fields = [placement.x, placement.y, placement.z].map(|value| Unit::PLACE_MM.text(value)).to_vec();
+    if with_q4 {
+        fields.push(Unit::PLAIN.text(placement.q4()));
+    }
+    fields.push(Unit::ANGLE_DEG.text(placement.yaw));
+    fields
+}

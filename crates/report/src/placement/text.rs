@@ -1,0 +1,96 @@
+//! The short table for people.
+
+use super::Context;
+use crate::columns::{aligned, line};
+use crate::names;
+use crate::units::{figures, fixed};
+use stead_format::input::Reference;
+use stead_placement::lookup::Unsuited;
+use stead_placement::outcome::Outcome;
+use stead_placement::problem::Problem;
+
+/// Widest posture scheme that is written in full.
+const POSTURES_WIDTH: usize = 40;
+
+/// The four cases: first placements and posture schemes, then mean and largest deflection, the ratio to case 1 beside the
+/// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
+/// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
+pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
+    let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let (points, segments) = (count(points, "point"), count(segments, "segment"));
+    let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
+    text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    text.push('\n');
+    text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
+    if let Some(reference) = &context.reference {
+        line(&mut text, &format!("ref: {}", reference.source));
+    }
+    if let Some(stability) = &context.stability {
+        text.push('\n');
+        text.push_str(&stability.text(["best placement", "worst placement"]));
+    }
+    text.push('\n');
+    line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
+    match &outcome.tabled {
+        Some(Ok(tabled)) => {
+            let (states, megabytes) = (tabled.shape.states(), tabled.shape.bytes() as f64 / 1e6);
+            let error = figures(tabled.accuracy.rms * 100.0);
+            line(
+                &mut text,
+                &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
+            );
+        }
+        Some(Err(unsuited @ Unsuited::Misleading)) => {
+            line(&mut text, &format!("searched again without a table: {unsuited}"));
+        }
+        Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
+        None => {}
+    }
+    if outcome.interrupted {
+        line(&mut text, "The search was stopped before its end: this is the best result so far.");
+    }
+    text
+}
+
+fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
+    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for case in outcome.cases.all() {
+        let [placement_word, plan_word] = [case.placement_sense, case.plan_sense].map(names::sense);
+        let placement = &case.placement;
+        let mut row = vec![case.number().to_string(), placement_word.to_owned(), plan_word.to_owned()];
+        row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
+        row.push(fixed(placement.q4(), 4));
+        row.push(fixed(placement.yaw.to_degrees(), 1));
+        row.push(names::postures_within(&case.plan.postures, POSTURES_WIDTH));
+        rows.push(row);
+    }
+    rows
+}
+
+fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<String>> {
+    let mut header = vec!["case", "mean mm", "max mm"];
+    header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));
+    header.push("ratio");
+    if reference.is_some() {
+        header.extend(["ref mm", "ref ratio"]);
+    }
+    header.extend(["cutting s", "moves s", "cycle s"]);
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    for (index, case) in outcome.cases.all().into_iter().enumerate() {
+        let mut row = vec![case.number().to_string()];
+        row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
+        row.extend(case.plan.mean_deviation.map(|value| fixed(value * 1e3, 4)));
+        row.push(outcome.cases.ratio(case).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
+        if let Some(Reference { case_mm, .. }) = reference {
+            row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
+        }
+        let total = case.cycle.total();
+        let moves = total.map(|total| total - case.cycle.cutting);
+        let seconds = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| fixed(time, 1));
+        row.extend([Some(case.cycle.cutting), moves, total].map(seconds));
+        rows.push(row);
+    }
+    rows
+}

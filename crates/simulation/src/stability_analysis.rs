@@ -1,0 +1,251 @@
+//! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the spindle speed.
+
+use super::arm::{AnyArm, Arm, Missing, Variant};
+use super::milling::{Cut, Cutter};
+use super::modes::{LinearArm, Mode};
+use super::motion::Motion;
+use super::setup::Setup;
+use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
+use nalgebra::{Complex, Matrix3, Vector3};
+use stead_model::cutting::{EngagementError, MillingDirection};
+use stead_model::robot::{Robot, Spindle};
+
+/// What is to be found out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnalysisSettings {
+    /// Where on the pass the arm stands. m
+    pub distance: f64,
+    /// Spindle speeds of the lobes, from and to. rad/s
+    pub speeds: [f64; 2],
+    /// Spindle speeds between and at both.
+    pub points: usize,
+    /// Largest depth of cut that is examined. m
+    pub max_depth: f64,
+    /// Frequencies of the frequency response, from and to. Hz
+    pub frequencies: [f64; 2],
+}
+
+/// Frequency response of the tool tip at one frequency, in the plane of the cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrequencyResponse {
+    /// Frequency of the force. Hz
+    pub frequency: f64,
+    /// Along the feed, to a force along the feed. m/N
+    pub feed: Complex<f64>,
+    /// Along the normal of the wall, to a force along it. m/N
+    pub normal: Complex<f64>,
+    /// Along the normal, to a force along the feed, and the other way round. m/N
+    pub cross: Complex<f64>,
+}
+
+/// The directions of a cut in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CutFrame {
+    /// Of the feed.
+    pub feed: Vector3<f64>,
+    /// Out of the wall.
+    pub normal: Vector3<f64>,
+    /// From the work to the spindle.
+    pub axis: Vector3<f64>,
+}
+
+impl CutFrame {
+    /// For a cutter that turns clockwise as seen from its spindle: `axis` points from the work to the spindle. In climb milling
+    /// the wall is to the right of the feed. What the feed has along the axis is left out.
+    pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: MillingDirection) -> Self {
+        let left = axis.cross(&feed).normalize();
+        let normal = if milling == MillingDirection::Climb { left } else { -left };
+        Self { feed: left.cross(&axis), normal, axis }
+    }
+
+    /// Along a pass.
+    pub fn along(motion: &Motion, milling: MillingDirection) -> Self {
+        Self::new(*motion.direction(), -motion.start().rotation.column(2), milling)
+    }
+}
+
+/// How deep may be cut, and whether the cut at hand is calm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CutStability {
+    /// By semi-discretisation; none where all depths up to the largest are stable. m
+    pub semi_discretisation: Option<f64>,
+    /// By the zero-order solution. m
+    pub zero_order: Option<f64>,
+    /// Of the cut at hand.
+    pub verdict: Verdict,
+}
+
+/// Result of a stability analysis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StabilityAnalysis {
+    /// All modes, by natural frequency.
+    pub modes: Vec<Mode>,
+    /// Frequency response of the tool tip.
+    pub frequency_response: Vec<FrequencyResponse>,
+    /// At the spindle speed of the cut.
+    pub cut_stability: CutStability,
+    /// Over the spindle speed.
+    pub lobes: Vec<Lobe>,
+    /// Time of the pass through the work at the feed. s
+    pub pass_time: f64,
+}
+
+/// Number of frequencies of the frequency response.
+const FREQUENCIES: usize = 1000;
+
+/// Modes, frequency response, critical depths and stability lobes of a cut, linearised where the settings say.
+///
+/// # Errors
+/// [`StabilityError`] for an arm that says too little, or a cut without width.
+pub fn analyse(
+    setup: &Setup,
+    cutter: &Cutter,
+    cut: &Cut,
+    settings: &AnalysisSettings,
+) -> Result<StabilityAnalysis, StabilityError> {
+    let linear = linear_at(setup, settings.distance)?;
+    let frame = CutFrame::along(&setup.motion, cut.milling);
+    let plant = linear.plant(&frame)?;
+    let between = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
+        (0..count).map(|k| from + (to - from) * k as f64 / (count - 1).max(1) as f64).collect()
+    };
+    Ok(StabilityAnalysis {
+        modes: linear.modes()?,
+        frequency_response: linear.frequency_response(&frame, &between(settings.frequencies, FREQUENCIES))?,
+        cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
+        lobes: lobes(&plant, cutter, cut, &between(settings.speeds, settings.points), settings.max_depth)?,
+        pass_time: cut.length / setup.motion.ramp().feed,
+    })
+}
+
+/// Critical depths up to `most` (m), and the verdict on the cut.
+///
+/// # Errors
+/// [`EngagementError`] for a cut without width.
+pub fn cut_stability(plant: &Plant, cutter: &Cutter, cut: &Cut, most: f64) -> Result<CutStability, EngagementError> {
+    let motion = SemiDiscretisation::new(plant, cutter, cut)?;
+    Ok(CutStability {
+        semi_discretisation: motion.critical_depth(most),
+        zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, most)?,
+        verdict: motion.verdict(cut.axial_depth),
+    })
+}
+
+/// Why there is nothing to be said.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StabilityError {
+    /// The robot file says too little.
+    #[error("{0}")]
+    Missing(#[from] Missing),
+    /// The mass matrix is not positive definite, or the arm without damping is in resonance with the force.
+    #[error("the arm has no mass matrix that is positive definite")]
+    Singular,
+    /// The cut has no width.
+    #[error("{0}")]
+    Engagement(#[from] EngagementError),
+}
+
+/// The arm of a setup, for small motions about where it stands after a way (m) of its pass.
+///
+/// # Errors
+/// [`StabilityError::Missing`] when the robot says too little for the variant.
+pub fn linear_at(setup: &Setup, distance: f64) -> Result<AnyLinearArm, StabilityError> {
+    let motors = setup.motion.motors_at(distance, 0.0).0;
+    linear_of(&setup.robot, &setup.spindle, setup.variant, setup.damping_scale, &motors)
+}
+
+/// The arm with its drives at joint angles `theta` (rad), for small motions about its rest.
+///
+/// # Errors
+/// [`StabilityError::Missing`] when the robot says too little for the variant.
+pub fn linear_of(
+    robot: &Robot,
+    spindle: &Spindle,
+    variant: Variant,
+    damping_scale: f64,
+    theta: &[f64; 6],
+) -> Result<AnyLinearArm, StabilityError> {
+    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> Box<LinearArm<N>> {
+        Box::new(LinearArm::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale))
+    }
+    Ok(match AnyArm::new(robot, spindle, variant, theta)? {
+        AnyArm::Six(arm) => AnyLinearArm::Six(about(&arm, theta, damping_scale)),
+        AnyArm::Eighteen(arm) => AnyLinearArm::Eighteen(about(&arm, theta, damping_scale)),
+    })
+}
+
+/// A [`LinearArm`] of as many joints as its arm has.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyLinearArm {
+    /// Six joints.
+    Six(Box<LinearArm<6>>),
+    /// Eighteen.
+    Eighteen(Box<LinearArm<18>>),
+}
+
+impl AnyLinearArm {
+    /// All modes, by natural frequency.
+    ///
+    /// # Errors
+    /// [`StabilityError::Singular`].
+    pub fn modes(&self) -> Result<Vec<Mode>, StabilityError> {
+        let modes = match self {
+            Self::Six(linear) => linear.modes(),
+            Self::Eighteen(linear) => linear.modes(),
+        };
+        modes.ok_or(StabilityError::Singular)
+    }
+
+    /// The response of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
+    ///
+    /// # Errors
+    /// [`StabilityError::Singular`] in a resonance without damping.
+    pub fn response(&self, frequency: f64) -> Result<Matrix3<Complex<f64>>, StabilityError> {
+        let response = match self {
+            Self::Six(linear) => linear.response(frequency),
+            Self::Eighteen(linear) => linear.response(frequency),
+        };
+        response.ok_or(StabilityError::Singular)
+    }
+
+    /// The tip as a plant of the stability analysis.
+    ///
+    /// # Errors
+    /// [`StabilityError::Singular`].
+    pub fn plant(&self, frame: &CutFrame) -> Result<Plant, StabilityError> {
+        let directions = [frame.feed, frame.normal, frame.axis];
+        let plant = match self {
+            Self::Six(linear) => Plant::of_arm(linear, directions),
+            Self::Eighteen(linear) => Plant::of_arm(linear, directions),
+        };
+        plant.ok_or(StabilityError::Singular)
+    }
+
+    /// Frequency response in the plane of the cut at frequencies (Hz).
+    ///
+    /// # Errors
+    /// [`StabilityError::Singular`] in a resonance without damping.
+    pub fn frequency_response(
+        &self,
+        frame: &CutFrame,
+        frequencies: &[f64],
+    ) -> Result<Vec<FrequencyResponse>, StabilityError> {
+        let along = |response: &Matrix3<Complex<f64>>, to: &Vector3<f64>, from: &Vector3<f64>| {
+            let pairs = (0..3).flat_map(|row| (0..3).map(move |column| (row, column)));
+            pairs.map(|(row, column)| response[(row, column)] * (to[row] * from[column])).sum()
+        };
+        let response = |frequency: &f64| {
+            let response = self.response(*frequency)?;
+            Ok(FrequencyResponse {
+                frequency: *frequency,
+                feed: along(&response, &frame.feed, &frame.feed),
+                normal: along(&response, &frame.normal, &frame.normal),
+                cross: along(&response, &frame.normal, &frame.feed),
+            })
+        };
+        frequencies.iter().map(response).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
