@@ -13,9 +13,9 @@ pub use path::PathStability;
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
-use super::number::Unit;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
 use stead_simulation::stability::Kind;
@@ -48,7 +48,7 @@ pub fn write_stability(
         ("modes.csv", modes(analysis)?),
         ("frequency-response.csv", responses(analysis)?),
         ("lobes.csv", lobes(analysis)?),
-        ("summary.json", super::json::bytes(&stability_json(run, analysis))),
+        ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
         ("frequency-response.svg", picture::frequency_response(analysis)?.into_bytes()),
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth)?.into_bytes()),
     ];
