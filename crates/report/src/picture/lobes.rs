@@ -6,7 +6,7 @@ use super::colour::{BLUE, GREEN, RED};
 use crate::output::ReportError;
 use crate::units::fixed;
 use std::f64::consts::PI;
-use stead_simulation::milling::Cut;
+use stead_simulation::milling::PassCut;
 use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
@@ -15,12 +15,12 @@ use stead_simulation::stability_analysis::StabilityAnalysis;
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> Result<String, ReportError> {
+pub fn lobes(analysis: &StabilityAnalysis, cut: &PassCut, max_depth: f64) -> Result<String, ReportError> {
     let rpm = |speed: f64| speed * 30.0 / PI;
     let ends =
         [analysis.lobes.first(), analysis.lobes.last()].map(|lobe| lobe.map_or(0.0, |lobe| rpm(lobe.spindle_speed)));
     let found = analysis.lobes.iter().flat_map(|lobe| [lobe.semi_discretisation, lobe.zero_order]).flatten();
-    let highest = found.fold(1.5 * cut.axial_depth, f64::max).min(max_depth.max(1.5 * cut.axial_depth));
+    let highest = found.fold(1.5 * cut.section.axial_depth, f64::max).min(max_depth.max(1.5 * cut.section.axial_depth));
     picture("the picture of the lobes", (1000, 520), |canvas| {
         canvas.text("How deep may be cut", (95, 26), Lettering::new(17.0).bold())?;
         let (x, y) = (Scale::new(ends[0], ends[1], 95, 970), Scale::new(0.0, highest * 1.05e3, 440, 84));
@@ -41,7 +41,7 @@ pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> Result<
                 }
             }
         }
-        let at = panel.place(rpm(cut.spindle_speed), cut.axial_depth * 1e3);
+        let at = panel.place(rpm(cut.spindle_speed), cut.section.axial_depth * 1e3);
         let is_stable = analysis.cut_stability.verdict.is_stable();
         if (ends[0]..=ends[1]).contains(&rpm(cut.spindle_speed)) {
             canvas.dot(at, 5, if is_stable { GREEN } else { RED })?;
@@ -52,7 +52,7 @@ pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> Result<
 }
 
 /// The legend, in one line under the title.
-fn legend(canvas: &Canvas<'_>, cut: &Cut, is_stable: bool) -> Drawn {
+fn legend(canvas: &Canvas<'_>, cut: &PassCut, is_stable: bool) -> Drawn {
     for (left, label, colour) in [(95, "critical depth, semi-discretisation", RED), (380, "zero-order solution", BLUE)]
     {
         canvas.line(vec![(left, 52), (left + 28, 52)], colour, 2)?;
@@ -60,5 +60,9 @@ fn legend(canvas: &Canvas<'_>, cut: &Cut, is_stable: bool) -> Drawn {
     }
     let (colour, word) = if is_stable { (GREEN, "stable") } else { (RED, "chatters") };
     canvas.dot((600.0, 52.0), 5, colour)?;
-    canvas.text(&format!("this cut, {} mm: {word}", fixed(cut.axial_depth * 1e3, 2)), (612, 52), Lettering::new(12.0))
+    canvas.text(
+        &format!("this cut, {} mm: {word}", fixed(cut.section.axial_depth * 1e3, 2)),
+        (612, 52),
+        Lettering::new(12.0),
+    )
 }

@@ -18,7 +18,7 @@ const RIGHT: i32 = 970;
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
 pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> Result<String, ReportError> {
-    let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.axial_depth);
+    let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.section.axial_depth);
     let all = || stability.plans.iter().flatten().map(|depths| depths.semi_discretisation.unwrap_or(max_depth));
     let highest = all().fold(1.3 * cut, f64::max);
     picture("the picture of critical depths along the path", (1000, 520), |canvas| {
