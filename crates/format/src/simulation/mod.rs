@@ -18,7 +18,8 @@ use look::{LookFields, check_duration, check_step, look_from};
 use stability::analysis_from;
 pub(crate) use stability::max_depth;
 use std::path::Path;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::EvaluationSettings;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
@@ -31,7 +32,7 @@ pub struct SimulationRun {
     /// The cutter.
     pub cutter: Cutter,
     /// What it cuts.
-    pub cut: Cut,
+    pub cut: PassCut,
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
     /// How to look at the simulated pass.
@@ -101,7 +102,11 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
     let (tool, cut) = (Some(tool.read()?), Some(cut.read()?));
     let root = document.root();
     let cutting = Cutting::of(&tool, &cut, &root)?;
-    let (cutter, mut cut) = Cutting::required(cutting.as_ref(), &root)?.cutter_and_cut(length, slices, steps)?;
+    let cutting = Cutting::required(cutting.as_ref(), &root)?;
+    if steps_are_made {
+        cutting.without_edge_forces()?;
+    }
+    let (cutter, mut cut) = cutting.cutter_and_cut(length, slices, steps)?;
     slot.optional(|field| fits(field, &cutter))?;
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;

@@ -7,7 +7,8 @@ use crate::quantity::Quantity;
 use crate::tool::FASTEST_RPM;
 use crate::units::{Mm, Positive};
 use std::f64::consts::TAU;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
 
@@ -18,13 +19,13 @@ pub(super) fn analysis_from(
     field: &Field<'_>,
     setup: &Setup,
     cutter: &Cutter,
-    cut: &Cut,
+    cut: &PassCut,
 ) -> Result<AnalysisSettings, InputError> {
     let mut settings = AnalysisSettings {
         distance: 0.0,
         speeds: [cut.spindle_speed / 3.0, cut.spindle_speed * 3.0],
         points: 60,
-        max_depth: cutter.flute(),
+        max_depth: cutter.flute_length().unwrap_or(cutter.diameter()),
         frequencies: [1.0, 250.0],
     };
     let Some(table) = field.optional(Field::table)? else { return Ok(settings) };
@@ -52,16 +53,17 @@ pub(super) fn analysis_from(
     Ok(settings)
 }
 
-/// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
+/// The largest depth (m) that is examined; the length of the flutes where the file does not say.
 ///
 /// # Errors
 /// [`InputError`] at `max_depth_mm` of the table that is here where it is more than that.
 pub(crate) fn max_depth(depth: Option<Mm<Positive>>, cutter: &Cutter, at: &Place<'_>) -> Result<f64, InputError> {
-    let flute_mm = cutter.flute() * 1e3;
+    let flute = cutter.flute_length().unwrap_or(cutter.diameter());
+    let flute_mm = flute * 1e3;
     match depth {
         Some(depth) if depth.written() > flute_mm => Err(at
             .key("max_depth_mm")
             .out_of_range(format!("a number above 0 and not above flute_length_mm = {flute_mm}"))),
-        depth => Ok(depth.map_or(cutter.flute(), Quantity::si)),
+        depth => Ok(depth.map_or(flute, Quantity::si)),
     }
 }
