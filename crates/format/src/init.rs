@@ -1,6 +1,7 @@
 //! Starter sets: small commented files of each kind that run as they are.
 
 use crate::input::InputError;
+use crate::toml_file::without_schema;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -39,11 +40,6 @@ impl StarterSet {
             ],
         }
     }
-}
-
-/// A shipped file without the line that names its schema, by a path that is of no use elsewhere.
-fn without_schema(text: &'static str) -> &'static str {
-    text.split_once('\n').filter(|(line, _)| line.starts_with("#:schema")).map_or(text, |(_, rest)| rest)
 }
 
 /// Writes a starter set to a folder, which is made where there is none. All files or none: where one of them is there

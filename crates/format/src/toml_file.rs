@@ -64,6 +64,11 @@ impl TomlFile {
         self.text.as_bytes()
     }
 
+    /// The text without a first line that names its schema (`#:schema PATH`), which is true in the folder of the file alone.
+    pub fn without_schema(&self) -> &str {
+        without_schema(&self.text)
+    }
+
     /// The entry of a config among the files that a result came from: its name alone, wherever it lies.
     pub fn as_config(&self) -> InputFile {
         input_file("config", self.file.file_name().unwrap_or_default().to_string_lossy(), self.bytes())
@@ -95,6 +100,11 @@ impl TomlFile {
     pub(super) fn quote(&self, span: Range<usize>) -> String {
         shorten(self.text.get(span).unwrap_or_default())
     }
+}
+
+/// A text without a first line that names its schema.
+pub(crate) fn without_schema(text: &str) -> &str {
+    text.split_once('\n').filter(|(line, _)| line.starts_with("#:schema")).map_or(text, |(_, rest)| rest)
 }
 
 /// The line, from 1, that comes after some text.

@@ -115,7 +115,7 @@ impl<'a> Shared<'a> {
         Ok(Self {
             robot,
             robot_input: input_file("robot", &robot_file.name, robot_source.bytes()),
-            robot_text: String::from_utf8_lossy(robot_source.bytes()).into_owned(),
+            robot_text: robot_source.without_schema().to_owned(),
             sheet,
             load_point: load_point.vector3()? / 1e3,
             noise,

@@ -1,5 +1,8 @@
 use super::*;
 use crate::testing::root;
+use crate::toml_file::TomlFile;
+use serde::{Serialize, de::DeserializeOwned};
+use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
 /// The kept schemas are those of the types. After a change: `stead schema NAME > configs/schema/NAME.json`.
@@ -153,4 +156,23 @@ fn schemas_refuse_what_the_reader_does() {
         let changed = document(&text.replacen(from, to, 1));
         assert!(validator.check(&validator.root, &changed, "").is_err(), "{to}");
     }
+}
+
+/// What a type reads of a shipped file it writes so that it reads the same again.
+fn assert_written_as_read<T: DeserializeOwned + Serialize + PartialEq + Debug>(file: &Path) {
+    let read = |text: String| -> T {
+        let file = TomlFile::new(file, text.into_bytes()).unwrap();
+        file.parse().unwrap().read().unwrap_or_else(|error| panic!("{error}"))
+    };
+    let table = read(std::fs::read_to_string(file).unwrap());
+    assert_eq!(read(toml::to_string(&table).unwrap()), table, "{}", file.display());
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    let configs = root().join("configs");
+    for name in ["caro-2013", "five-segments-cutting", "tx200-stability"] {
+        assert_written_as_read::<RunFile>(&configs.join(format!("{name}.toml")));
+    }
+    shipped(&configs.join("robots")).iter().for_each(|robot| assert_written_as_read::<RobotFile>(robot));
 }
