@@ -1,0 +1,66 @@
+//! One run: a search or a given placement, and the stability of the cut along its plans.
+
+use super::PathStability;
+use stead_format::Run;
+use stead_placement::control::Control;
+use stead_placement::outcome::Outcome;
+use stead_placement::place::{self, NothingFeasible, Score};
+use stead_placement::problem::Placement;
+use stead_simulation::survey::SurveyError;
+
+/// Why a run ends without a result.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// No placement, or not the given one, satisfies the constraints.
+    #[error(transparent)]
+    NothingFeasible(#[from] NothingFeasible),
+    /// The stability of the cut cannot be computed.
+    #[error(transparent)]
+    Stability(#[from] SurveyError),
+}
+
+/// The best and the worst placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// The four cases, and how they were found.
+    pub outcome: Outcome,
+    /// Critical depths along cases 1 and 3, where the run file asks for them.
+    pub stability: Option<PathStability>,
+}
+
+/// A given placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scored {
+    /// Its best and its worst plan.
+    pub score: Score,
+    /// Critical depths along both plans, where the run file asks for them.
+    pub stability: Option<PathStability>,
+}
+
+/// Searches for the best and the worst placement. A stop that the monitor asks for leaves the best found so far.
+///
+/// # Errors
+/// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
+pub fn place(run: &Run, control: &dyn Control) -> Result<Placed, RunError> {
+    let outcome = place::place(&run.problem, &run.search, &run.transfer, control)?;
+    let [best, _, worst, _] = &outcome.cases;
+    let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
+    Ok(Placed { outcome, stability })
+}
+
+/// Plans a given placement, best and worst.
+///
+/// # Errors
+/// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
+pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
+    let score = place::score(&run.problem, placement)?;
+    let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
+    Ok(Scored { score, stability })
+}
+
+fn stability(
+    run: &Run,
+    plans: [(&Placement, &stead_placement::outcome::Plan); 2],
+) -> Result<Option<PathStability>, SurveyError> {
+    run.chatter.as_ref().map(|chatter| PathStability::along(&run.problem, chatter, plans)).transpose()
+}

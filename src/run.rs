@@ -1,0 +1,186 @@
+//! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
+
+use crate::Error;
+use crate::result::{Report, result};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use stead_format as format;
+use stead_placement::feasibility::{self, Explanation};
+use stead_placement::outcome::{Case, Outcome};
+use stead_placement::place::{NothingFeasible, Score};
+use stead_placement::problem::{Placement, Problem};
+use stead_report::json::{self, Timing};
+use stead_report::{Context, Folder, ReportError, evaluation, text};
+use stead_study::{self as study, PathStability, Placed, RunError, Scored};
+
+/// A run file with the robot and the task that it names, read and checked.
+///
+/// ```
+/// let run = stead::Run::read("configs/caro-2013.toml")?;
+/// assert_eq!(run.problem().robot.name(), "KUKA KR270-2");
+/// assert_eq!(run.problem().task.points().len(), 105);
+/// # Ok::<(), stead::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Run {
+    run: Arc<format::Run>,
+}
+
+impl Run {
+    /// Reads a run file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_run(file.as_ref())?) })
+    }
+
+    /// Reads a run file to be placed with a certificate of this gap (relative), whatever the file says of one.
+    ///
+    /// # Errors
+    /// As [`Run::read`], and for a cell too large for a certificate.
+    pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_run_to_certify(file.as_ref(), Some(gap))?) })
+    }
+
+    /// The same run with another seed of the random numbers.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        Arc::make_mut(&mut self.run).search.seed = seed;
+        self
+    }
+
+    /// What is to be solved.
+    pub fn problem(&self) -> &Problem {
+        &self.run.problem
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+}
+
+impl Run {
+    /// Searches for the best and the worst placement, each with its best and its worst redundancy plan; with the certificate, where
+    /// the run file asks for one. A stop that the monitor asks for leaves the best found so far.
+    ///
+    /// # Errors
+    /// [`Error::NothingFeasible`] when no placement met satisfies the constraints.
+    pub fn place(&self, monitor: &Monitor) -> Result<Placements, Error> {
+        let mut placements = self.search(monitor)?;
+        if self.run.certificate.is_some() {
+            placements.certify(monitor);
+        }
+        Ok(placements)
+    }
+
+    /// As [`Run::place`], without a certificate.
+    ///
+    /// # Errors
+    /// As [`Run::place`].
+    pub fn search(&self, monitor: &Monitor) -> Result<Placements, Error> {
+        let started = Instant::now();
+        let Placed { outcome, stability } = study::place(&self.run, monitor)?;
+        let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
+        let (inputs, reference) = (self.run.inputs.clone(), self.run.reference.clone());
+        let (search, transfer) = (self.run.search, self.run.transfer);
+        let context = Context { inputs, search, transfer, reference, stability };
+        Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
+    }
+
+    /// Plans a given placement, best and worst.
+    ///
+    /// # Errors
+    /// [`Error::NothingFeasible`] with the constraint that fails at which points.
+    pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
+        let Scored { score, stability } = study::score(&self.run, placement)?;
+        Ok(PlacementScore { score, stability })
+    }
+
+    /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a point that the path does not have.
+    pub fn explain(&self, placement: &Placement, point: usize, beta: f64) -> Result<Explanations, Error> {
+        let last = self.problem().task.points().len() - 1;
+        if point > last {
+            return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
+        }
+        let postures = feasibility::explain(self.problem(), placement, point, beta);
+        Ok(Explanations { placement: *placement, point, beta, postures })
+    }
+}
+
+/// The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
+#[derive(Debug, Clone)]
+pub struct Placements {
+    run: Arc<format::Run>,
+    outcome: Outcome,
+    context: Context,
+    timing: Timing,
+    certificate: Option<Certificate>,
+}
+
+impl Placements {
+    /// How the search went and what it found, in SI units.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// The four cases: best placement with best and worst plan, worst placement with best and worst plan.
+    pub fn cases(&self) -> &[Case; 4] {
+        &self.outcome.cases
+    }
+
+    /// How long it took.
+    pub fn timing(&self) -> Timing {
+        self.timing
+    }
+
+    /// How far from the best and the worst possible these placements are, where that was asked for.
+    pub fn certificate(&self) -> Option<&Certificate> {
+        self.certificate.as_ref()
+    }
+}
+
+/// A given placement with its best and its worst plan.
+#[derive(Debug, Clone)]
+pub struct PlacementScore {
+    run: Arc<format::Run>,
+    score: Score,
+    stability: Option<PathStability>,
+}
+
+/// What each of the eight postures gives at one path point and one free angle.
+#[derive(Debug, Clone)]
+pub struct Explanations {
+    placement: Placement,
+    point: usize,
+    beta: f64,
+    postures: [Explanation; 8],
+}
+
+impl Report for Placements {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+        let mut files = stead_report::write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
+        if let Some(certificate) = &self.certificate {
+            files.extend(write_certificate(folder, &self.run.problem, certificate)?);
+        }
+        Ok(files)
+    }
+
+    fn document(&self) -> Value {
+        let mut document = json::place_json(&self.outcome, &self.context, &self.timing);
+        if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
+            entries.insert("certificate".to_owned(), certificate_json(certificate));
+        }
+        document
+    }
+
+    fn table(&self) -> String {
+        text::placement_text(&self.run.problem, &self.outcome, &self.context)
+    }
+}
