@@ -10,20 +10,20 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
+use stead_placement::lookup::{BetaGrid, LookupTable};
 use stead_placement::redundancy::{Extremum, Planner};
-use stead_placement::table::{Lane, Table};
 
 fn main() {
     let problem = problem();
     let planner = Planner::new(&problem);
-    let table = Table::new(&problem).expect("the published case suits a table");
+    let table = LookupTable::new(&problem).expect("the published case suits a table");
     println!("table: {} states, {} bytes, {:?}", table.shape().states(), table.shape().bytes(), table.accuracy());
-    let lane = Lane::of(&planner);
-    let (mut looking, mut space) = (table.workspace(&lane), planner.workspace());
+    let grid = BetaGrid::of(&planner);
+    let (mut looking, mut space) = (table.workspace(&grid), planner.workspace());
     let mut errors: Vec<f64> = poses(40)
         .iter()
         .filter_map(|pose| {
-            let looked = table.worth(pose, &lane, None, &mut looking).mean()?;
+            let looked = table.objective(pose, &grid, None, &mut looking).mean()?;
             Some((looked / planner.worth(pose, Extremum::Smallest, None, &mut space).mean()? - 1.0).abs())
         })
         .collect();
@@ -40,20 +40,20 @@ fn main() {
 #[divan::bench]
 fn build(bencher: Bencher) {
     let problem = problem();
-    bencher.bench_local(|| black_box(Table::new(&problem)));
+    bencher.bench_local(|| black_box(LookupTable::new(&problem)));
 }
 
 /// A placement through the table, on a grid of beta of so many values.
 #[divan::bench(args = [120, 360, 720])]
 fn worth(bencher: Bencher, count: usize) {
     let problem = problem();
-    let table = Table::new(&problem).expect("the published case suits a table");
-    let lane = Lane::new(&problem, count);
-    let mut workspace = table.workspace(&lane);
+    let table = LookupTable::new(&problem).expect("the published case suits a table");
+    let grid = BetaGrid::new(&problem, count);
+    let mut workspace = table.workspace(&grid);
     let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
-            black_box(table.worth(black_box(pose), &lane, None, &mut workspace));
+            black_box(table.objective(black_box(pose), &grid, None, &mut workspace));
         }
     });
 }

@@ -12,11 +12,11 @@ use std::path::Path;
 use stead_format::read_run;
 use stead_placement::appraiser::Appraiser;
 use stead_placement::genetic::{Individual, distinct, rank};
+use stead_placement::lookup::LookupTable;
 use stead_placement::outcome::Goal;
 use stead_placement::problem::Interval;
 use stead_placement::redundancy::Planner;
 use stead_placement::refine::refine;
-use stead_placement::table::Table;
 
 /// Basins of the grid that are refined, for each goal.
 const REFINED: usize = 16;
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let run = read_run(Path::new(config))?;
     let planner = Planner::new(&run.problem);
-    let table = Table::new(&run.problem);
+    let table = LookupTable::new(&run.problem);
     match &table {
         Ok(table) => println!("through a table of {} states", table.shape().states()),
         Err(unsuited) => println!("without a table: {unsuited}"),

@@ -4,9 +4,9 @@ use super::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use super::reader::{Field, Table};
 use crate::input::{InputError, Reference};
 use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4};
+use stead_placement::lookup::LookupTable;
 use stead_placement::problem::{Cell, Constraints, Criterion, Interval, Problem, Redundancy};
 use stead_placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
-use stead_placement::table::Table as StateTable;
 
 /// Reads `[spindle]`: `xyz_mm` and `rotation`, from flange to tool, and where its motion matters `mass_kg`,
 /// `centre_of_mass_mm` and `inertia_kg_m2` of all that the flange carries, in the flange frame.
@@ -129,7 +129,7 @@ const TABLES: &str = "tables";
 /// Refuses to promise a table where the problem does not allow one.
 pub(super) fn check_tables(table: &Table<'_>, search: &SearchSettings, problem: &Problem) -> Result<(), InputError> {
     if search.tables == Tables::Always
-        && let Err(unsuited) = StateTable::shape_for(problem)
+        && let Err(unsuited) = LookupTable::shape_for(problem)
     {
         let reason = format!("asks for a table, but there can be none: {unsuited}");
         return Err(table.field(TABLES).error(reason, "\"auto\" or \"never\""));

@@ -4,9 +4,9 @@
 
 use super::control::Control;
 use super::genetic::{Individual, rank};
+use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::{Generation, Goal};
 use super::redundancy::{self, Extremum, Planner, Worth};
-use super::table::{self, Lane, Table};
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
 
@@ -14,15 +14,15 @@ use stead_model::robot::{Posture, angles::wrap};
 #[derive(Debug, Clone)]
 pub struct Appraiser<'a> {
     planner: &'a Planner<'a>,
-    table: Option<&'a Table<'a>>,
-    lane: Lane,
+    table: Option<&'a LookupTable<'a>>,
+    grid: BetaGrid,
 }
 
 /// Scratch space of one thread.
 #[derive(Debug)]
 pub struct Workspace {
     planner: Option<redundancy::Workspace>,
-    table: Option<table::Workspace>,
+    table: Option<lookup::Workspace>,
 }
 
 /// What goes on from a search.
@@ -47,13 +47,13 @@ const SAME: [f64; 3] = [0.005, 0.005, 0.02];
 
 /// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
 fn apart<'s>(
-    table: &Table<'_>,
+    table: &LookupTable<'_>,
     sorted: Vec<(&'s Individual, Individual)>,
     most: usize,
 ) -> Vec<(&'s Individual, Individual)> {
     let mut kept: Vec<([f64; 3], (&Individual, Individual))> = Vec::new();
     for (start, end) in sorted {
-        let place = table.reduced(&end.pose);
+        let place = table.cylindrical(&end.pose);
         let is_same = |(known, other): &([f64; 3], (&Individual, Individual))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]
@@ -72,13 +72,13 @@ const CANDIDATES: usize = 3;
 
 impl<'a> Appraiser<'a> {
     /// Looks through the table, if there is one; it must be for the planner's problem.
-    pub fn new(planner: &'a Planner<'a>, table: Option<&'a Table<'a>>) -> Self {
-        Self { planner, table, lane: Lane::of(planner) }
+    pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
+        Self { planner, table, grid: BetaGrid::of(planner) }
     }
 
     /// The same, looking through the table on a grid of beta that many times finer than the planner's.
     pub fn looking_closer(mut self, parts: usize) -> Self {
-        self.lane = Lane::new(self.planner.problem(), self.planner.grid().beta_count * parts);
+        self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
         self
     }
 
@@ -88,14 +88,14 @@ impl<'a> Appraiser<'a> {
     }
 
     /// The table, if there is one.
-    pub fn table(&self) -> Option<&'a Table<'a>> {
+    pub fn table(&self) -> Option<&'a LookupTable<'a>> {
         self.table
     }
 
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
         match self.table {
-            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.lane)) },
+            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.grid)) },
             None => Workspace { planner: Some(self.planner.workspace()), table: None },
         }
     }
@@ -104,7 +104,7 @@ impl<'a> Appraiser<'a> {
     /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
     pub fn worth(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
         match (self.table, &mut workspace.table) {
-            (Some(table), Some(space)) => table.worth(pose, &self.lane, scheme, space),
+            (Some(table), Some(space)) => table.objective(pose, &self.grid, scheme, space),
             _ => self.planned_worth(pose, scheme, workspace),
         }
     }
@@ -174,7 +174,7 @@ impl<'a> Appraiser<'a> {
     /// A candidate polished on the table, and the number of placements looked at.
     fn polish(
         &self,
-        table: &Table<'_>,
+        table: &LookupTable<'_>,
         start: &Individual,
         goal: Goal,
         control: &dyn Control,
@@ -183,7 +183,7 @@ impl<'a> Appraiser<'a> {
         match &mut workspace.table {
             Some(space) if !control.should_stop() => {
                 let scheme = start.scheme.as_deref();
-                let (pose, worth, looks) = table.polish(&start.pose, goal, scheme, &self.lane, space);
+                let (pose, worth, looks) = table.coordinate_search(&start.pose, goal, scheme, &self.grid, space);
                 (Individual { pose, worth, ..start.clone() }, looks)
             }
             _ => (start.clone(), 0),

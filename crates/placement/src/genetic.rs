@@ -5,7 +5,7 @@
 //! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
 //! many points and segments fail.
 //!
-//! Candidates are looked at through a table where the task allows one ([`super::table`]), and then the basins that go on, and
+//! Candidates are looked at through a table where the task allows one ([`super::lookup`]), and then the basins that go on, and
 //! the best of every generation, are looked at by the planner: only averages are the table's.
 //!
 //! Random numbers are counter-based: every individual of every generation has its own stream, so the result depends on the
@@ -283,8 +283,8 @@ pub fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individu
 #[cfg(test)]
 mod tests {
     use super::super::control::Unwatched;
+    use super::super::lookup::LookupTable;
     use super::super::redundancy::Planner;
-    use super::super::table::Table;
     use super::super::testing::five_segments;
     use super::*;
 
@@ -301,7 +301,7 @@ mod tests {
             let run = |threads: usize, seed: u64| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 pool.install(|| {
-                    let table = looks_through_table.then(|| Table::new(&problem).unwrap());
+                    let table = looks_through_table.then(|| LookupTable::new(&problem).unwrap());
                     let appraiser = Appraiser::new(&planner, table.as_ref());
                     search(&appraiser, &SearchSettings { seed, ..small() }, Goal::Best, &Unwatched)
                 })

@@ -3,7 +3,7 @@
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
 //! - [`criterion`]: the score of one state, the ordinary evaluator; [`kernel`]: the same for a whole batch of states.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
-//! - [`table`]: scores of upright tools sampled once over the cell; [`appraiser`]: a look at a placement, by table or planner.
+//! - [`lookup`]: scores of upright tools sampled once over the cell; [`appraiser`]: a look at a placement, by table or planner.
 //! - [`genetic`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`control`]: progress out, a wish to stop in.
@@ -20,13 +20,13 @@ pub mod criterion;
 pub mod feasibility;
 pub mod genetic;
 pub mod kernel;
+pub mod lookup;
 pub mod outcome;
 pub mod place;
 pub mod problem;
 pub mod redundancy;
 pub mod refine;
 pub mod settings;
-pub mod table;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

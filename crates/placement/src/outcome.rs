@@ -1,7 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
+use super::lookup::{Accuracy, Shape, Unsuited};
 use super::problem::Placement;
-use super::table::{Accuracy, Shape, Unsuited};
 use nalgebra::Vector3;
 use stead_model::robot::Posture;
 

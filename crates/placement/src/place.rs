@@ -5,12 +5,12 @@ use super::control::{Control, Progress};
 use super::criterion::{normal_part_by_parameters, state};
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::genetic::{self, Found, Individual};
+use super::lookup::{LookupTable, Unsuited};
 use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
 use super::refine::{Solution, planned, refine};
 use super::settings::{SearchSettings, Tables, TransferSettings};
-use super::table::{Table, Unsuited};
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -69,7 +69,7 @@ pub fn place(
 ) -> Result<Outcome, NothingFeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
-        Tables::Auto | Tables::Always => Some(Table::new(problem)),
+        Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
         Tables::Never => None,
     };
     let mut tabled = table.as_ref().map(|table| match table {
@@ -77,7 +77,7 @@ pub fn place(
         Err(unsuited) => Err(unsuited.clone()),
     });
     let mut table = table.and_then(Result::ok);
-    let search = |table: Option<&Table<'_>>| {
+    let search = |table: Option<&LookupTable<'_>>| {
         let appraiser = Appraiser::new(&planner, table);
         [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control))
     };

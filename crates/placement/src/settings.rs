@@ -9,7 +9,7 @@ pub enum PostureSearch {
     Genetic,
 }
 
-/// Whether the search looks through a table ([`super::table`]).
+/// Whether the search looks through a table ([`super::lookup`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tables {
     /// Where the task allows it and the table fits in memory.

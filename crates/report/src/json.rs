@@ -7,10 +7,10 @@ use super::number::Unit;
 use super::{Context, words};
 use serde_json::{Map, Value, json};
 use stead_format::input::InputFile;
+use stead_placement::lookup::{Axis, Unsuited};
 use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
 use stead_placement::problem::{Interval, Placement, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
-use stead_placement::table::{Axis, Unsuited};
 
 /// How long a computation took.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,9 +3,9 @@
 use super::number::{figures, fixed};
 use super::{Context, words};
 use stead_format::input::Reference;
+use stead_placement::lookup::Unsuited;
 use stead_placement::outcome::{Outcome, ratio};
 use stead_placement::problem::Problem;
-use stead_placement::table::Unsuited;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;

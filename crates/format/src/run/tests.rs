@@ -118,7 +118,7 @@ fn forces_come_from_one_place() {
 fn notes_say_what_the_result_rests_on() {
     let folder = folder();
     let robot = std::fs::read_to_string(folder.path().join("arm.toml")).unwrap();
-    std::fs::write(folder.path().join("arm.toml"), robot.replace("max_speed_deg_per_s = 101.0\n", "")).unwrap();
+    std::fs::write(folder.path().join("arm.toml"), robot.replace("max_speed_deg_per_s = 84.0\n", "")).unwrap();
     let file = folder.path().join("run.toml");
     std::fs::write(&file, format!("{RUN}{CUTTING}").replace("task.csv", "path.csv")).unwrap();
     let notes = read_run(&file).unwrap().notes;

@@ -4,9 +4,9 @@
 //! Everything is in the radial frame of the tool centre point: x away from axis 1, z along it. Joint 1 is left to
 //! [`super::cost`], and so are joints 4 and 6, whose limits are relaxed.
 
-use super::conditioning::{Plane, Wrist};
+use super::conditioning::{PlaneArm, Wrist};
 use super::elbow::{Bend, Links};
-use super::lanes::Mask;
+use super::interval_simd::Mask;
 use super::limits::{Limits, Needs, lever};
 use super::number::Number;
 use crate::problem::Problem;
@@ -42,7 +42,7 @@ pub(super) struct Arm {
 
 /// How the arm yields and what it allows, in one posture class.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Yield<T> {
+pub(super) struct ArmCompliance<T> {
     /// In-plane compliance without joint 1: [[m + d1, d2], [d2, m - d1]]. m/N
     pub m: T,
     /// See `m`.
@@ -136,7 +136,7 @@ impl Arm {
     }
 
     /// Evaluates one posture class; `None` where none of the lanes is allowed.
-    pub fn evaluate<T: Number>(&self, r: T, z: T, sine: T, cosine: T, class: PostureClass) -> Option<Yield<T>> {
+    pub fn evaluate<T: Number>(&self, r: T, z: T, sine: T, cosine: T, class: PostureClass) -> Option<ArmCompliance<T>> {
         let g = &self.geometry;
         let back = if class.postures()[0].is_back() { -1.0 } else { 1.0 };
         let e = if class.postures()[0].is_delta_negative() { -1.0 } else { 1.0 };
@@ -152,12 +152,12 @@ impl Arm {
         // Wrist centre, and joint 1 against the azimuth.
         let (wx, wy) = (r - lever.x, -lever.y);
         let radius2 = wx.square() + wy.square();
-        let forward = radius2.plus(-g.lateral * g.lateral).above(1e-6, &mut regular).sqrt().scale(back);
+        let forward = radius2.plus(-g.lateral * g.lateral).assume_above(1e-6, &mut regular).sqrt().scale(back);
         let (cos1, sin1) = if g.lateral == 0.0 {
-            let inverse = radius2.above(1e-6, &mut regular).inverse_sqrt().scale(back);
+            let inverse = radius2.assume_above(1e-6, &mut regular).inverse_sqrt().scale(back);
             (wx * inverse, wy * inverse)
         } else {
-            let inverse = radius2.above(1e-6, &mut regular).reciprocal();
+            let inverse = radius2.assume_above(1e-6, &mut regular).reciprocal();
             ((wx * forward + wy.scale(g.lateral)) * inverse, (wy * forward - wx.scale(g.lateral)) * inverse)
         };
         let height = z.plus(-self.lever.z - g.shoulder_height);
@@ -172,7 +172,7 @@ impl Arm {
         // What the least inverse condition asks of the elbow and of the wrist: see `needs`.
         let needed = r.square().scale(self.needs.per_radius2).plus(self.needs.constant);
         let elbow = sin_delta_squared - needed * distance2.scale(self.needs.elbow);
-        let [sin_delta, along, across] = distance2.above(1e-6, &mut regular).elbow(&self.links);
+        let [sin_delta, along, across] = distance2.assume_above(1e-6, &mut regular).elbow(&self.links);
         let across = across.scale(g.fold * e);
         let (elbow_u, elbow_v) = (u * along + v * across, v * along - u * across);
         let (cos2, sin2) = (elbow_u.scale(1.0 / g.upper_arm), elbow_v.scale(1.0 / g.upper_arm));
@@ -226,8 +226,8 @@ impl Arm {
             let (z6, t) = (into(axis6), into(lever));
             let z4 = Vector { x: forearm, y: zero, z: z4.z };
             let sign = e * g.fold * g.lift / (g.upper_arm * g.forearm);
-            let inverse_forward = forward.scale(back).above(1e-3, &mut regular).reciprocal().scale(back);
-            let plane = Plane { forward, inverse_forward, u, u3, height, height3, p2, p3, sign, sin_delta };
+            let inverse_forward = forward.scale(back).assume_above(1e-3, &mut regular).reciprocal().scale(back);
+            let plane = PlaneArm { forward, inverse_forward, u, u3, height, height3, p2, p3, sign, sin_delta };
             let across = z4.dot(into(turn(&self.axis6.cross(&self.lever)))).square() * inverse5;
             self.condition(&plane, &Wrist { t, z4, z6, dot46, sine5_squared, across })
         } else {
@@ -258,7 +258,7 @@ impl Arm {
         } else {
             [zero; 2]
         };
-        Some(Yield {
+        Some(ArmCompliance {
             m,
             d1,
             d2,

@@ -1,11 +1,11 @@
 //! The best placement: a lower bound of what placements are worth.
 
-use super::bound::Bounded;
-use super::frontier::{Bound, End, Open, Search, State, Watch, halves, widest};
-use super::prepare::{Unfit, certifiable, prepared};
-use super::reduced::Reduced;
+use super::active_cells::ActiveCells;
+use super::branch_and_bound::{Bound, BranchAndBound, End, Open, State, Watch, halves, widest};
+use super::coarse_bounds::CoarseBounds;
+use super::lower_bound::Model;
+use super::model::{Unfit, certifiable, prepared};
 use super::region::Region;
-use super::tube::Tube;
 use crate::outcome::Goal;
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -22,28 +22,28 @@ use std::sync::Arc;
 pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (bounded, whole) = prepared(problem, &compliances, with_rate);
+    let (model, whole) = prepared(problem, &compliances, with_rate);
     // Of no placement anything is known until the tables are made.
     let unknown = State { bound: 0.0, open: 1, nodes: 0 };
-    let Some(reduced) = Reduced::new(&bounded, || watch.goes_on(&unknown)) else {
+    let Some(coarse) = CoarseBounds::new(&model, || watch.goes_on(&unknown)) else {
         return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped, open: vec![(whole, 0.0)] });
     };
-    let search = Search { goal: Goal::Best, value, gap, with_rate, points: bounded.points.len() };
+    let search = BranchAndBound { goal: Goal::Best, value, gap, with_rate, points: model.points.len() };
     let ceiling = search.ceiling();
     let mut nodes = 0;
-    let tube = Arc::new(Tube::full(bounded.points.len(), bounded.table.headings(0)));
-    let start = survivors(&bounded, &reduced, whole, ceiling, &mut nodes)
+    let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
+    let start = survivors(&model, &coarse, whole, ceiling, &mut nodes)
         .into_iter()
-        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&tube) })
+        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
         .collect();
-    drop(reduced);
-    Ok(search.explore(start, nodes, watch, |open| parts(&bounded, open, ceiling)))
+    drop(coarse);
+    Ok(search.explore(start, nodes, watch, |open| parts(&model, open, ceiling)))
 }
 
-/// The boxes that the reduced tables leave open.
+/// The boxes that the coarse tables leave open.
 fn survivors(
-    bounded: &Bounded,
-    reduced: &Reduced,
+    model: &Model,
+    coarse: &CoarseBounds,
     whole: Region,
     ceiling: f64,
     nodes: &mut usize,
@@ -52,10 +52,10 @@ fn survivors(
     let mut left = Vec::new();
     while !open.is_empty() {
         *nodes += open.len();
-        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| reduced.below(bounded, region)).collect();
+        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| coarse.lower_bound(model, region)).collect();
         let mut next = Vec::new();
         for (region, bound) in open.iter().zip(bounds) {
-            if bound.is_some_and(|bound| bound >= ceiling) || !bounded.yaws.allow(region) {
+            if bound.is_some_and(|bound| bound >= ceiling) || !model.yaws.allow(region) {
                 continue;
             }
             match widest(region) {
@@ -69,16 +69,16 @@ fn survivors(
 }
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
-fn parts(bounded: &Bounded, open: &Open<Arc<Tube>>, ceiling: f64) -> Option<Vec<Open<Arc<Tube>>>> {
-    let halves = halves(&open.region)?.into_iter().filter(|half| bounded.yaws.allow(half));
+fn parts(model: &Model, open: &Open<Arc<ActiveCells>>, ceiling: f64) -> Option<Vec<Open<Arc<ActiveCells>>>> {
+    let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
     let bounds = halves.map(|region| {
-        let level = bounded.level(&region).unwrap_or(0);
-        let mut tube = (*open.known).clone();
-        while tube.level < level {
-            tube = tube.halved();
+        let level = model.level(&region).unwrap_or(0);
+        let mut active = (*open.known).clone();
+        while active.level < level {
+            active = active.halved();
         }
-        let found = bounded.below(&region, &tube, ceiling);
-        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.tube) }
+        let found = model.lower_bound(&region, &active, ceiling);
+        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.active) }
     });
     Some(bounds.collect())
 }

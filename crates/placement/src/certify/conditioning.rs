@@ -4,7 +4,7 @@ use super::arm::{Arm, Vector};
 use super::number::Number;
 
 /// The plane arm, as conditioning needs it.
-pub(super) struct Plane<T> {
+pub(super) struct PlaneArm<T> {
     pub forward: T,
     pub inverse_forward: T,
     pub u: T,
@@ -32,7 +32,7 @@ pub(super) struct Wrist<T> {
 impl Arm {
     /// 36 / min^2 - |N|^2 |N^-1|^2 (see the kernel's and [`stead_model::robot::conditioning`]), times the squared sine of the elbow
     /// and the fourth power of the wrist's: so nothing is divided by either, and the sign is plain where they vanish.
-    pub fn condition<T: Number>(&self, a: &Plane<T>, w: &Wrist<T>) -> T {
+    pub fn condition<T: Number>(&self, a: &PlaneArm<T>, w: &Wrist<T>) -> T {
         let (lateral, length) = (self.geometry.lateral, self.characteristic_length);
         let t = w.t;
         // The lever's length is known.

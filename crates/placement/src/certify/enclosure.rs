@@ -2,7 +2,7 @@
 
 use super::elbow::{Bend, Links};
 use super::interval::Interval;
-use super::lanes::{Lanes, Mask};
+use super::interval_simd::{Lanes, Mask};
 use super::number::{Number, PAIR, PAIRS, Slope, VARIABLES, ZERO};
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -275,7 +275,7 @@ impl Number for Enclosure {
         self.value.high().less(ZERO)
     }
     #[inline(always)]
-    fn above(self, least: f64, sure: &mut Mask) -> Self {
+    fn assume_above(self, least: f64, sure: &mut Mask) -> Self {
         let floor = Lanes::splat(least);
         let fine = floor.less(self.value.low());
         *sure = *sure & fine;

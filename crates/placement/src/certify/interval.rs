@@ -1,7 +1,7 @@
 //! Interval arithmetic in lanes, by middle and radius, without outward rounding: what is proven with it is proven up to
 //! rounding.
 
-use super::lanes::Lanes;
+use super::interval_simd::Lanes;
 use super::number::ZERO;
 
 /// An interval: all numbers within `radius` of `middle`.

@@ -1,8 +1,8 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
+use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node};
 use super::number::VARIABLES;
-use super::table::{FUNCTIONS, Known, Node, Table};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
@@ -56,22 +56,24 @@ const COARSE: f64 = 0.3;
 #[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
 pub(super) fn collect(
     arm: &Arm,
-    table: &Table,
+    table: &ComplianceTable,
     level: usize,
     at: [usize; 2],
     cell: usize,
     node: [f64; 2],
     class: PostureClass,
-    out: &mut Vec<State>,
+    out: &mut Vec<ModelledRegion>,
 ) -> bool {
     let finest = level + 1 == table.depth();
     match table.node(arm, level, at, cell, class) {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
-        Node::Known(known) if finest || f64::from(known.rest[0] + known.rest[1]) <= COARSE * arm.typical() => {
+        Node::Known(known)
+            if finest || f64::from(known.remainder[0] + known.remainder[1]) <= COARSE * arm.typical() =>
+        {
             let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
             let place = table.place(level, at);
-            out.push(State::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
+            out.push(ModelledRegion::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
             return true;
         }
         _ => {}
@@ -91,9 +93,9 @@ pub(super) fn collect(
 }
 
 /// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
-pub(super) struct State {
+pub(super) struct ModelledRegion {
     values: [[f64; 4]; FUNCTIONS],
-    rest: [f64; 3],
+    remainder: [f64; 3],
     /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
     most: [f64; 2],
     moved: [f64; 2],
@@ -103,25 +105,25 @@ pub(super) struct State {
     off: [f64; 2],
 }
 
-impl State {
+impl ModelledRegion {
     /// Of a model about a radius, within `half` of its place, which is `off` the node.
-    pub fn new(known: &Known, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+    pub fn new(known: &AffineModel, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
         let values = known.values.map(|v| v.map(f64::from));
-        let rest = known.rest.map(f64::from);
+        let remainder = known.remainder.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
-        let of = |a: usize, b: usize, rest: f64| {
-            let moved =
-                (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>() + 2.0 * rest;
+        let of = |a: usize, b: usize, remainder: f64| {
+            let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>()
+                + 2.0 * remainder;
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
-        let (d, v) = (of(1, 2, rest[1]), of(3, 4, rest[2]));
-        Self { values, rest, most: [d.0, v.0], moved: [d.1, v.1], half, r, off }
+        let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
+        Self { values, remainder, most: [d.0, v.0], moved: [d.1, v.1], half, r, off }
     }
 }
 
 /// Below what all of the states cost, for a force and a direction of the feed (sine and cosine) within `half` of the node.
 pub(super) fn minorant(
-    found: &[State],
+    found: &[ModelledRegion],
     force: [f64; 3],
     (sine, cosine): (f64, f64),
     first: f64,
@@ -135,7 +137,7 @@ pub(super) fn minorant(
     let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
     let length = libm::hypot(f1, f2);
     let h_chi = half[2];
-    let model = |s: &State| {
+    let model = |s: &ModelledRegion| {
         let (r, h_r) = (s.r, s.half[0]);
         let far = r + h_r;
         let joint1 = first
@@ -150,14 +152,14 @@ pub(super) fn minorant(
         let by_r = of(1) + first * r * (f2 + a);
         let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
             - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
-        let rest = s.rest[0] * f2.abs() + s.rest[1] * length + s.rest[2] * f3.abs()
+        let remainder = s.remainder[0] * f2.abs() + s.remainder[1] * length + s.remainder[2] * f3.abs()
             + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
             + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
             + joint1
             // The heading is free within its cell.
             + of(3).abs() * s.half[2];
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        (value.abs() - rest, [by_r * sign, of(2) * sign, by_chi * sign])
+        (value.abs() - remainder, [by_r * sign, of(2) * sign, by_chi * sign])
     };
     let mut lowest = (f64::INFINITY, [0.0; 3]);
     for s in found {

@@ -7,7 +7,7 @@
 //! 1. `arm` is the closed form, evaluated in two number types: `number` (slopes) and `enclosure` (intervals for value,
 //!    gradient and second derivatives; `interval`, `elbow`, `conditioning`, `limits`).
 //! 2. `table` holds, node by node, an affine model of the compliance with what it leaves out, or that no state is allowed.
-//! 3. `reduced` minimises over the heading once for all placements: minorants over radius, height and direction of the feed
+//! 3. `coarse` minimises over the heading once for all placements: minorants over radius, height and direction of the feed
 //!    (`minorant`).
 //! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
 //! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
@@ -15,35 +15,35 @@
 //! 7. `worst` is the same for the worst placement, from above (`above`) and with the rate of beta dropped; `relaxed` what a
 //!    placement is worth then.
 
-mod above;
+mod active_cells;
 mod arm;
 mod best;
-mod bound;
+mod branch_and_bound;
+mod coarse_bounds;
+mod compliance_table;
 mod conditioning;
 mod cost;
 mod elbow;
 mod enclosure;
-mod frontier;
 mod interval;
-mod lanes;
+mod interval_simd;
 mod limits;
+mod lower_bound;
 mod minorant;
+mod model;
 mod number;
-mod prepare;
-mod reduced;
 mod region;
 mod relaxed;
-mod table;
-mod tube;
-mod window;
+mod sliding_min;
+mod upper_bound;
 mod worst;
 
 #[cfg(test)]
 mod tests;
 
 pub use best::best;
-pub use frontier::{Bound, End, State, Watch};
-pub use prepare::{Unfit, certifiable};
+pub use branch_and_bound::{Bound, End, State, Watch};
+pub use model::{Unfit, certifiable};
 pub use region::Region;
 pub use relaxed::relaxed_value;
 pub use worst::worst;

@@ -4,7 +4,7 @@
 //! One formula serves both ([`super::arm`]).
 
 use super::elbow::{Bend, Links};
-use super::lanes::{Lanes, Mask};
+use super::interval_simd::{Lanes, Mask};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Independent variables: radius and height of the tool centre point, heading of the spindle against its azimuth.
@@ -41,7 +41,7 @@ pub(super) trait Number:
     /// Where it is sure to be below zero.
     fn is_negative(self) -> Mask;
     /// The same, where it is sure to be above `least`; elsewhere the lane leaves `sure`, and anything may come out.
-    fn above(self, least: f64, sure: &mut Mask) -> Self;
+    fn assume_above(self, least: f64, sure: &mut Mask) -> Self;
 }
 
 /// A value and its gradient.
@@ -52,7 +52,7 @@ pub(super) struct Slope {
 }
 
 /// Zero in every lane.
-pub(super) const ZERO: Lanes = Lanes([0.0; super::lanes::WIDTH]);
+pub(super) const ZERO: Lanes = Lanes([0.0; super::interval_simd::WIDTH]);
 
 impl Slope {
     /// The independent variable number `index`.
@@ -175,7 +175,7 @@ impl Number for Slope {
         self.value.less(ZERO)
     }
     #[inline(always)]
-    fn above(self, least: f64, sure: &mut Mask) -> Self {
+    fn assume_above(self, least: f64, sure: &mut Mask) -> Self {
         *sure = *sure & Lanes::splat(least).less(self.value);
         self
     }

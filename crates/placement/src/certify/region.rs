@@ -30,7 +30,7 @@ pub(super) struct Point {
 
 /// Radius and azimuth of a path point over a box: value, slopes and what the slopes leave out.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
+pub(super) struct PolarModel {
     pub r: f64,
     pub z: f64,
     /// Direction of the feed against the azimuth of the point. rad
@@ -39,8 +39,8 @@ pub(super) struct Placed {
     pub slope_r: [f64; 2],
     pub slope_chi: [f64; 2],
     /// What the slopes leave out.
-    pub rest_r: f64,
-    pub rest_chi: f64,
+    pub remainder_r: f64,
+    pub remainder_chi: f64,
     /// How far r, z and chi get from their values.
     pub reach: [f64; VARIABLES],
 }
@@ -59,7 +59,7 @@ impl Region {
 
 impl Point {
     /// Where the point is, over all placements of a box; `None` where axis 1 may pass through the point.
-    pub fn over(&self, region: &Region) -> Option<Placed> {
+    pub fn over(&self, region: &Region) -> Option<PolarModel> {
         let [radius, height, turn] = region.middle;
         let [a, b, g] = region.half;
         let angle = turn + self.direction;
@@ -76,7 +76,7 @@ impl Point {
         let turn_of_azimuth = 1.0 - radius * cos_azimuth / r;
         let slope_r = [cos_azimuth, -radius * sin_azimuth];
         let slope_chi = [sin_azimuth / r, radius * cos_azimuth / r];
-        // Second derivatives, each bounded over the box by its middle value and how far that can move.
+        // Second derivatives, each model over the box by its middle value and how far that can move.
         let swing = (moved / least).min(2.0);
         let sine_most = (sin_azimuth.abs() + swing).min(1.0);
         let cosine_most = (cos_azimuth.abs() + swing).min(1.0);
@@ -89,18 +89,18 @@ impl Point {
         let c_rr = 2.0 * sine_most * cosine_most / (least * least);
         let c_rt = cosine_most * turn_most / least + far * sine_most * sine_most / (least * least);
         let c_tt = far * (sine_most * turn_most / least + far * sine_most * cosine_most / (least * least));
-        let rest = |rr: f64, rt: f64, tt: f64| 0.5 * rr * a * a + rt * a * g + 0.5 * tt * g * g;
-        let (rest_r, rest_chi) = (rest(r_rr, r_rt, r_tt), rest(c_rr, c_rt, c_tt));
+        let remainder = |rr: f64, rt: f64, tt: f64| 0.5 * rr * a * a + rt * a * g + 0.5 * tt * g * g;
+        let (remainder_r, remainder_chi) = (remainder(r_rr, r_rt, r_tt), remainder(c_rr, c_rt, c_tt));
         let linear = |slope: [f64; 2]| slope[0].abs() * a + slope[1].abs() * g;
-        let reach = [(linear(slope_r) + rest_r).min(moved), b, linear(slope_chi) + rest_chi];
-        Some(Placed {
+        let reach = [(linear(slope_r) + remainder_r).min(moved), b, linear(slope_chi) + remainder_chi];
+        Some(PolarModel {
             r,
             z: height + self.height,
             chi: turn + self.feed - libm::atan2(y, x),
             slope_r,
             slope_chi,
-            rest_r,
-            rest_chi,
+            remainder_r,
+            remainder_chi,
             reach,
         })
     }

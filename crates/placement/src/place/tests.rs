@@ -1,8 +1,8 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
 use super::super::control::Unwatched;
+use super::super::lookup::Unsuited;
 use super::super::settings::{PostureSearch, Tables};
-use super::super::table::Unsuited;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
 
@@ -66,14 +66,14 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
 fn a_search_notices_that_its_table_misleads() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 40;
-    let sound = Table::new(&problem).unwrap();
+    let sound = LookupTable::new(&problem).unwrap();
     // A table that knows nothing of a third of the force.
     let weaker = problem.task.wrenches().iter().map(|w| stead_model::task::Wrench { force: w.force / 1.5, ..*w });
     let weaker = stead_model::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
     let weaker = Problem { task: weaker, ..problem.clone() };
-    let wrong = Table::new(&weaker).unwrap();
+    let wrong = LookupTable::new(&weaker).unwrap();
     let planner = Planner::new(&problem);
-    let misled = |table: Option<&Table<'_>>| {
+    let misled = |table: Option<&LookupTable<'_>>| {
         let found = genetic::search(&Appraiser::new(&planner, table), &small(), Goal::Best, &Unwatched);
         assert_eq!(found.basins[0].worth.mean(), {
             let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());

@@ -1,9 +1,9 @@
 //! Boxes of placements: where they put a point, and what it costs over them.
 
-use super::super::cost::Pointwise;
-use super::super::lanes::WIDTH;
-use super::super::region::Placed;
-use super::super::table::{Known, Node, nodes_over};
+use super::super::compliance_table::{AffineModel, Node, nodes_over};
+use super::super::cost::PointCost;
+use super::super::interval_simd::WIDTH;
+use super::super::region::PolarModel;
 use super::*;
 
 /// A placement in a box, by its shares of the half widths.
@@ -28,14 +28,14 @@ fn wrapped(angle: f64) -> f64 {
 }
 
 /// How often a point of a box is not where it is said to be: slopes with rests, reach.
-fn misplaced(setting: &Setting, change: fn(&mut Placed)) -> usize {
+fn misplaced(setting: &Setting, change: fn(&mut PolarModel)) -> usize {
     let mut random = seeded(31);
     let mut wrong = 0;
     for k in 0..3000 {
         let size = [0.003, 0.02, 0.1, 0.4][k % 4];
         let region = random_box(setting, &mut random, size);
-        let point = random.random_range(0..setting.bounded.points.len());
-        let Some(mut p) = setting.bounded.points[point].over(&region) else { continue };
+        let point = random.random_range(0..setting.model.points.len());
+        let Some(mut p) = setting.model.points[point].over(&region) else { continue };
         change(&mut p);
         for _ in 0..8 {
             let s = shares(&mut random);
@@ -44,10 +44,10 @@ fn misplaced(setting: &Setting, change: fn(&mut Placed)) -> usize {
             let turned = wrapped(chi - p.chi);
             let by = |slope: [f64; 2]| slope[0] * a + slope[1] * g;
             let tiny = 1e-12;
-            wrong += usize::from((r - p.r - by(p.slope_r)).abs() > p.rest_r + tiny);
+            wrong += usize::from((r - p.r - by(p.slope_r)).abs() > p.remainder_r + tiny);
             // With a reach of half a turn, nothing is said of the direction.
             if p.reach[2] < 3.0 {
-                wrong += usize::from((turned - by(p.slope_chi)).abs() > p.rest_chi + tiny);
+                wrong += usize::from((turned - by(p.slope_chi)).abs() > p.remainder_chi + tiny);
                 wrong += usize::from(turned.abs() > p.reach[2] + tiny);
             }
             wrong += usize::from((r - p.r).abs() > p.reach[0] + tiny || (z - p.z).abs() > p.reach[1] + tiny);
@@ -62,11 +62,11 @@ fn points_are_where_boxes_put_them_and_broken_rests_are_seen() {
         assert_eq!(misplaced(&setting, |_| {}), 0, "{name}");
     }
     let setting = Setting::new(five_segments());
-    let mutations: [Breaking<Placed>; 8] = [
-        ("radius's rest left out", |p| p.rest_r = 0.0),
-        ("azimuth's rest left out", |p| p.rest_chi = 0.0),
-        ("radius's rest times 0.3", |p| p.rest_r *= 0.3),
-        ("azimuth's rest times 0.3", |p| p.rest_chi *= 0.3),
+    let mutations: [Breaking<PolarModel>; 8] = [
+        ("radius's remainder left out", |p| p.remainder_r = 0.0),
+        ("azimuth's remainder left out", |p| p.remainder_chi = 0.0),
+        ("radius's remainder times 0.3", |p| p.remainder_r *= 0.3),
+        ("azimuth's remainder times 0.3", |p| p.remainder_chi *= 0.3),
         ("reach of the radius by slopes alone", |p| p.reach[0] *= 0.9),
         ("reach of the direction times 0.9", |p| p.reach[2] *= 0.9),
         ("turn of the azimuth left out", |p| p.slope_chi[0] = 0.0),
@@ -81,8 +81,8 @@ fn points_are_where_boxes_put_them_and_broken_rests_are_seen() {
 #[derive(Clone, Copy)]
 pub struct Mutation {
     name: &'static str,
-    known: fn(&mut Known),
-    placed: fn(&mut Placed),
+    known: fn(&mut AffineModel),
+    placed: fn(&mut PolarModel),
     joint1: f64,
     cell: f64,
 }
@@ -100,8 +100,8 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
     for k in 0..2500 {
         let [size, length, cell] = SIZES[k % SIZES.len()];
         let region = random_box(setting, &mut random, size);
-        let point = random.random_range(0..setting.bounded.points.len());
-        let Some(mut placed) = setting.bounded.points[point].over(&region) else { continue };
+        let point = random.random_range(0..setting.model.points.len());
+        let Some(mut placed) = setting.model.points[point].over(&region) else { continue };
         let room = length - placed.reach[0].max(placed.reach[1]);
         let Some((class, heading)) = setting.random_state(&mut random, point, [placed.r, placed.z, placed.chi]) else {
             continue;
@@ -111,11 +111,11 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         }
         let off = [share(&mut random) * room, share(&mut random) * room];
         let place = [placed.r - off[0], placed.z - off[1], heading];
-        let [node, ..] = nodes_over(&setting.bounded.arm, &[place; WIDTH], [length, length, cell], class);
+        let [node, ..] = nodes_over(&setting.model.arm, &[place; WIDTH], [length, length, cell], class);
         let Node::Known(mut known) = node else { continue };
         (mutation.known)(&mut known);
         (mutation.placed)(&mut placed);
-        let one = Pointwise::new(&setting.bounded.points[point], placed, setting.bounded.first * mutation.joint1);
+        let one = PointCost::new(&setting.model.points[point], placed, setting.model.first * mutation.joint1);
         let least = one.least(&known, off, cell * mutation.cell, &region);
         for _ in 0..8 {
             let s = shares(&mut random);
@@ -144,8 +144,12 @@ fn points_cost_at_least_what_is_said_anywhere_in_the_box() {
 #[test]
 fn broken_costs_are_seen() {
     let mutations = [
-        Mutation { name: "remainders zero", known: |known| known.rest = [0.0; 3], ..SOUND },
-        Mutation { name: "remainders times 0.3", known: |known| known.rest = known.rest.map(|r| 0.3 * r), ..SOUND },
+        Mutation { name: "remainders zero", known: |known| known.remainder = [0.0; 3], ..SOUND },
+        Mutation {
+            name: "remainders times 0.3",
+            known: |known| known.remainder = known.remainder.map(|r| 0.3 * r),
+            ..SOUND
+        },
         Mutation { name: "heading cell half as wide", cell: 0.5, ..SOUND },
         Mutation { name: "joint 1 term missing", joint1: 0.0, ..SOUND },
         Mutation { name: "sign of d2", known: |known| known.values[2] = known.values[2].map(|v| -v), ..SOUND },

@@ -1,8 +1,8 @@
 //! The closed form, its constraints, and the nodes of the table.
 
-use super::super::lanes::{Lanes, WIDTH};
+use super::super::compliance_table::{AffineModel, Node, nodes_over};
+use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::number::{Number, Slope};
-use super::super::table::{Known, Node, nodes_over};
 use super::*;
 
 /// Value, gradient and constraints of the closed form at one state.
@@ -10,7 +10,7 @@ fn closed_form(setting: &Setting, r: f64, z: f64, heading: f64, class: PostureCl
     let (sine, cosine) = libm::sincos(heading);
     let (sine, cosine) = Slope::heading(Lanes::splat(sine), Lanes::splat(cosine));
     let (r, z) = (Slope::variable(Lanes::splat(r), 0), Slope::variable(Lanes::splat(z), 1));
-    let y = setting.bounded.arm.evaluate(r, z, sine, cosine, class)?;
+    let y = setting.model.arm.evaluate(r, z, sine, cosine, class)?;
     let values = [y.m, y.d1, y.d2, y.vertical[0], y.vertical[1]].map(|f| f.value.0[0]);
     (!y.lost.lane(0)).then_some((values, y.constraints.map(|c| c.value.0[0])))
 }
@@ -49,12 +49,12 @@ fn the_closed_form_is_the_ordinary_evaluator_at_every_allowed_state() {
 
 /// The normal part by the formula of the certificate.
 pub fn normal(setting: &Setting, point: usize, [r, _, chi]: [f64; 3], values: &[f64; 5]) -> f64 {
-    let [f1, f2, f3] = setting.bounded.points[point].force;
+    let [f1, f2, f3] = setting.model.points[point].force;
     let ((s, c), (s2, c2)) = (libm::sincos(chi), libm::sincos(2.0 * chi));
     let [m, d1, d2, cr, ct] = *values;
     f2 * m - (f2 * c2 + f1 * s2) * d1
         + (f1 * c2 - f2 * s2) * d2
-        + 0.5 * r * r * setting.bounded.first * (f2 + f1 * s2 + f2 * c2)
+        + 0.5 * r * r * setting.model.first * (f2 + f1 * s2 + f2 * c2)
         + f3 * (ct * c - cr * s)
 }
 
@@ -95,13 +95,13 @@ fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], is_vertical: bool) -> boo
         let [value, r, z, heading] = known.values[f].map(f64::from);
         truth.values[f] - value - r * off[0] - z * off[1] - heading * off[2]
     });
-    let rest = known.rest.map(f64::from);
-    errors[0].abs() > rest[0]
-        || libm::hypot(errors[1], errors[2]) > rest[1]
-        || is_vertical && libm::hypot(errors[3], errors[4]) > rest[2]
+    let remainder = known.remainder.map(f64::from);
+    errors[0].abs() > remainder[0]
+        || libm::hypot(errors[1], errors[2]) > remainder[1]
+        || is_vertical && libm::hypot(errors[3], errors[4]) > remainder[2]
 }
 
-type Mutation = (&'static str, fn([f64; 3]) -> [f64; 3], fn(&mut Known));
+type Mutation = (&'static str, fn([f64; 3]) -> [f64; 3], fn(&mut AffineModel));
 
 /// Violations over cells of heading around allowed states, at corners and in between: over regions as large as those of
 /// `level`, made for what `judged` makes of their half widths, and changed by `change`.
@@ -109,9 +109,9 @@ pub fn violations(
     setting: &Setting,
     level: usize,
     judged: fn([f64; 3]) -> [f64; 3],
-    change: fn(&mut Known),
+    change: fn(&mut AffineModel),
 ) -> [usize; 3] {
-    let table = &setting.bounded.table;
+    let table = &setting.model.table;
     let half = [table.length(level), table.length(level), PI / table.headings(level) as f64];
     let is_vertical = setting.problem.task.wrenches().iter().any(|w| w.force.z != 0.0);
     let mut random = seeded(4 + level as u64);
@@ -122,7 +122,7 @@ pub fn violations(
         // The state is at a corner of the region, so that its middle may well not be allowed.
         let corner = shares(&mut random);
         let place: [f64; 3] = std::array::from_fn(|k| [at[0], at[1], heading][k] - corner[k] * half[k]);
-        let [mut node, ..] = nodes_over(&setting.bounded.arm, &[place; WIDTH], judged(half), class);
+        let [mut node, ..] = nodes_over(&setting.model.arm, &[place; WIDTH], judged(half), class);
         if let Node::Known(k) = &mut node {
             change(k);
             known += 1;
@@ -152,16 +152,16 @@ fn nodes_hold_every_allowed_state_around_them() {
 
 #[test]
 fn broken_nodes_are_seen() {
-    fn none(_: &mut Known) {}
+    fn none(_: &mut AffineModel) {}
     let mutations: [Mutation; 8] = [
-        ("remainders zero", |half| half, |known| known.rest = [0.0; 3]),
-        ("remainders times 0.3", |half| half, |known| known.rest = known.rest.map(|r| 0.3 * r)),
+        ("remainders zero", |half| half, |known| known.remainder = [0.0; 3]),
+        ("remainders times 0.3", |half| half, |known| known.remainder = known.remainder.map(|r| 0.3 * r)),
         ("feasibility judged at the centre only", |half| half.map(|h| 1e-9 * h), none),
         ("heading cell half as wide", |[r, z, heading]| [r, z, 0.5 * heading], none),
         ("radius half as wide", |[r, z, heading]| [0.5 * r, z, heading], none),
         ("slope by the heading left out", |half| half, |known| known.values.iter_mut().for_each(|v| v[3] = 0.0)),
         ("sign of d2", |half| half, |known| known.values[2] = known.values[2].map(|v| -v)),
-        ("remainder of (d1, d2) left out", |half| half, |known| known.rest[1] = 0.0),
+        ("remainder of (d1, d2) left out", |half| half, |known| known.remainder[1] = 0.0),
     ];
     let setting = Setting::new(five_segments());
     for (name, judged, change) in mutations {
@@ -170,7 +170,7 @@ fn broken_nodes_are_seen() {
     }
     // Nodes that say nothing is allowed, made from the centre alone: the very decision, without the model.
     let mut lost = 0;
-    let table = &setting.bounded.table;
+    let table = &setting.model.table;
     let half = [table.length(0), table.length(0), PI / table.headings(0) as f64];
     let mut random = seeded(9);
     for _ in 0..400 {
@@ -178,7 +178,7 @@ fn broken_nodes_are_seen() {
         let Some((class, heading)) = setting.random_state(&mut random, point, at) else { continue };
         let corner = shares(&mut random);
         let place: [f64; 3] = std::array::from_fn(|k| [at[0], at[1], heading][k] - corner[k] * half[k]);
-        let empty = |half| nodes_over(&setting.bounded.arm, &[place; WIDTH], half, class)[0] == Node::Empty;
+        let empty = |half| nodes_over(&setting.model.arm, &[place; WIDTH], half, class)[0] == Node::Empty;
         assert!(!empty(half));
         lost += usize::from(empty([0.0; 3]));
     }
@@ -188,7 +188,7 @@ fn broken_nodes_are_seen() {
 #[test]
 fn nodes_of_the_table_are_those_regions() {
     let setting = Setting::new(five_segments());
-    let table = &setting.bounded.table;
+    let table = &setting.model.table;
     let mut random = seeded(5);
     let mut seen = 0;
     for _ in 0..60 {
@@ -201,10 +201,10 @@ fn nodes_of_the_table_are_those_regions() {
             let turned = heading - table.heading(level, cell);
             assert!(turned.abs() <= PI / table.headings(level) as f64 * (1.0 + 1e-9));
             let truth = setting.truth(point, at, heading, class).unwrap();
-            let known = table.node(&setting.bounded.arm, level, node, cell, class);
+            let known = table.node(&setting.model.arm, level, node, cell, class);
             assert!(!is_wrong(known, &truth, [off[0], off[1], turned], false));
             // Its neighbours across the turn are another node: a cell of heading off is seen where models are close.
-            let other = table.node(&setting.bounded.arm, level, node, (cell + 7) % table.headings(level), class);
+            let other = table.node(&setting.model.arm, level, node, (cell + 7) % table.headings(level), class);
             seen += usize::from(is_wrong(other, &truth, [off[0], off[1], turned], false));
         }
     }

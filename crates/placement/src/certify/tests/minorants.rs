@@ -1,17 +1,17 @@
-//! The reduced tables: minorants whatever the heading, and the coarser levels above them.
+//! The coarse tables: minorants whatever the heading, and the coarser levels above them.
 
-use super::super::minorant::{Affine, EMPTY, State, ZERO, below_all, collect, minorant};
-use super::super::reduced::Reduced;
-use super::super::table::{Extent, Known, Node, Steps, Table};
+use super::super::coarse_bounds::CoarseBounds;
+use super::super::compliance_table::{AffineModel, ComplianceTable, Extent, Node, Steps};
+use super::super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
 use super::*;
 use crate::redundancy::{Extremum, Planner};
 
 /// The same with a table of other steps, of nodes about some radii and heights only.
-pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: Steps, levels: usize) -> Bounded {
-    let b = &setting.bounded;
-    Bounded {
+pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: Steps, levels: usize) -> Model {
+    let b = &setting.model;
+    Model {
         arm: b.arm.clone(),
-        table: Table::new(Extent { radius, height }, steps, levels),
+        table: ComplianceTable::new(Extent { radius, height }, steps, levels),
         points: b.points.clone(),
         segments: b.segments.clone(),
         rates: b.rates.clone(),
@@ -27,8 +27,8 @@ fn at(e: &Affine, off: [f64; 3]) -> f64 {
 /// What is done to the minorant of a node before it is held against the truth.
 pub struct Mutation {
     name: &'static str,
-    known: fn(&mut Known),
-    states: fn(&mut Vec<State>),
+    known: fn(&mut AffineModel),
+    states: fn(&mut Vec<ModelledRegion>),
     joint1: f64,
     chi: f64,
 }
@@ -36,19 +36,19 @@ pub struct Mutation {
 pub const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, states: |_| {}, joint1: 1.0, chi: 1.0 };
 
 /// The states about the only node of a table, with their models changed.
-fn states(bounded: &Bounded, class: PostureClass, mutation: &Mutation) -> Option<Vec<State>> {
-    let table = &bounded.table;
+fn states(model: &Model, class: PostureClass, mutation: &Mutation) -> Option<Vec<ModelledRegion>> {
+    let table = &model.table;
     let node = table.place(0, [1, 1]);
     let mut found = Vec::new();
     for cell in 0..table.headings(0) {
-        match table.node(&bounded.arm, 0, [1, 1], cell, class) {
+        match table.node(&model.arm, 0, [1, 1], cell, class) {
             Node::Empty => {}
             Node::Unknown => return None,
             Node::Known(known) => {
                 let mut known = *known;
                 (mutation.known)(&mut known);
                 let half = [table.length(0), table.length(0), PI / table.headings(0) as f64];
-                found.push(State::new(&known, half, node[0], [0.0, 0.0]));
+                found.push(ModelledRegion::new(&known, half, node[0], [0.0, 0.0]));
             }
         }
     }
@@ -65,11 +65,11 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
         let (point, place) = anywhere(setting, &mut random);
         let Some((class, _)) = setting.random_state(&mut random, point, place) else { continue };
         let along = |v: f64| (v - steps.length, v + steps.length);
-        let bounded = local(setting, along(place[0]), along(place[1]), steps, 1);
-        let Some(found) = states(&bounded, class, mutation) else { continue };
-        let force = bounded.points[point].force;
+        let model = local(setting, along(place[0]), along(place[1]), steps, 1);
+        let Some(found) = states(&model, class, mutation) else { continue };
+        let force = model.points[point].force;
         let half = [steps.length, steps.length, turn * mutation.chi];
-        let e = minorant(&found, force, libm::sincos(place[2]), bounded.first * mutation.joint1, half);
+        let e = minorant(&found, force, libm::sincos(place[2]), model.first * mutation.joint1, half);
         if e == ZERO {
             continue;
         }
@@ -117,17 +117,17 @@ fn broken_minorants_are_seen() {
     }
 }
 
-fn most_left_out(states: &mut Vec<State>) {
+fn most_left_out(states: &mut Vec<ModelledRegion>) {
     states.truncate(states.len().div_ceil(4));
 }
 
-fn turned_round(known: &mut Known) {
+fn turned_round(known: &mut AffineModel) {
     known.values.iter_mut().for_each(|v| (v[1], v[2]) = (-v[1], -v[2]));
 }
 
 #[test]
 fn regions_cut_up_are_below_the_cost_too() {
-    // As the reduced tables do it: coarse models are replaced by those of the finer levels.
+    // As the coarse tables do it: coarse models are replaced by those of the finer levels.
     let setting = Setting::new(five_segments());
     let mut random = seeded(22);
     let (mut compared, mut cut) = (0, 0);
@@ -135,18 +135,18 @@ fn regions_cut_up_are_below_the_cost_too() {
         let (point, place) = anywhere(&setting, &mut random);
         let Some((class, _)) = setting.random_state(&mut random, point, place) else { continue };
         let along = |v: f64| (v - COARSE.length, v + COARSE.length);
-        let bounded = local(&setting, along(place[0]), along(place[1]), COARSE, 3);
-        let node = bounded.table.place(0, [1, 1]);
+        let model = local(&setting, along(place[0]), along(place[1]), COARSE, 3);
+        let node = model.table.place(0, [1, 1]);
         let mut found = Vec::new();
         let known = (0..COARSE.headings)
-            .all(|cell| collect(&bounded.arm, &bounded.table, 0, [1, 1], cell, node, class, &mut found));
+            .all(|cell| collect(&model.arm, &model.table, 0, [1, 1], cell, node, class, &mut found));
         if !known {
             continue;
         }
         cut += usize::from(found.len() > COARSE.headings);
         let turn = TAU / COARSE.headings as f64;
         let half = [COARSE.length, COARSE.length, turn];
-        let e = minorant(&found, bounded.points[point].force, libm::sincos(place[2]), bounded.first, half);
+        let e = minorant(&found, model.points[point].force, libm::sincos(place[2]), model.first, half);
         for _ in 0..6 {
             let s = shares(&mut random);
             let off = [s[0] * COARSE.length, s[1] * COARSE.length, s[2] * turn];
@@ -224,15 +224,15 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
         let all = || places.iter().map(|p| p[k]);
         (all().fold(f64::INFINITY, f64::min) - 0.06, all().fold(f64::NEG_INFINITY, f64::max) + 0.06)
     };
-    let bounded = local(&setting, over(0), over(1), COARSE, 2);
-    let reduced = Reduced::new(&bounded, || true).expect("nobody ends it");
+    let model = local(&setting, over(0), over(1), COARSE, 2);
+    let coarse = CoarseBounds::new(&model, || true).expect("nobody ends it");
     let planner = Planner::new(&setting.problem);
     let mut space = planner.workspace();
     let mut random = seeded(24);
     for size in [0.1, 0.5, 1.0] {
         let half = [0.009, 0.0125, 0.0157].map(|h: f64| h * size);
         let region = Region { middle: placement, half };
-        let below = reduced.below(&bounded, &region).unwrap();
+        let below = coarse.lower_bound(&model, &region).unwrap();
         let (mut lowest, mut feasible) = (f64::INFINITY, 0);
         for _ in 0..20 {
             let s = shares(&mut random);
@@ -251,13 +251,13 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
     }
     // Every level reaches so far and no farther: never infeasible, but nothing to say.
     let wide = Region { middle: placement, half: [0.2, 0.0, 0.0] };
-    assert_eq!(reduced.below(&bounded, &wide), None);
+    assert_eq!(coarse.lower_bound(&model, &wide), None);
     let near = Region { middle: [0.3, -0.5564, 2.2], half: [0.001; 3] };
-    assert_eq!(reduced.below(&bounded, &near), Some(0.0));
+    assert_eq!(coarse.lower_bound(&model, &near), Some(0.0));
     let far = Region { middle: [2.4, -0.5564, 2.2], half: [0.001; 3] };
-    assert_eq!(reduced.below(&bounded, &far), None);
+    assert_eq!(coarse.lower_bound(&model, &far), None);
     let high = Region { middle: [1.64, 0.5, 2.2], half: [0.001; 3] };
-    assert_eq!(reduced.below(&bounded, &high), None);
+    assert_eq!(coarse.lower_bound(&model, &high), None);
     let low = Region { middle: [1.64, -1.5, 2.2], half: [0.001; 3] };
-    assert_eq!(reduced.below(&bounded, &low), None);
+    assert_eq!(coarse.lower_bound(&model, &low), None);
 }

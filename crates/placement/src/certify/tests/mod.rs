@@ -11,8 +11,8 @@ mod cells;
 mod minorants;
 mod planner;
 
-use super::bound::Bounded;
-use super::prepare::prepared;
+use super::lower_bound::Model;
+use super::model::prepared;
 use super::region::{Point, Region};
 use crate::feasibility::explain;
 use crate::problem::{Interval, Problem};
@@ -31,7 +31,7 @@ type Breaking<T> = (&'static str, fn(&mut T));
 /// A problem, what its bounds are made of, and the ordinary evaluator in the terms of the certificate.
 pub struct Setting {
     pub problem: Problem,
-    pub bounded: Bounded,
+    pub model: Model,
     pub whole: Region,
     /// Whether the heading turns with beta or against it.
     sense: f64,
@@ -48,12 +48,12 @@ pub struct Truth {
 impl Setting {
     pub fn new(problem: Problem) -> Self {
         let compliances = problem.robot.constant_compliances().unwrap();
-        let (bounded, whole) = prepared(&problem, &compliances, true);
+        let (model, whole) = prepared(&problem, &compliances, true);
         let turned = |beta: f64| problem.base_from_flange(0, &[0.0; 4], beta).rotation;
         let turn = turned(0.1) * turned(0.0).transpose();
         let side = problem.robot.geometry().base_from_root[(2, 2)].signum();
         let sense = (libm::atan2(turn[(1, 0)], turn[(0, 0)]) * side).signum();
-        Self { problem, bounded, whole, sense }
+        Self { problem, model, whole, sense }
     }
 
     /// An upright tool, one from below, forces with a vertical part, an arm upside down, and one with every offset.
@@ -165,7 +165,7 @@ pub fn shares(random: &mut ChaCha8Rng) -> [f64; 3] {
 
 /// A random path point somewhere in the cell: radius, height, direction of its feed.
 pub fn anywhere(setting: &Setting, random: &mut ChaCha8Rng) -> (usize, [f64; 3]) {
-    let point = random.random_range(0..setting.bounded.points.len());
+    let point = random.random_range(0..setting.model.points.len());
     let middle = setting.whole.middle;
     let placement = std::array::from_fn(|k| middle[k] + setting.whole.half[k] * random.random_range(-0.95..0.95));
     (point, setting.place(placement, point))
@@ -207,7 +207,7 @@ fn placements_are_seen_along_axis_1() {
             let root = setting.problem.robot.geometry().root_in_base;
             let tip = workpiece.point(&setting.problem.task.points()[point].position) - root;
             assert!((libm::hypot(tip.x, tip.y) - at[0]).abs() < 1e-12, "{name}");
-            let one: &Point = &setting.bounded.points[point];
+            let one: &Point = &setting.model.points[point];
             assert!(one.distance >= 0.0);
         }
     }

@@ -1,11 +1,11 @@
 //! Steps of beta, least values of neighbours, and the sum along the path.
 
-use super::super::cost::{CORNERS, Pointwise};
-use super::super::tube::Tube;
-use super::super::window::{NOTHING, Window};
+use super::super::active_cells::ActiveCells;
+use super::super::cost::{CORNERS, PointCost};
+use super::super::sliding_min::{NOTHING, SlidingMin};
 use super::minorants::local;
 use super::*;
-use crate::certify::table::Steps;
+use crate::certify::compliance_table::Steps;
 use crate::redundancy::{Extremum, Planner};
 
 #[test]
@@ -18,12 +18,12 @@ fn windows_hold_the_least_of_their_neighbours() {
             .collect();
         let low = random.random_range(-90..90_i32) as isize;
         let high = low + random.random_range(-1..70_i32) as isize;
-        let mut window = Window::new(count);
-        window.least(&values, low, high);
+        let mut sliding = SlidingMin::new(count);
+        sliding.least(&values, low, high);
         for k in 0..count as isize {
             for corner in 0..CORNERS {
                 let all = (low..=high).map(|d| values[(k + d).rem_euclid(count as isize) as usize][corner]);
-                assert_eq!(window.out[k as usize][corner], all.fold(f64::INFINITY, f64::min));
+                assert_eq!(sliding.out[k as usize][corner], all.fold(f64::INFINITY, f64::min));
             }
         }
     }
@@ -42,23 +42,23 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
             std::array::from_fn(|k| setting.whole.middle[k] + setting.whole.half[k] * random.random_range(-0.9..0.9));
         let size = [1e-6, 0.003, 0.015][random.random_range(0..3)];
         let region = Region { middle, half: [size; 3] };
-        let span = &setting.bounded.segments[random.random_range(0..setting.bounded.segments.len())];
+        let span = &setting.model.segments[random.random_range(0..setting.model.segments.len())];
         let point = random.random_range(span.start + 1..span.end);
-        let pair: Option<Vec<Option<Pointwise>>> = [point - 1, point]
+        let pair: Option<Vec<Option<PointCost>>> = [point - 1, point]
             .iter()
             .map(|p| {
-                let mut placed = setting.bounded.points[*p].over(&region)?;
+                let mut placed = setting.model.points[*p].over(&region)?;
                 if !is_unsure {
-                    (placed.slope_chi, placed.rest_chi) = ([0.0; 2], 0.0);
+                    (placed.slope_chi, placed.remainder_chi) = ([0.0; 2], 0.0);
                 }
-                Some(Some(Pointwise::new(&setting.bounded.points[*p], placed, 1e-6)))
+                Some(Some(PointCost::new(&setting.model.points[*p], placed, 1e-6)))
             })
             .collect();
         let Some(pair) = pair else { continue };
         // `steps` looks at two neighbours by their numbers.
         let mut all = vec![pair[0]; point];
         all.push(pair[1]);
-        let (low, high) = setting.bounded.steps(&region, &all, point, width);
+        let (low, high) = setting.model.steps(&region, &all, point, width);
         let (low, high) = change(low, high);
         for _ in 0..8 {
             let s = shares(&mut random);
@@ -97,9 +97,9 @@ fn no_step_within_the_rate_is_forbidden_and_broken_steps_are_seen() {
 const GOOD: [f64; 3] = [1.6435, -0.5564, 2.24];
 
 /// The bound of a box about it, going down the levels as the search does; and the least that the planner finds inside.
-fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, Tube) {
+fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, ActiveCells) {
     let region = Region { middle: good(setting), half };
-    let bounded = &setting.bounded;
+    let model = &setting.model;
     let planner = Planner::finer(&setting.problem);
     let mut space = planner.workspace();
     let mut random = seeded(43);
@@ -112,14 +112,14 @@ fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, Tube) {
             value = value.min(105.0 * mean);
         }
     }
-    let level = bounded.level(&region).unwrap();
-    let mut tube = Tube::full(bounded.points.len(), bounded.table.headings(0));
-    let mut found = bounded.below(&region, &tube, 1.1 * value);
-    while tube.level < level {
-        tube = found.tube.halved();
-        found = bounded.below(&region, &tube, 1.1 * value);
+    let level = model.level(&region).unwrap();
+    let mut active = ActiveCells::full(model.points.len(), model.table.headings(0));
+    let mut found = model.lower_bound(&region, &active, 1.1 * value);
+    while active.level < level {
+        active = found.active.halved();
+        found = model.lower_bound(&region, &active, 1.1 * value);
     }
-    (found.sum, value, found.tube)
+    (found.sum, value, found.active)
 }
 
 /// The best yaw there, by the planner.
@@ -149,13 +149,13 @@ fn sums_along_the_path_are_below_plans_and_close() {
 fn a_broken_sum_is_seen() {
     let half = [1e-4; 3];
     let mutations: [Breaking<Setting>; 3] = [
-        ("joint 1 twice", |setting| setting.bounded.first *= 2.0),
+        ("joint 1 twice", |setting| setting.model.first *= 2.0),
         ("a segment counted twice", |setting| {
-            let again = setting.bounded.segments[2].clone();
-            setting.bounded.segments.push(again);
+            let again = setting.model.segments[2].clone();
+            setting.model.segments.push(again);
         }),
         ("forces a tenth larger", |setting| {
-            setting.bounded.points.iter_mut().for_each(|p| p.force = p.force.map(|f| 1.1 * f));
+            setting.model.points.iter_mut().for_each(|p| p.force = p.force.map(|f| 1.1 * f));
         }),
     ];
     for (name, change) in mutations {
@@ -170,24 +170,24 @@ fn a_broken_sum_is_seen() {
 fn boxes_that_tables_do_not_answer_for_are_never_infeasible() {
     let setting = Setting::new(five_segments());
     let at = good(&setting);
-    let full = |bounded: &Bounded| Tube::full(105, bounded.table.headings(0));
+    let full = |model: &Model| ActiveCells::full(105, model.table.headings(0));
     // Too large for the coarsest level.
     let wide = Region { middle: at, half: [0.3, 0.0, 0.0] };
-    let found = setting.bounded.below(&wide, &full(&setting.bounded), f64::INFINITY);
+    let found = setting.model.lower_bound(&wide, &full(&setting.model), f64::INFINITY);
     assert_eq!(found.sum, 0.0);
-    assert_eq!(found.tube, full(&setting.bounded));
+    assert_eq!(found.active, full(&setting.model));
     // Outside a table, on every side.
     let steps = Steps { length: 0.025, headings: 128 };
     for (radius, height) in
         [((0.5, 0.9), (-0.7, 0.0)), ((3.0, 3.4), (-0.7, 0.0)), ((1.2, 2.4), (1.0, 2.0)), ((1.2, 2.4), (-4.0, -3.0))]
     {
-        let bounded = local(&setting, radius, height, steps, 1);
+        let model = local(&setting, radius, height, steps, 1);
         let region = Region { middle: at, half: [1e-3; 3] };
-        let found = bounded.below(&region, &full(&bounded), f64::INFINITY);
+        let found = model.lower_bound(&region, &full(&model), f64::INFINITY);
         assert_eq!(found.sum, 0.0);
-        assert_eq!(found.tube, full(&bounded));
+        assert_eq!(found.active, full(&model));
     }
     // About axis 1.
     let region = Region { middle: [0.1, -0.5, 0.0], half: [0.1, 0.01, 3.0] };
-    assert_eq!(setting.bounded.below(&region, &full(&setting.bounded), f64::INFINITY).sum, 0.0);
+    assert_eq!(setting.model.lower_bound(&region, &full(&setting.model), f64::INFINITY).sum, 0.0);
 }

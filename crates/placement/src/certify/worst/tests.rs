@@ -1,10 +1,10 @@
 //! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
 
-use super::super::frontier::{End, State};
+use super::super::branch_and_bound::{End, State};
 use super::*;
+use crate::certify::compliance_table::{AffineModel, Node};
 use crate::certify::cost::CORNERS;
 use crate::certify::relaxed::{relaxed_value, score};
-use crate::certify::table::{Known, Node};
 use crate::problem::{Interval, Placement};
 use crate::redundancy::{Extremum, Planner};
 use crate::testing::five_segments;
@@ -13,10 +13,10 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use stead_model::robot::PostureClass;
 
-fn bounded(problem: &Problem) -> Bounded {
-    let (bounded, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
-    let (extent, _) = bounded.table.grid();
-    Bounded { table: Table::new(extent, STEPS, LEVELS), ..bounded }
+fn model(problem: &Problem) -> Model {
+    let (model, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
+    let (extent, _) = model.table.grid();
+    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
 }
 
 /// A placement of a region; the azimuth is that of the middle of the paper's cell.
@@ -34,41 +34,41 @@ fn somewhere(random: &mut ChaCha8Rng, size: f64) -> Region {
     Region { middle, half }
 }
 
-/// Corner k of a box, in the order of [`Pointwise::most`].
+/// Corner k of a box, in the order of [`PointCost::most`].
 fn corner(region: &Region, k: usize) -> [f64; 3] {
     std::array::from_fn(|i| region.middle[i] + region.half[i] * if k >> i & 1 == 1 { 1.0 } else { -1.0 })
 }
 
 /// Over many cells, how often a corner of a box has no heading in a cell that costs as little as is said, or one that costs
 /// more; what is known of the cell may be tampered with.
-fn violations(tamper: impl Fn(&mut Known)) -> (usize, usize) {
+fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
     let problem = five_segments();
-    let bounded = bounded(&problem);
+    let model = model(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let (mut looked, mut wrong) = (0, 0);
     while looked < 300 {
         let size = [1.2, 0.6, 0.3][looked % 3];
         let region = somewhere(&mut random, size);
-        let Some(over) = Over::new(&bounded, &region) else { continue };
+        let Some(over) = BoxBounds::new(&model, &region) else { continue };
         let point = random.random_range(0..over.points.len());
-        let cell = random.random_range(0..bounded.table.headings(over.level));
+        let cell = random.random_range(0..model.table.headings(over.level));
         let class = PostureClass::ALL[random.random_range(0..4)];
         let pointwise = over.points[point].as_ref().unwrap();
-        let (at, off) = bounded.table.nearest(over.level, pointwise.placed.r, pointwise.placed.z).unwrap();
-        let Node::Known(mut known) = *bounded.table.node(&bounded.arm, over.level, at, cell, class) else { continue };
+        let (at, off) = model.table.nearest(over.level, pointwise.placed.r, pointwise.placed.z).unwrap();
+        let Node::Known(mut known) = *model.table.node(&model.arm, over.level, at, cell, class) else { continue };
         tamper(&mut known);
         if !known.sure {
             continue;
         }
         looked += 1;
-        let half_cell = PI / bounded.table.headings(over.level) as f64;
-        let heading = bounded.table.heading(over.level, cell);
+        let half_cell = PI / model.table.headings(over.level) as f64;
+        let heading = model.table.heading(over.level, cell);
         let [chosen, all] = [true, false].map(|choice| pointwise.most(&known, off, half_cell, &region, choice));
         for k in 0..CORNERS {
             let place = corner(&region, k);
             let p = placed(&problem, place);
             let pose = [p.x, p.y, p.z, p.yaw];
-            let chi = bounded.points[point].over(&Region { middle: place, half: [0.0; 3] }).unwrap().chi;
+            let chi = model.points[point].over(&Region { middle: place, half: [0.0; 3] }).unwrap().chi;
             let costs: Vec<f64> = (0..=40)
                 .map(|k| heading + half_cell * (f64::from(k) / 20.0 - 1.0) - chi)
                 .map(|beta| score(&problem, &pose, point, class, beta))
@@ -89,21 +89,21 @@ fn cells_cost_no_more_than_is_said() {
 
 #[test]
 fn tampered_cells_are_noticed() {
-    assert!(violations(|known| known.rest = [0.0; 3]).1 > 0);
+    assert!(violations(|known| known.remainder = [0.0; 3]).1 > 0);
     assert!(violations(|known| known.sure = true).1 > 0);
 }
 
 #[test]
 fn boxes_are_worth_no_more_than_is_said() {
     let problem = five_segments();
-    let bounded = bounded(&problem);
+    let model = model(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let (mut tight, mut nothing) = (0, 0);
     for k in 0..9 {
         let region = somewhere(&mut random, [0.6, 0.2, 0.1][k % 3]);
-        let over = Over::new(&bounded, &region).unwrap();
-        let (sum, seen) = over.above(&Seen::nothing(&bounded), 0.0);
-        let (again, _) = over.above(&seen, f64::MAX);
+        let over = BoxBounds::new(&model, &region).unwrap();
+        let (sum, seen) = over.upper_bound(&Inherited::nothing(&model), 0.0);
+        let (again, _) = over.upper_bound(&seen, f64::MAX);
         let bound = sum / over.points.len() as f64;
         let place = std::array::from_fn(|i| region.middle[i] + region.half[i] * random.random_range(-1.0..1.0));
         match relaxed_value(&problem, &placed(&problem, place)) {

@@ -1,6 +1,6 @@
 //! An upper bound of what placements of a box are worth, limits between neighbouring points dropped.
 //!
-//! What is bounded is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
+//! What is model is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
 //! the best posture class of each segment. For one box of placements and one posture class of a segment
 //! - every point has a cell of heading that is surely allowed all over the box: the sum of what these cost bounds the class, and
 //!   the best of such classes the segment;
@@ -11,11 +11,11 @@
 //! All these are convex functions of the placement, so the greatest value is at a corner of the box. Cells of heading are
 //! sought near those that were best in the box it was cut from; where that is not enough, among all.
 
-use super::bound::Bounded;
-use super::cost::{CORNERS, Pointwise};
+use super::compliance_table::Node;
+use super::cost::{CORNERS, PointCost};
+use super::lower_bound::Model;
 use super::region::Region;
-use super::table::Node;
-use super::window::plus;
+use super::sliding_min::plus;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
@@ -33,7 +33,7 @@ const NOTHING: [f64; CORNERS] = [f64::NEG_INFINITY; CORNERS];
 
 /// What is known of a box and goes on to its halves.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct Inherited {
     /// Level of the table.
     level: usize,
     /// For each point and class the best surely allowed cell.
@@ -42,16 +42,16 @@ pub(super) struct Seen {
     out: Vec<[bool; 4]>,
 }
 
-impl Seen {
-    pub fn nothing(bounded: &Bounded) -> Self {
-        let (points, segments) = (bounded.points.len(), bounded.segments.len());
+impl Inherited {
+    pub fn nothing(model: &Model) -> Self {
+        let (points, segments) = (model.points.len(), model.segments.len());
         Self { level: 0, cells: vec![NONE; points * 4], out: vec![[false; 4]; segments] }
     }
 }
 
 /// One class of one segment over a box.
 #[derive(Debug, Clone)]
-struct Way {
+struct ClassBound {
     class: PostureClass,
     sum: [f64; CORNERS],
     /// Points for which no surely allowed cell is known.
@@ -61,37 +61,37 @@ struct Way {
 }
 
 /// One box on one level.
-pub(super) struct Over<'a> {
-    bounded: &'a Bounded,
+pub(super) struct BoxBounds<'a> {
+    model: &'a Model,
     region: &'a Region,
     /// `None` for a point that may be near axis 1, so that nothing is known of it.
-    pub points: Vec<Option<Pointwise>>,
+    pub points: Vec<Option<PointCost>>,
     pub level: usize,
 }
 
-impl<'a> Over<'a> {
+impl<'a> BoxBounds<'a> {
     /// `None` for one too large for the tables.
-    pub fn new(bounded: &'a Bounded, region: &'a Region) -> Option<Self> {
-        let level = bounded.level(region)?;
-        Some(Self { bounded, region, points: bounded.pointwise(region), level })
+    pub fn new(model: &'a Model, region: &'a Region) -> Option<Self> {
+        let level = model.level(region)?;
+        Some(Self { model, region, points: model.point_costs(region), level })
     }
 
     /// Looks at cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
-    fn look(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> Look {
-        let Bounded { table, arm, .. } = self.bounded;
-        let mut look = Look { best: None, most: NOTHING };
+    fn bound_cells(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> CellBounds {
+        let Model { table, arm, .. } = self.model;
+        let mut bounds = CellBounds { best: None, most: NOTHING };
         let half_cell = 0.5 * TAU / table.headings(self.level) as f64;
         let placed = self.points[point].as_ref();
         let found = placed.and_then(|p| Some((p, table.nearest(self.level, p.placed.r, p.placed.z)?)));
         let Some((pointwise, (at, off))) = found else {
-            look.most = ANYTHING;
-            return look;
+            bounds.most = ANYTHING;
+            return bounds;
         };
         let mut least = f64::INFINITY;
         for cell in cells {
             match table.node(arm, self.level, at, cell, class) {
                 Node::Empty => {}
-                Node::Unknown => look.most = ANYTHING,
+                Node::Unknown => bounds.most = ANYTHING,
                 Node::Known(known) => {
                     let of = |choice: bool| pointwise.most(known, off, half_cell, self.region, choice);
                     if known.sure {
@@ -99,22 +99,22 @@ impl<'a> Over<'a> {
                         let size: f64 = costs.iter().sum();
                         if size < least {
                             least = size;
-                            look.best = Some((cell, costs));
+                            bounds.best = Some((cell, costs));
                         }
                     }
-                    if look.best.is_none() {
+                    if bounds.best.is_none() {
                         let costs = of(false);
-                        look.most = std::array::from_fn(|k| look.most[k].max(costs[k]));
+                        bounds.most = std::array::from_fn(|k| bounds.most[k].max(costs[k]));
                     }
                 }
             }
         }
-        look
+        bounds
     }
 
     /// The ways through a segment by cells near those known.
-    fn known_ways(&self, segment: usize, before: &Seen, seen: &mut Seen) -> Vec<Way> {
-        let count = self.bounded.table.headings(self.level);
+    fn known_ways(&self, segment: usize, before: &Inherited, seen: &mut Inherited) -> Vec<ClassBound> {
+        let count = self.model.table.headings(self.level);
         let finer = self.level.saturating_sub(before.level);
         let coarser = before.level.saturating_sub(self.level);
         let mut ways = Vec::new();
@@ -122,14 +122,14 @@ impl<'a> Over<'a> {
             if seen.out[segment][class.index()] {
                 continue;
             }
-            let mut way = Way { class, sum: [0.0; CORNERS], missing: Vec::new(), sure: true };
-            for point in self.bounded.segments[segment].clone() {
+            let mut way = ClassBound { class, sum: [0.0; CORNERS], missing: Vec::new(), sure: true };
+            for point in self.model.segments[segment].clone() {
                 let place = point * 4 + class.index();
                 let cell = before.cells[place];
                 let found = (cell != NONE).then(|| {
                     let middle = ((usize::from(cell) << finer) + (1 << finer) / 2) >> coarser;
                     let near = (0..2 * NEIGHBOURS + 1).map(|k| (middle + count + k - NEIGHBOURS) % count);
-                    self.look(point, class, near).best
+                    self.bound_cells(point, class, near).best
                 });
                 if let Some(Some((cell, costs))) = found {
                     seen.cells[place] = cell as u16;
@@ -147,15 +147,15 @@ impl<'a> Over<'a> {
     /// A sum that is enough for most boxes: of each point the first cell found that is cheap, in the first class that has one for
     /// each point; infinite where that is not enough. m
     pub fn glance(&self, ceiling: f64) -> f64 {
-        let count = self.bounded.table.headings(self.level);
+        let count = self.model.table.headings(self.level);
         let cheap = CHEAP * ceiling / self.points.len() as f64;
         let mut totals = [0.0; CORNERS];
-        for span in &self.bounded.segments {
+        for span in &self.model.segments {
             let through = |class: PostureClass| {
                 let (mut sum, mut start) = ([0.0; CORNERS], 0);
                 for point in span.clone() {
                     let found = (0..count).map(|k| (start + k) % count).find_map(|cell| {
-                        let (cell, costs) = self.look(point, class, std::iter::once(cell)).best?;
+                        let (cell, costs) = self.bound_cells(point, class, std::iter::once(cell)).best?;
                         (greatest(&costs) <= cheap).then_some((cell, costs))
                     });
                     let (cell, costs) = found?;
@@ -172,22 +172,22 @@ impl<'a> Over<'a> {
     }
 
     /// Looks at all cells of the points missing; false for a class that is allowed nowhere in the box.
-    fn complete(&self, segment: usize, way: &mut Way, seen: &mut Seen) -> bool {
-        let count = self.bounded.table.headings(self.level);
+    fn complete(&self, segment: usize, way: &mut ClassBound, seen: &mut Inherited) -> bool {
+        let count = self.model.table.headings(self.level);
         for point in std::mem::take(&mut way.missing) {
-            let look = self.look(point, way.class, 0..count);
-            match look.best {
+            let bounds = self.bound_cells(point, way.class, 0..count);
+            match bounds.best {
                 Some((cell, costs)) => {
                     seen.cells[point * 4 + way.class.index()] = cell as u16;
                     way.sum = plus(&way.sum, &costs);
                 }
-                None if look.most == NOTHING => {
+                None if bounds.most == NOTHING => {
                     seen.out[segment][way.class.index()] = true;
                     return false;
                 }
                 None => {
                     way.sure = false;
-                    way.sum = plus(&way.sum, &look.most);
+                    way.sum = plus(&way.sum, &bounds.most);
                 }
             }
         }
@@ -196,12 +196,12 @@ impl<'a> Over<'a> {
 
     /// The sum of the scores over the box, at most; minus infinity where nothing is allowed. With the cells known from
     /// `before` only where that is enough to get below `ceiling`. m
-    pub fn above(&self, before: &Seen, ceiling: f64) -> (f64, Seen) {
+    pub fn upper_bound(&self, before: &Inherited, ceiling: f64) -> (f64, Inherited) {
         let mut seen = before.clone();
         seen.level = self.level;
-        let segments = 0..self.bounded.segments.len();
-        let mut all: Vec<Vec<Way>> = segments.map(|s| self.known_ways(s, before, &mut seen)).collect();
-        let sure = |ways: &[Way]| total(ways.iter().filter(|w| w.missing.is_empty()));
+        let segments = 0..self.model.segments.len();
+        let mut all: Vec<Vec<ClassBound>> = segments.map(|s| self.known_ways(s, before, &mut seen)).collect();
+        let sure = |ways: &[ClassBound]| total(ways.iter().filter(|w| w.missing.is_empty()));
         let totals = all.iter().fold([0.0; CORNERS], |sum, ways| plus(&sum, &sure(ways)));
         if greatest(&totals) <= ceiling {
             return (greatest(&totals), seen);
@@ -210,7 +210,7 @@ impl<'a> Over<'a> {
             for (way, segment) in all.iter_mut().enumerate().flat_map(|(s, ways)| ways.iter_mut().map(move |w| (w, s)))
             {
                 way.sum = [0.0; CORNERS];
-                way.missing = self.bounded.segments[segment].clone().collect();
+                way.missing = self.model.segments[segment].clone().collect();
             }
         }
         let mut totals = [0.0; CORNERS];
@@ -226,7 +226,7 @@ impl<'a> Over<'a> {
 }
 
 /// What was found looking at cells.
-struct Look {
+struct CellBounds {
     /// The best surely allowed cell with what it costs.
     best: Option<(usize, [f64; CORNERS])>,
     /// Where there is none: the greatest costs of all cells that may be allowed.
@@ -234,8 +234,8 @@ struct Look {
 }
 
 /// What a segment costs at most, by its ways: the best sure one, or else the greatest.
-fn total<'a>(ways: impl Iterator<Item = &'a Way> + Clone) -> [f64; CORNERS] {
-    let size = |way: &Way| way.sum.iter().sum::<f64>();
+fn total<'a>(ways: impl Iterator<Item = &'a ClassBound> + Clone) -> [f64; CORNERS] {
+    let size = |way: &ClassBound| way.sum.iter().sum::<f64>();
     match ways.clone().filter(|way| way.sure).min_by(|a, b| size(a).total_cmp(&size(b))) {
         Some(way) => way.sum,
         None => {

@@ -2,8 +2,8 @@
 //!
 //! With the tool axis along axis 1, a state depends on four things alone: the tool centre point's radius r and height z in
 //! the root frame, the heading of the spindle against the point's azimuth, and the posture class. What the arm does there is
-//! sampled once per robot and spindle, by the ordinary geometry (`sample`), and interpolated for every placement (`look`);
-//! the best way through the scores is found by the planner's rules, but for joint steps and turns (`worth`); `polish` climbs
+//! sampled once per robot and spindle, by the ordinary geometry (`sample`), and interpolated for every placement (`interpolate`);
+//! the best way through the scores is found by the planner's rules, but for joint steps and turns (`objective`); `coordinate_search` climbs
 //! on it. Joint 1 needs no table. With n the wall normal and f the force, both as (radial, tangential, up), and the in-plane
 //! compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
 //!
@@ -14,22 +14,22 @@
 //! ```
 //!
 //! A table is an aid to the search. What it finds is looked at again by the ordinary planner before it goes on, and
-//! [`Table::accuracy`] tells how far the two are apart.
+//! [`LookupTable::accuracy`] tells how far the two are apart.
 
 mod accuracy;
-mod look;
-pub mod polish;
+pub mod coordinate_search;
+mod interpolate;
+mod objective;
 mod sample;
 mod shape;
-mod worth;
 
 pub use accuracy::Accuracy;
+pub use objective::Workspace;
 pub use shape::{Axis, Shape};
-pub use worth::Workspace;
 
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
-use look::Station;
+use interpolate::WorkpiecePoint;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::{Compliance, turns::Range};
 
@@ -78,21 +78,21 @@ pub enum Unsuited {
 }
 
 /// Largest size of a table. Bytes
-pub const MOST_BYTES: u64 = 1 << 30;
+pub const MAX_BYTES: u64 = 1 << 30;
 
 /// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
 const UPRIGHT: f64 = 1e-9;
 
 /// What an arm with an upright tool does everywhere in a cell.
 #[derive(Debug, Clone)]
-pub struct Table<'a> {
+pub struct LookupTable<'a> {
     problem: &'a Problem,
     shape: Shape,
     /// Rows over the heading: height, radius, posture class, field.
     data: Vec<f32>,
     /// Whether a row (height, radius, posture class) has an allowed state.
     alive: Vec<bool>,
-    stations: Vec<Station>,
+    points: Vec<WorkpiecePoint>,
     root_from_base: Matrix3<f64>,
     /// +1 where a growing beta turns the spindle counter-clockwise about axis 1.
     sense: f64,
@@ -102,14 +102,14 @@ pub struct Table<'a> {
 
 /// A grid of beta to look along, with what the rate of beta allows between neighbouring points.
 #[derive(Debug, Clone)]
-pub struct Lane {
+pub struct BetaGrid {
     /// Number of grid values.
     pub(crate) count: usize,
     /// For each path point the largest change of the beta number from the one before.
     pub(crate) reaches: Vec<usize>,
 }
 
-impl Lane {
+impl BetaGrid {
     /// The grid and the steps of a planner.
     pub fn of(planner: &Planner<'_>) -> Self {
         Self::new(planner.problem(), planner.grid().beta_count)
@@ -123,7 +123,7 @@ impl Lane {
     }
 }
 
-impl<'a> Table<'a> {
+impl<'a> LookupTable<'a> {
     /// Whether a problem can be searched through a table, and through one of what shape.
     ///
     /// # Errors
@@ -145,7 +145,7 @@ impl<'a> Table<'a> {
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
         let shape = Shape::new(problem, !is_flat, !Range::of(&joints[0]).has_turns());
         let bytes = shape.bytes();
-        if bytes > MOST_BYTES { Err(Unsuited::TooLarge { bytes, most: MOST_BYTES }) } else { Ok(shape) }
+        if bytes > MAX_BYTES { Err(Unsuited::TooLarge { bytes, most: MAX_BYTES }) } else { Ok(shape) }
     }
 
     /// Samples the table of a problem.
@@ -164,7 +164,7 @@ impl<'a> Table<'a> {
             shape,
             data,
             alive,
-            stations: look::stations(problem),
+            points: interpolate::points(problem),
             root_from_base,
             sense,
             first_compliance: problem.robot.compliances_at(&[0.0; 6])[0],

@@ -20,12 +20,12 @@ pub(super) fn least(a: &mut [f64; CORNERS], b: &[f64; CORNERS]) {
 }
 
 /// Least values over a range of neighbours, around the circle.
-pub(super) struct Window {
+pub(super) struct SlidingMin {
     pub out: Vec<[f64; CORNERS]>,
     scratch: Vec<[f64; CORNERS]>,
 }
 
-impl Window {
+impl SlidingMin {
     pub fn new(count: usize) -> Self {
         Self { out: vec![NOTHING; count], scratch: vec![NOTHING; count] }
     }

@@ -2,14 +2,14 @@
 
 /// Which cells of heading are still of interest: for each point and class one bit a cell.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tube {
+pub(super) struct ActiveCells {
     /// Level of the table whose cells they are.
     pub level: usize,
     count: usize,
     words: Vec<u64>,
 }
 
-impl Tube {
+impl ActiveCells {
     /// All cells of the coarsest level, `count` in a turn, a multiple of 64.
     pub fn full(points: usize, count: usize) -> Self {
         Self { level: 0, count, words: vec![u64::MAX; points * 4 * (count / 64)] }

@@ -31,11 +31,11 @@ fn limited() -> Problem {
 
 /// What a table says of drawn states beside what the ordinary evaluator says: relative root mean square of the errors, largest
 /// error, and share of disputes.
-fn compared(table: &Table<'_>, count: usize, draws: u64) -> Accuracy {
+fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
     let problem = table.problem();
-    let grid = Redundancy { beta_count: count, ..problem.redundancy };
-    let lane = Lane::new(problem, count);
-    let mut workspace = table.workspace(&lane);
+    let redundancy = Redundancy { beta_count: count, ..problem.redundancy };
+    let grid = BetaGrid::new(problem, count);
+    let mut workspace = table.workspace(&grid);
     let mut random = ChaCha8Rng::seed_from_u64(99);
     let (mut states, mut disputed, mut squares, mut errors, mut largest) = (0, 0, 0.0, 0.0, 0.0_f64);
     for _ in 0..draws {
@@ -43,11 +43,11 @@ fn compared(table: &Table<'_>, count: usize, draws: u64) -> Accuracy {
         let pose = [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width());
         let point = random.random_range(0..problem.task.points().len());
         let k = random.random_range(0..count);
-        let all = explain(problem, &pose, point, grid.beta(k));
+        let all = explain(problem, &pose, point, redundancy.beta(k));
         for class in PostureClass::ALL {
             let mut scores = vec![f32::INFINITY; count];
-            if let Some(spot) = table.spot(&table.site(&pose), point)
-                && !table.look(&spot, class.index(), &lane, &mut workspace.rows, &mut scores)
+            if let Some(polar) = table.polar_point(&table.place(&pose), point)
+                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.rows, &mut scores)
             {
                 scores.fill(f32::INFINITY);
             }
@@ -84,7 +84,7 @@ fn errs_no_more_than_it_says() {
         ("limited", limited()),
         ("hanging", hanging()),
     ] {
-        let table = Table::new(&problem).unwrap();
+        let table = LookupTable::new(&problem).unwrap();
         let stated = table.accuracy();
         assert!(stated.states > 200 && stated.rms < 2e-4 && stated.disputed < 0.02, "{name}: {stated:?}");
         // The grid of the headings, a finer one, one that shares little with it.
@@ -100,8 +100,8 @@ fn errs_no_more_than_it_says() {
 
 #[test]
 fn every_broken_part_of_the_formula_is_seen() {
-    type Mutation = (&'static str, fn(&mut Table<'_>));
-    fn scale(table: &mut Table<'_>, wanted: usize, change: impl Fn(f32) -> f32) {
+    type Mutation = (&'static str, fn(&mut LookupTable<'_>));
+    fn scale(table: &mut LookupTable<'_>, wanted: usize, change: impl Fn(f32) -> f32) {
         let headings = table.shape.headings;
         let (block, range) = (table.shape.block(), wanted * headings..(wanted + 1) * headings);
         for row in table.data.chunks_mut(block) {
@@ -121,7 +121,7 @@ fn every_broken_part_of_the_formula_is_seen() {
         ("no limits", |table| scale(table, field::ROOM, |_| 1.0)),
     ];
     let problem = slanted();
-    let sound = Table::new(&problem).unwrap();
+    let sound = LookupTable::new(&problem).unwrap();
     let stated = sound.accuracy();
     let is_fine = |found: &Accuracy| found.rms < 4.0 * stated.rms + 2e-6 && found.disputed < 0.02;
     assert!(is_fine(&compared(&sound, 120, 300)));
@@ -149,15 +149,15 @@ fn worth_agrees_with_the_planner() {
     // The workpiece that hangs is where limits bind all over: there the table errs at their edges.
     for (problem, close_share, most_above) in [(five_segments(), 8, 0), (robust(), 8, 0), (hanging(), 6, 5)] {
         let planner = Planner::new(&problem);
-        let table = Table::new(&problem).unwrap();
-        let lane = Lane::of(&planner);
-        let (mut space, mut looking) = (planner.workspace(), table.workspace(&lane));
+        let table = LookupTable::new(&problem).unwrap();
+        let grid = BetaGrid::of(&planner);
+        let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
         let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
         for (k, pose) in drawn_poses(&problem, 40).iter().enumerate() {
             let planned = planner.worth(pose, Extremum::Smallest, None, &mut space);
-            let looked = table.worth(pose, &lane, None, &mut looking);
+            let looked = table.objective(pose, &grid, None, &mut looking);
             // A fresh workspace, with nothing kept from the placement before, says the same.
-            assert_eq!(table.worth(pose, &lane, None, &mut table.workspace(&lane)), looked);
+            assert_eq!(table.objective(pose, &grid, None, &mut table.workspace(&grid)), looked);
             let (Some(planned), Some(looked)) = (planned.mean(), looked.mean()) else {
                 disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
                 continue;
@@ -172,10 +172,10 @@ fn worth_agrees_with_the_planner() {
                 && let Ok(plans) = planner.plan(pose, Extremum::Smallest, None, &mut space)
             {
                 let mut scheme: Vec<_> = plans.iter().map(|plan| plan.posture).collect();
-                let held = table.worth(pose, &lane, Some(&scheme), &mut looking).mean().unwrap();
+                let held = table.objective(pose, &grid, Some(&scheme), &mut looking).mean().unwrap();
                 assert!((held / looked - 1.0).abs() < 1e-3);
                 scheme[2] = stead_model::robot::Posture::ALL[(usize::from(scheme[2].number()) + 3) % 8];
-                let other = table.worth(pose, &lane, Some(&scheme), &mut looking);
+                let other = table.objective(pose, &grid, Some(&scheme), &mut looking);
                 assert!(rank(Goal::Best, other, Worth::Feasible(held * (1.0 - 1e-6))).is_gt());
             }
         }
@@ -190,13 +190,13 @@ fn what_nothing_reaches_is_counted_as_the_planner_counts_it() {
     let mut problem = five_segments();
     problem.cell.position[1] = Interval { min: -3.4, max: -2.2 };
     let planner = Planner::new(&problem);
-    let table = Table::new(&problem).unwrap();
-    let lane = Lane::of(&planner);
-    let (mut space, mut looking) = (planner.workspace(), table.workspace(&lane));
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::of(&planner);
+    let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
     let (mut blocked, mut apart) = (0, 0);
     for pose in drawn_poses(&problem, 30) {
         let planned = planner.worth(&pose, Extremum::Smallest, None, &mut space);
-        let looked = table.worth(&pose, &lane, None, &mut looking);
+        let looked = table.objective(&pose, &grid, None, &mut looking);
         if let (Worth::Infeasible { points: a, .. }, Worth::Infeasible { points: b, .. }) = (planned, looked) {
             blocked += a;
             apart += a.abs_diff(b);
@@ -220,11 +220,11 @@ fn a_long_path_keeps_its_digits() {
     // Beta stays: between points this close the planner saves its steps up, which the table does not.
     problem.redundancy.max_beta_rate = 0.0;
     let planner = Planner::new(&problem);
-    let table = Table::new(&problem).unwrap();
-    let lane = Lane::of(&planner);
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::of(&planner);
     let pose = [0.0, -1.8, -0.4, 0.7];
     let planned = planner.worth(&pose, Extremum::Smallest, None, &mut planner.workspace()).mean().unwrap();
-    let looked = table.worth(&pose, &lane, None, &mut table.workspace(&lane)).mean().unwrap();
+    let looked = table.objective(&pose, &grid, None, &mut table.workspace(&grid)).mean().unwrap();
     assert!((looked / planned - 1.0).abs() < 2e-5, "{looked} {planned}");
 }
 
@@ -232,8 +232,8 @@ fn a_long_path_keeps_its_digits() {
 fn steps_of_beta_are_the_planners() {
     let problem = five_segments();
     for planner in [Planner::new(&problem), Planner::finer(&problem)] {
-        let lane = Lane::of(&planner);
-        for (point, reach) in lane.reaches.iter().enumerate() {
+        let grid = BetaGrid::of(&planner);
+        for (point, reach) in grid.reaches.iter().enumerate() {
             assert_eq!(*reach, planner.step(point, Extremum::Smallest).reach);
         }
     }
@@ -243,14 +243,14 @@ fn steps_of_beta_are_the_planners() {
 fn polishing_gets_better_inside_the_cell() {
     let mut problem = five_segments();
     problem.cell.yaw = Interval { min: 0.2, max: 2.4 };
-    let table = Table::new(&problem).unwrap();
-    let lane = Lane::new(&problem, 120);
-    let mut workspace = table.workspace(&lane);
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::new(&problem, 120);
+    let mut workspace = table.workspace(&grid);
     for (goal, start) in [(Goal::Best, [0.1, -1.8, -0.4, 1.0]), (Goal::Worst, [-0.1, -2.0, -0.4, 0.6])] {
-        let before = table.worth(&start, &lane, None, &mut workspace);
-        let (end, worth, looks) = table.polish(&start, goal, None, &lane, &mut workspace);
-        assert!(rank(goal, worth, before).is_lt() && looks > 20, "{goal:?} {before:?} {worth:?}");
-        assert_eq!(worth, table.worth(&end, &lane, None, &mut workspace));
+        let before = table.objective(&start, &grid, None, &mut workspace);
+        let (end, worth, evaluations) = table.coordinate_search(&start, goal, None, &grid, &mut workspace);
+        assert!(rank(goal, worth, before).is_lt() && evaluations > 20, "{goal:?} {before:?} {worth:?}");
+        assert_eq!(worth, table.objective(&end, &grid, None, &mut workspace));
         let [x, y, z, yaw] = end;
         assert!(problem.cell.contains(&Placement { x, y, z, yaw }), "{end:?}");
     }
@@ -262,7 +262,7 @@ fn the_same_table_for_any_number_of_threads() {
     let build = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let table = Table::new(&problem).unwrap();
+            let table = LookupTable::new(&problem).unwrap();
             (table.data.iter().map(|v| v.to_bits()).collect::<Vec<_>>(), table.accuracy())
         })
     };
@@ -272,7 +272,7 @@ fn the_same_table_for_any_number_of_threads() {
 
 #[test]
 fn what_a_table_cannot_hold_is_refused_with_the_reason() {
-    let refused = |problem: &Problem| Table::shape_for(problem).unwrap_err();
+    let refused = |problem: &Problem| LookupTable::shape_for(problem).unwrap_err();
     let mut tilted = five_segments();
     let (sine, cosine) = libm::sincos(0.01);
     let path = tilted.task.path();
@@ -299,7 +299,7 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     }
 
     let mut uncertain = with_uncertainty(five_segments(), 0.1);
-    assert!(Table::shape_for(&uncertain).is_ok());
+    assert!(LookupTable::shape_for(&uncertain).is_ok());
     uncertain.criterion.confidence = 2.0;
     assert_eq!(refused(&uncertain), Unsuited::Uncertain);
 
@@ -315,6 +315,6 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     huge.robot = Robot::new("crane", joints).unwrap();
     huge.cell.position = [Interval { min: -1e3, max: 1e3 }; 3];
     let Unsuited::TooLarge { bytes, most } = refused(&huge) else { panic!("a crane's table does not fit") };
-    assert!(bytes > most && most == MOST_BYTES);
+    assert!(bytes > most && most == MAX_BYTES);
     assert!(refused(&huge).to_string().contains(" GB, and at most 1.1 GB are allowed"), "{}", refused(&huge));
 }

@@ -13,7 +13,7 @@ pub struct State {
     pub bound: f64,
     /// Boxes still open.
     pub open: usize,
-    /// Boxes bounded so far.
+    /// Boxes model so far.
     pub nodes: usize,
 }
 
@@ -33,7 +33,7 @@ pub struct Bound {
     pub bound: f64,
     /// Whether the rate of beta was kept.
     pub with_rate: bool,
-    /// Boxes bounded.
+    /// Boxes model.
     pub nodes: usize,
     /// Why the search ended.
     pub end: End,
@@ -91,7 +91,7 @@ pub(super) struct Open<T> {
 }
 
 /// What a search is for.
-pub(super) struct Search {
+pub(super) struct BranchAndBound {
     /// From below, or from above.
     pub goal: Goal,
     /// The mean score that is compared with. m
@@ -133,7 +133,7 @@ impl<T> Ord for Queued<T> {
     }
 }
 
-impl Search {
+impl BranchAndBound {
     /// 1 where great bounds come first, -1 where small ones do.
     fn sign(&self) -> f64 {
         match self.goal {
@@ -150,7 +150,7 @@ impl Search {
 
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
     ///
-    /// `nodes` is the number of boxes bounded before; `parts` gives those of a box, `None` where it is not to be cut further.
+    /// `nodes` is the number of boxes model before; `parts` gives those of a box, `None` where it is not to be cut further.
     /// Where bounds are the same, the younger box comes first: what cannot be told apart is found by going down, not by cutting
     /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
     /// The result does not depend on the number of threads.

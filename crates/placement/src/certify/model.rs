@@ -1,10 +1,10 @@
-//! From a placement problem to what is bounded; or the reasons why it cannot be.
+//! From a placement problem to what is model; or the reasons why it cannot be.
 
 use super::arm::Arm;
-use super::bound::Bounded;
-use super::reduced::Reduced;
+use super::coarse_bounds::CoarseBounds;
+use super::compliance_table::{ComplianceTable, Extent, Steps};
+use super::lower_bound::Model;
 use super::region::{Point, Region};
-use super::table::{Extent, Steps, Table};
 use crate::problem::{Cell, Problem};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -56,7 +56,7 @@ impl fmt::Display for Unfit {
             Self::Conditioning(least) => write!(
                 f,
                 "constraints.min_inverse_condition must be at least {least:.3} for a certificate: nearer to a singularity \
-                 nothing can be bounded"
+                 nothing can be model"
             ),
             Self::TooLarge(bytes, allowed) => write!(
                 f,
@@ -108,26 +108,30 @@ pub fn certifiable(problem: &Problem) -> Result<(), Unfit> {
     if let Some(least) = Arm::least_condition(problem, place.radius.0) {
         return Err(Unfit::Conditioning(least));
     }
-    let bytes = Table::bytes(place, STEPS, LEVELS).saturating_add(Reduced::bytes(place, STEPS, &points_of(problem)));
+    let bytes = ComplianceTable::bytes(place, STEPS, LEVELS).saturating_add(CoarseBounds::bytes(
+        place,
+        STEPS,
+        &points_of(problem),
+    ));
     if bytes > MEMORY { Err(Unfit::TooLarge(bytes, MEMORY)) } else { Ok(()) }
 }
 
 /// Everything that bounds are made of, and the box of all placements.
-pub(super) fn prepared(problem: &Problem, compliances: &[f64; 6], with_rate: bool) -> (Bounded, Region) {
+pub(super) fn prepared(problem: &Problem, compliances: &[f64; 6], with_rate: bool) -> (Model, Region) {
     let extent = extent(problem);
     let arm = Arm::new(problem, compliances, extent.radius.0);
     let rate = |point: usize| if with_rate && point > 0 { problem.beta_step_limit(point) } else { f64::INFINITY };
     let points = points_of(problem);
-    let bounded = Bounded {
+    let model = Model {
         arm,
-        table: Table::new(extent, STEPS, LEVELS),
+        table: ComplianceTable::new(extent, STEPS, LEVELS),
         rates: (0..points.len()).map(rate).collect(),
         points,
         segments: problem.task.segments().to_vec(),
         first: compliances[0],
         yaws: Yaws::new(problem),
     };
-    (bounded, whole(problem))
+    (model, whole(problem))
 }
 
 /// Which way up the arm stands: +1, or -1 upside down.

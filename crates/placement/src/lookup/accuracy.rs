@@ -1,6 +1,6 @@
 //! How far a table is from the ordinary evaluator, measured at states drawn all over the cell.
 
-use super::{Lane, Table};
+use super::{BetaGrid, LookupTable};
 use crate::feasibility::explain;
 use crate::problem::Redundancy;
 use rand::{RngExt, SeedableRng};
@@ -36,7 +36,7 @@ struct Sums {
     largest: f64,
 }
 
-impl Table<'_> {
+impl LookupTable<'_> {
     /// Compares states drawn all over the cell with the ordinary evaluator. The draw is always the same.
     pub fn accuracy(&self) -> Accuracy {
         let sums: Vec<Sums> = (0..DRAWN).into_par_iter().map(|draw| self.compare(draw)).collect();
@@ -63,22 +63,23 @@ impl Table<'_> {
         let [x, y, z] = problem.cell.position;
         let pose = [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width());
         let point = random.random_range(0..problem.task.points().len());
-        let grid = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
-        let lane = Lane { count: grid.beta_count, reaches: Vec::new() };
-        let mut workspace = self.workspace(&lane);
-        let looks: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
-            let spot = self.spot(&self.site(&pose), point)?;
-            let mut scores = vec![f32::INFINITY; lane.count];
-            self.look(&spot, class, &lane, &mut workspace.rows, &mut scores).then_some(scores)
+        let redundancy = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
+        let grid = BetaGrid { count: redundancy.beta_count, reaches: Vec::new() };
+        let mut workspace = self.workspace(&grid);
+        let evaluations: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
+            let polar = self.polar_point(&self.place(&pose), point)?;
+            let mut scores = vec![f32::INFINITY; grid.count];
+            self.interpolate(&polar, class, &grid, &mut workspace.rows, &mut scores).then_some(scores)
         });
         let mut sums = Sums::default();
         for _ in 0..BETAS {
-            let k = random.random_range(0..lane.count);
-            let all = explain(problem, &pose, point, wrap(grid.beta(k)));
+            let k = random.random_range(0..grid.count);
+            let all = explain(problem, &pose, point, wrap(redundancy.beta(k)));
             for class in PostureClass::ALL {
                 let mut postures = class.postures().into_iter().map(|posture| &all[usize::from(posture.number()) - 1]);
                 let ordinary = postures.find(|e| e.is_allowed()).and_then(|e| e.state.as_ref()).map(|s| s.score());
-                let looked = looks[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
+                let looked =
+                    evaluations[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
                 sums.states += usize::from(ordinary.is_some() || looked.is_some());
                 match (ordinary, looked) {
                     (Some(ordinary), Some(looked)) => {

@@ -5,13 +5,13 @@
 //! a concave function, so its least value over the box is at a corner. Ways are taken from cell to cell where some beta of
 //! the one is within the rate of some beta of the other.
 
+use super::active_cells::ActiveCells;
 use super::arm::Arm;
-use super::cost::{CORNERS, Pointwise};
-use super::prepare::Yaws;
-use super::region::{Placed, Point, Region};
-use super::table::{Node, Table};
-use super::tube::Tube;
-use super::window::{NOTHING, Window, least, plus};
+use super::compliance_table::{ComplianceTable, Node};
+use super::cost::{CORNERS, PointCost};
+use super::model::Yaws;
+use super::region::{Point, PolarModel, Region};
+use super::sliding_min::{NOTHING, SlidingMin, least, plus};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use stead_model::robot::PostureClass;
@@ -19,11 +19,11 @@ use stead_model::robot::PostureClass;
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
 
-/// What is to be bounded, prepared.
+/// What is to be model, prepared.
 #[derive(Debug)]
-pub(super) struct Bounded {
+pub(super) struct Model {
     pub arm: Arm,
-    pub table: Table,
+    pub table: ComplianceTable,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
     /// Largest change of beta from the point before. rad; infinite without the rate
@@ -34,13 +34,13 @@ pub(super) struct Bounded {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Evaluated {
+pub(super) struct LowerBound {
     /// Least sum of the scores; infinite where nothing is feasible. m
     pub sum: f64,
-    pub tube: Tube,
+    pub active: ActiveCells,
 }
 
-impl Bounded {
+impl Model {
     /// The finest level whose nodes answer for every point of a box that is surely off axis 1; `None` for a box that is too
     /// large, or where there is no such point.
     pub fn level(&self, region: &Region) -> Option<usize> {
@@ -54,7 +54,7 @@ impl Bounded {
     /// Where a point is over a box; `None` where some of it may be nearer to axis 1 than tables reach, so that nothing is known.
     ///
     /// Tables hold every radius of the cell beyond that, and every height ([`super::prepare`]).
-    pub fn placed(&self, point: usize, region: &Region) -> Option<Placed> {
+    pub fn placed(&self, point: usize, region: &Region) -> Option<PolarModel> {
         let placed = self.points[point].over(region)?;
         // A point is never nearer to axis 1 than the workpiece origin less its distance from there.
         let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
@@ -63,25 +63,25 @@ impl Bounded {
     }
 
     /// Every point over a box, where something is known of it.
-    pub fn pointwise(&self, region: &Region) -> Vec<Option<Pointwise>> {
+    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost>> {
         let placed = (0..self.points.len()).map(|point| self.placed(point, region));
-        placed.zip(&self.points).map(|(placed, p)| Some(Pointwise::new(p, placed?, self.first))).collect()
+        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.first))).collect()
     }
 
-    /// Bounds a box from below, on the level of the tube; cells through which every way costs `ceiling` (m, sum) or more
-    /// leave the tube.
+    /// Bounds a box from below, on the level of the active; cells through which every way costs `ceiling` (m, sum) or more
+    /// leave the active.
     ///
     /// A point that tables do not answer for, whether the box is too large for the level, or may have it near axis 1, costs
     /// nothing and loses no cell, and beta may step anywhere from it and to it. What the box is worth is up to the others.
-    pub fn below(&self, region: &Region, tube: &Tube, ceiling: f64) -> Evaluated {
-        let mut tube = tube.clone();
-        let count = tube.count();
+    pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64) -> LowerBound {
+        let mut active = active.clone();
+        let count = active.count();
         let width = TAU / count as f64;
-        let points = self.pointwise(region);
+        let points = self.point_costs(region);
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<Ways> = Vec::new();
         let mut bests = Vec::new();
-        let mut window = Window::new(count);
+        let mut sliding = SlidingMin::new(count);
         for (segment, span) in self.segments.iter().enumerate() {
             let mut best = NOTHING;
             for class in PostureClass::ALL {
@@ -90,34 +90,34 @@ impl Bounded {
                 for (place, point) in span.clone().enumerate() {
                     if place > 0 {
                         let (low, high) = self.steps(region, &points, point, width);
-                        window.least(&ways.rows[place - 1].sums, -high, -low);
+                        sliding.least(&ways.rows[place - 1].sums, -high, -low);
                     }
                     let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums: vec![NOTHING; count] };
                     end = NOTHING;
                     let found = points[point].as_ref().and_then(|p| {
                         let placed = &p.placed;
-                        let answers = self.table.answers(tube.level, [placed.reach[0], placed.reach[1]]);
-                        let (at, off) = self.table.nearest(tube.level, placed.r, placed.z).filter(|_| answers)?;
+                        let answers = self.table.answers(active.level, [placed.reach[0], placed.reach[1]]);
+                        let (at, off) = self.table.nearest(active.level, placed.r, placed.z).filter(|_| answers)?;
                         Some((p, at, off))
                     });
-                    let cells: Vec<usize> = tube.cells(point, class.index()).collect();
+                    let cells: Vec<usize> = active.cells(point, class.index()).collect();
                     for cell in cells {
-                        if place > 0 && window.out[cell][0] == f64::INFINITY {
-                            tube.clear(point, class.index(), cell);
+                        if place > 0 && sliding.out[cell][0] == f64::INFINITY {
+                            active.clear(point, class.index(), cell);
                             continue;
                         }
                         let cost = match found {
                             None => [0.0; CORNERS],
-                            Some((p, at, off)) => match self.table.node(&self.arm, tube.level, at, cell, class) {
+                            Some((p, at, off)) => match self.table.node(&self.arm, active.level, at, cell, class) {
                                 Node::Empty => {
-                                    tube.clear(point, class.index(), cell);
+                                    active.clear(point, class.index(), cell);
                                     continue;
                                 }
                                 Node::Unknown => [0.0; CORNERS],
                                 Node::Known(known) => p.least(known, off, 0.5 * width, region),
                             },
                         };
-                        let sum = if place == 0 { cost } else { plus(&window.out[cell], &cost) };
+                        let sum = if place == 0 { cost } else { plus(&sliding.out[cell], &cost) };
                         row.sums[cell] = sum;
                         row.cells.push(cell);
                         row.costs.push(cost);
@@ -129,23 +129,23 @@ impl Bounded {
                     }
                 }
                 if end[0] == f64::INFINITY {
-                    span.clone().for_each(|point| tube.clear_all(point, class.index()));
+                    span.clone().for_each(|point| active.clear_all(point, class.index()));
                     continue;
                 }
                 least(&mut best, &end);
                 all.push(ways);
             }
             if best[0] == f64::INFINITY {
-                return Evaluated { sum: f64::INFINITY, tube };
+                return LowerBound { sum: f64::INFINITY, active };
             }
             totals = plus(&totals, &best);
             bests.push(best);
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
         if sum >= ceiling {
-            return Evaluated { sum, tube };
+            return LowerBound { sum, active };
         }
-        // From the ends back: what leads to no good leaves the tube.
+        // From the ends back: what leads to no good leaves the active.
         for ways in &all {
             let span = &self.segments[ways.segment];
             let others: [f64; CORNERS] = std::array::from_fn(|k| totals[k] - bests[ways.segment][k]);
@@ -155,35 +155,35 @@ impl Bounded {
                 let is_end = place + 1 == span.len();
                 if !is_end {
                     let (low, high) = self.steps(region, &points, point + 1, width);
-                    window.least(&after, low, high);
+                    sliding.least(&after, low, high);
                 }
                 after.fill(NOTHING);
                 for (cell, cost) in row.cells.iter().zip(&row.costs) {
-                    let onward = if is_end { [0.0; CORNERS] } else { window.out[*cell] };
+                    let onward = if is_end { [0.0; CORNERS] } else { sliding.out[*cell] };
                     let sum = &row.sums[*cell];
                     let through = (0..CORNERS).map(|k| sum[k] + onward[k] + others[k]).fold(f64::INFINITY, f64::min);
                     if through >= ceiling {
-                        tube.clear(point, ways.class, *cell);
+                        active.clear(point, ways.class, *cell);
                     } else {
                         after[*cell] = plus(&onward, cost);
                     }
                 }
             }
         }
-        Evaluated { sum, tube }
+        LowerBound { sum, active }
     }
 
     /// From which to which number of cells a way may step up, to `point` from the one before.
     ///
     /// Beta is the heading less the direction of the feed (or the other way round), both against the azimuth of the point.
-    pub fn steps(&self, region: &Region, points: &[Option<Pointwise>], point: usize, width: f64) -> (isize, isize) {
+    pub fn steps(&self, region: &Region, points: &[Option<PointCost>], point: usize, width: f64) -> (isize, isize) {
         let (Some(before), Some(here)) = (&points[point - 1], &points[point]) else { return ANYWHERE };
         let (before, here) = (&before.placed, &here.placed);
         let [a, _, g] = region.half;
         let unsure = (here.slope_chi[0] - before.slope_chi[0]).abs() * a
             + (here.slope_chi[1] - before.slope_chi[1]).abs() * g
-            + here.rest_chi
-            + before.rest_chi;
+            + here.remainder_chi
+            + before.remainder_chi;
         let turned = here.chi - before.chi;
         let turned = turned - TAU * (turned / TAU).round();
         let most = (self.rates[point] + unsure) / width + 1.0 + 1e-6;

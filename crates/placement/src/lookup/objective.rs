@@ -2,8 +2,8 @@
 //!
 //! The rules are those of [`crate::redundancy::band`], but for the steps and turns of the joints.
 
-use super::look::{Rows, Site, Spot};
-use super::{Lane, Table};
+use super::interpolate::{PlacedPath, PolarPoint, Rows};
+use super::{BetaGrid, LookupTable};
 use crate::redundancy::Worth;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
@@ -20,23 +20,29 @@ pub struct Workspace {
     favourites: Vec<usize>,
 }
 
-impl Table<'_> {
+impl LookupTable<'_> {
     /// Space for one thread to look along a grid of beta.
-    pub fn workspace(&self, lane: &Lane) -> Workspace {
-        let row = || vec![0.0; lane.count];
+    pub fn workspace(&self, grid: &BetaGrid) -> Workspace {
+        let row = || vec![0.0; grid.count];
         Workspace {
-            rows: Rows::new(self, lane),
+            rows: Rows::new(self, grid),
             scores: row(),
             costs: row(),
-            windows: std::array::from_fn(|_| vec![0.0; 2 * lane.count]),
+            windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
             favourites: vec![0; self.problem.task.segments().len()],
         }
     }
 
     /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best plan on a grid of beta, with the
     /// posture scheme found exactly or given (one posture per segment), to the accuracy of the table.
-    pub fn worth(&self, pose: &[f64; 4], lane: &Lane, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
-        let site = self.site(pose);
+    pub fn objective(
+        &self,
+        pose: &[f64; 4],
+        grid: &BetaGrid,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Worth {
+        let placed = self.place(pose);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
@@ -46,7 +52,7 @@ impl Table<'_> {
             // The class that won last time goes first: the others can then mostly be given up on the way.
             let first = workspace.favourites[index];
             for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
-                if let Some(cost) = self.through(&site, span.clone(), class, lane, best, workspace) {
+                if let Some(cost) = self.through(&placed, span.clone(), class, grid, best, workspace) {
                     best = cost;
                     workspace.favourites[index] = class;
                 }
@@ -57,12 +63,12 @@ impl Table<'_> {
             }
             let Workspace { rows, scores, .. } = workspace;
             let is_blocked = |point: &usize| {
-                let spot = self.spot(&site, *point);
+                let polar = self.polar_point(&placed, *point);
                 let mut classes = (0..4).filter(|class| asked(*class));
-                let mut is_allowed = |spot: &Spot, class: usize| {
-                    self.look(spot, class, lane, rows, scores) && scores.iter().any(|score| score.is_finite())
+                let mut is_allowed = |polar: &PolarPoint, class: usize| {
+                    self.interpolate(polar, class, grid, rows, scores) && scores.iter().any(|score| score.is_finite())
                 };
-                spot.is_none_or(|spot| !classes.any(|class| is_allowed(&spot, class)))
+                polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
             };
             let blocked = span.clone().filter(is_blocked).count();
             points += blocked;
@@ -73,17 +79,17 @@ impl Table<'_> {
         } else if segments > 0 {
             Worth::Infeasible { points, segments }
         } else {
-            Worth::Feasible(sum / self.stations.len() as f64)
+            Worth::Feasible(sum / self.points.len() as f64)
         }
     }
 
     /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`. m
     fn through(
         &self,
-        site: &Site,
+        placed: &PlacedPath,
         span: Span<usize>,
         class: usize,
-        lane: &Lane,
+        grid: &BetaGrid,
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
@@ -91,7 +97,7 @@ impl Table<'_> {
         // Costs are relative to this, so that long sums keep their digits.
         let mut base = 0.0;
         for (place, point) in span.enumerate() {
-            if !self.look(&self.spot(site, point)?, class, lane, rows, scores) {
+            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, rows, scores) {
                 return None;
             }
             if place == 0 {
@@ -99,7 +105,7 @@ impl Table<'_> {
                 if !costs.iter().any(|cost| cost.is_finite()) {
                     return None;
                 }
-            } else if !advance(costs, scores, lane.reaches[point], (bound - base) as f32, windows) {
+            } else if !advance(costs, scores, grid.reaches[point], (bound - base) as f32, windows) {
                 return None;
             }
             if place % RENEWAL == RENEWAL - 1 {

@@ -4,7 +4,7 @@
 //! level; then radii and fields together into one row over the heading, since a score is linear in the fields; then the heading.
 
 use super::shape::cubic;
-use super::{Lane, Table, sample::field};
+use super::{BetaGrid, LookupTable, sample::field};
 use crate::problem::{Problem, base_from_workpiece};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -12,7 +12,7 @@ use stead_model::robot::turns::Range;
 
 /// A path point as a look needs it, in the workpiece frame.
 #[derive(Debug, Clone)]
-pub(super) struct Station {
+pub(super) struct WorkpiecePoint {
     position: Vector3<f64>,
     /// Across the tool axis.
     feed: Vector3<f64>,
@@ -23,12 +23,12 @@ pub(super) struct Station {
 }
 
 /// The path points of a problem.
-pub(super) fn stations(problem: &Problem) -> Vec<Station> {
+pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
     let points = problem.task.points().iter().zip(problem.task.wrenches());
     points
         .map(|(point, wrench)| {
             let axes = point.workpiece_from_point();
-            Station {
+            WorkpiecePoint {
                 position: point.position,
                 feed: axes.column(0).into_owned(),
                 normal: axes.column(1).into_owned(),
@@ -40,13 +40,13 @@ pub(super) fn stations(problem: &Problem) -> Vec<Station> {
 }
 
 /// A placement, ready for its points.
-pub(super) struct Site {
+pub(super) struct PlacedPath {
     rotation: Matrix3<f64>,
     translation: Vector3<f64>,
 }
 
 /// A path point at a placement.
-pub(super) struct Spot {
+pub(super) struct PolarPoint {
     radius: (usize, [f32; 4]),
     height: f64,
     azimuth: f64,
@@ -82,7 +82,7 @@ enum Known {
 }
 
 impl Rows {
-    pub fn new(table: &Table<'_>, lane: &Lane) -> Self {
+    pub fn new(table: &LookupTable<'_>, grid: &BetaGrid) -> Self {
         let shape = &table.shape;
         let rows = shape.radius.count * 4;
         Self {
@@ -91,55 +91,62 @@ impl Rows {
             height: f64::NAN,
             rows: std::array::from_fn(|_| vec![0.0; shape.headings]),
             unrolled: vec![0.0; 2 * shape.headings + 4],
-            looked: std::array::from_fn(|_| vec![0.0; lane.count]),
+            looked: std::array::from_fn(|_| vec![0.0; grid.count]),
         }
     }
 }
 
-impl Table<'_> {
-    pub(super) fn site(&self, pose: &[f64; 4]) -> Site {
+impl LookupTable<'_> {
+    pub(super) fn place(&self, pose: &[f64; 4]) -> PlacedPath {
         let base_from_workpiece = base_from_workpiece(pose);
         let root = self.problem.robot.geometry().root_in_base;
-        Site {
+        PlacedPath {
             rotation: self.root_from_base * base_from_workpiece.rotation,
             translation: self.root_from_base * (base_from_workpiece.translation - root),
         }
     }
 
     /// Where a path point is at a placement; `None` beyond the table, where the arm does not get.
-    pub(super) fn spot(&self, site: &Site, point: usize) -> Option<Spot> {
-        let station = &self.stations[point];
-        let tip = site.rotation * station.position + site.translation;
+    pub(super) fn polar_point(&self, placed: &PlacedPath, point: usize) -> Option<PolarPoint> {
+        let known = &self.points[point];
+        let tip = placed.rotation * known.position + placed.translation;
         let radius = libm::hypot(tip.x, tip.y);
         let (cosine, sine) = if radius > 0.0 { (tip.x / radius, tip.y / radius) } else { (1.0, 0.0) };
-        let polar = |v: &Vector3<f64>| {
-            let v = site.rotation * v;
+        let components = |v: &Vector3<f64>| {
+            let v = placed.rotation * v;
             Vector3::new(v.x * cosine + v.y * sine, v.y * cosine - v.x * sine, v.z)
         };
-        let feed = polar(&station.feed);
-        Some(Spot {
+        let feed = components(&known.feed);
+        Some(PolarPoint {
             radius: self.shape.radius.stencil(radius)?,
             height: tip.z,
             azimuth: if self.shape.has_first_joint { libm::atan2(sine, cosine) } else { 0.0 },
             heading: self.sense * libm::atan2(feed.y, feed.x),
             first: radius * radius * self.first_compliance,
-            normal: polar(&station.normal),
-            force: polar(&station.force),
-            uncertainty: station.uncertainty,
+            normal: components(&known.normal),
+            force: components(&known.force),
+            uncertainty: known.uncertainty,
         })
     }
 
-    /// The scores (m; infinite where not allowed) of a spot in one posture class over a grid of beta. False when none is
+    /// The scores (m; infinite where not allowed) of a polar in one posture class over a grid of beta. False when none is
     /// allowed for certain; true says nothing.
-    pub(super) fn look(&self, spot: &Spot, class: usize, lane: &Lane, rows: &mut Rows, scores: &mut [f32]) -> bool {
-        if !self.blend(spot, class, rows) {
+    pub(super) fn interpolate(
+        &self,
+        polar: &PolarPoint,
+        class: usize,
+        grid: &BetaGrid,
+        rows: &mut Rows,
+        scores: &mut [f32],
+    ) -> bool {
+        if !self.blend(polar, class, rows) {
             return false;
         }
-        let robust = spot.uncertainty > 0.0;
+        let robust = polar.uncertainty > 0.0;
         let joint = self.shape.has_first_joint;
         for (k, wanted) in [true, true, robust, robust, robust, joint, joint].into_iter().enumerate() {
             if wanted {
-                self.along_beta(spot, lane, &rows.rows[k], &mut rows.unrolled, &mut rows.looked[k]);
+                self.along_beta(polar, grid, &rows.rows[k], &mut rows.unrolled, &mut rows.looked[k]);
             }
         }
         let count = scores.len();
@@ -148,7 +155,7 @@ impl Table<'_> {
             scores[k] = if room[k] >= 0.0 { part[k].abs() } else { f32::INFINITY };
         }
         if robust {
-            let uncertainty = spot.uncertainty as f32;
+            let uncertainty = polar.uncertainty as f32;
             for k in 0..count {
                 let squares = radial[k] * radial[k] + tangential[k] * tangential[k] + vertical[k] * vertical[k];
                 scores[k] += squares.sqrt() * uncertainty;
@@ -157,7 +164,7 @@ impl Table<'_> {
         if joint {
             let range = Range::of(&self.problem.robot.joints()[0]);
             for (k, score) in scores.iter_mut().enumerate().filter(|(_, score)| score.is_finite()) {
-                let angle = spot.azimuth + libm::atan2(f64::from(sine[k]), f64::from(cosine[k]));
+                let angle = polar.azimuth + libm::atan2(f64::from(sine[k]), f64::from(cosine[k]));
                 if range.nearest(angle).1 > 0.0 {
                     *score = f32::INFINITY;
                 }
@@ -170,16 +177,16 @@ impl Table<'_> {
         true
     }
 
-    /// The rows of a spot over the heading, from the rows of its four radii; false when all of them are dead.
-    fn blend(&self, spot: &Spot, class: usize, rows: &mut Rows) -> bool {
+    /// The rows of a polar over the heading, from the rows of its four radii; false when all of them are dead.
+    fn blend(&self, polar: &PolarPoint, class: usize, rows: &mut Rows) -> bool {
         let shape = &self.shape;
-        let Some(height) = shape.height.stencil(spot.height) else { return false };
-        if rows.height.to_bits() != spot.height.to_bits() {
+        let Some(height) = shape.height.stencil(polar.height) else { return false };
+        if rows.height.to_bits() != polar.height.to_bits() {
             rows.known.fill(Known::No);
-            rows.height = spot.height;
+            rows.height = polar.height;
         }
         let mut any = false;
-        for radius in spot.radius.0..spot.radius.0 + 4 {
+        for radius in polar.radius.0..polar.radius.0 + 4 {
             if rows.known[radius * 4 + class] == Known::No {
                 self.level(radius, class, height, rows);
             }
@@ -188,18 +195,18 @@ impl Table<'_> {
         if !any {
             return false;
         }
-        let (n, f) = (&spot.normal, &spot.force);
+        let (n, f) = (&polar.normal, &polar.force);
         let in_plane = [n.x * f.x + n.y * f.y, n.x * f.x - n.y * f.y, n.x * f.y + n.y * f.x];
-        self.combine(spot, class, rows, 0, spot.first * n.y * f.y, in_plane, [f.z * n.x, f.z * n.y]);
-        self.single(spot, class, rows, 1, field::ROOM);
-        if spot.uncertainty > 0.0 {
-            self.combine(spot, class, rows, 2, 0.0, [n.x, n.x, n.y], [0.0; 2]);
-            self.combine(spot, class, rows, 3, spot.first * n.y, [n.y, -n.y, n.x], [0.0; 2]);
-            self.combine(spot, class, rows, 4, 0.0, [0.0; 3], [n.x, n.y]);
+        self.combine(polar, class, rows, 0, polar.first * n.y * f.y, in_plane, [f.z * n.x, f.z * n.y]);
+        self.single(polar, class, rows, 1, field::ROOM);
+        if polar.uncertainty > 0.0 {
+            self.combine(polar, class, rows, 2, 0.0, [n.x, n.x, n.y], [0.0; 2]);
+            self.combine(polar, class, rows, 3, polar.first * n.y, [n.y, -n.y, n.x], [0.0; 2]);
+            self.combine(polar, class, rows, 4, 0.0, [0.0; 3], [n.x, n.y]);
         }
         if shape.has_first_joint {
-            self.single(spot, class, rows, 5, shape.first_joint());
-            self.single(spot, class, rows, 6, shape.first_joint() + 1);
+            self.single(polar, class, rows, 5, shape.first_joint());
+            self.single(polar, class, rows, 6, shape.first_joint() + 1);
         }
         true
     }
@@ -223,7 +230,7 @@ impl Table<'_> {
     #[expect(clippy::too_many_arguments, reason = "one step of the caller above, with all it has")]
     fn combine(
         &self,
-        spot: &Spot,
+        polar: &PolarPoint,
         class: usize,
         rows: &mut Rows,
         row: usize,
@@ -234,8 +241,8 @@ impl Table<'_> {
         let (block, headings) = (self.shape.block(), self.shape.headings);
         let out = &mut rows.rows[row][..headings];
         out.fill(constant as f32);
-        for (k, weight) in spot.radius.1.into_iter().enumerate() {
-            let values = &rows.slab[((spot.radius.0 + k) * 4 + class) * block..][..block];
+        for (k, weight) in polar.radius.1.into_iter().enumerate() {
+            let values = &rows.slab[((polar.radius.0 + k) * 4 + class) * block..][..block];
             let [a, b, c] = in_plane.map(|factor| factor as f32 * weight);
             let fields = &values[..3 * headings];
             let (m, fields) = fields.split_at(headings);
@@ -255,27 +262,27 @@ impl Table<'_> {
     }
 
     /// One field into a row.
-    fn single(&self, spot: &Spot, class: usize, rows: &mut Rows, row: usize, field: usize) {
+    fn single(&self, polar: &PolarPoint, class: usize, rows: &mut Rows, row: usize, field: usize) {
         let (block, headings) = (self.shape.block(), self.shape.headings);
         let out = &mut rows.rows[row][..headings];
         let taps = [0, 1, 2, 3]
-            .map(|k| &rows.slab[((spot.radius.0 + k) * 4 + class) * block + field * headings..][..headings]);
+            .map(|k| &rows.slab[((polar.radius.0 + k) * 4 + class) * block + field * headings..][..headings]);
         let [a, b, c, d] = taps;
-        let w = spot.radius.1;
+        let w = polar.radius.1;
         for k in 0..headings {
             out[k] = a[k] * w[0] + b[k] * w[1] + c[k] * w[2] + d[k] * w[3];
         }
     }
 
     /// A row over the heading, interpolated to a grid of beta.
-    fn along_beta(&self, spot: &Spot, lane: &Lane, row: &[f32], unrolled: &mut [f32], out: &mut [f32]) {
+    fn along_beta(&self, polar: &PolarPoint, grid: &BetaGrid, row: &[f32], unrolled: &mut [f32], out: &mut [f32]) {
         let headings = self.shape.headings;
-        let common = gcd(headings, lane.count);
+        let common = gcd(headings, grid.count);
         // Every `phases` values of beta the place between two headings is the same again, `stride` headings farther.
-        let (phases, stride) = (lane.count / common, headings / common);
-        let start = (spot.heading - PI).rem_euclid(TAU) / self.shape.heading_step();
+        let (phases, stride) = (grid.count / common, headings / common);
+        let start = (polar.heading - PI).rem_euclid(TAU) / self.shape.heading_step();
         for phase in 0..phases {
-            let place = start + (phase * headings) as f64 / lane.count as f64;
+            let place = start + (phase * headings) as f64 / grid.count as f64;
             let first = place as usize;
             let [a, b, c, d] = cubic(place - first as f64);
             // From the node before the place on, once around and three more.

@@ -3,7 +3,7 @@
 //! The directions are those in which an upright tool's problem has its variables: away from axis 1, up, and the yaw against
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
 
-use super::{Lane, Table, Workspace};
+use super::{BetaGrid, LookupTable, Workspace};
 use crate::genetic::rank;
 use crate::outcome::Goal;
 use crate::problem::Placement;
@@ -21,32 +21,32 @@ const SHRINK: f64 = 3.0;
 /// A step that brings something is multiplied by this.
 const GROWTH: f64 = 1.7;
 /// Placements looked at, at the most.
-const MOST_LOOKS: usize = 150;
+const MAX_EVALUATIONS: usize = 150;
 
-impl Table<'_> {
+impl LookupTable<'_> {
     /// The best placement (in the sense of the goal) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
     /// worth by the table, and the number of placements looked at; never worse than the start.
-    pub fn polish(
+    pub fn coordinate_search(
         &self,
         start: &[f64; 4],
         goal: Goal,
         scheme: Option<&[Posture]>,
-        lane: &Lane,
+        grid: &BetaGrid,
         workspace: &mut Workspace,
     ) -> ([f64; 4], Worth, usize) {
         let mut best = *start;
-        let mut worth = self.worth(start, lane, scheme, workspace);
-        let mut looks = 1;
+        let mut worth = self.objective(start, grid, scheme, workspace);
+        let mut evaluations = 1;
         let mut steps = FIRST;
-        while looks < MOST_LOOKS && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
+        while evaluations < MAX_EVALUATIONS && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
             for k in 0..3 {
                 let found = [1.0, -1.0].into_iter().any(|side| {
                     let pose = self.moved(&best, k, side * steps[k]);
                     if pose == best {
                         return false;
                     }
-                    looks += 1;
-                    let there = self.worth(&pose, lane, scheme, workspace);
+                    evaluations += 1;
+                    let there = self.objective(&pose, grid, scheme, workspace);
                     let better = rank(goal, there, worth) == Ordering::Less;
                     if better {
                         (best, worth) = (pose, there);
@@ -58,12 +58,12 @@ impl Table<'_> {
                 steps[k] = if found { steps[k] * GROWTH } else { steps[k] / SHRINK };
             }
         }
-        (best, worth, looks)
+        (best, worth, evaluations)
     }
 
     /// What an upright tool's problem knows of a pose: radius and height of the workpiece origin (m), and the yaw against its
     /// azimuth (rad).
-    pub fn reduced(&self, pose: &[f64; 4]) -> [f64; 3] {
+    pub fn cylindrical(&self, pose: &[f64; 4]) -> [f64; 3] {
         let root = self.problem.robot.geometry().root_in_base;
         let (x, y) = (pose[0] - root.x, pose[1] - root.y);
         [libm::hypot(x, y), pose[2], pose[3] - libm::atan2(y, x)]

@@ -1,16 +1,16 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
-use super::bound::Bounded;
-use super::minorant::{Affine, EMPTY, State, ZERO, below_all, collect, minorant};
+use super::compliance_table::{Extent, Steps};
+use super::lower_bound::Model;
+use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
 use super::region::{Point, Region};
-use super::table::{Extent, Steps};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
-/// Reduced tables, one for each kind of force, in ever coarser levels.
+/// CoarseBounds tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
-pub(super) struct Reduced {
+pub(super) struct CoarseBounds {
     pub levels: Vec<Level>,
     extent: Extent,
     steps: Steps,
@@ -32,12 +32,12 @@ const ROWS: usize = 64;
 /// Kinds of force counted: a task may have as many as points.
 const MOST_LOOKED_AT: usize = 1000;
 
-impl Reduced {
+impl CoarseBounds {
     /// `None` where `goes_on`, asked again and again, says no before they are made.
-    pub fn new(bounded: &Bounded, mut goes_on: impl FnMut() -> bool) -> Option<Self> {
-        let (extent, steps) = bounded.table.grid();
-        let kinds = kinds(&bounded.points);
-        let force_of = bounded.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
+    pub fn new(model: &Model, mut goes_on: impl FnMut() -> bool) -> Option<Self> {
+        let (extent, steps) = model.table.grid();
+        let kinds = kinds(&model.points);
+        let force_of = model.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
         let counts = counts(extent, steps);
         let mut entries = Vec::new();
         let numbers: Vec<usize> = (0..counts[0] * counts[1]).collect();
@@ -46,7 +46,7 @@ impl Reduced {
                 return None;
             }
             let rows: Vec<Vec<Affine>> =
-                some.par_iter().map(|row| row_of(bounded, &kinds, [row / counts[1], row % counts[1]], steps)).collect();
+                some.par_iter().map(|row| row_of(model, &kinds, [row / counts[1], row % counts[1]], steps)).collect();
             entries.extend(rows.into_iter().flatten());
         }
         let mut levels = vec![Level { counts, entries }];
@@ -69,15 +69,15 @@ impl Reduced {
 
     /// A lower bound of the sum over all points, the rate of beta dropped; infinite where nothing is feasible. `None`
     /// for a box too large for the tables. A point that may be near axis 1 costs nothing.
-    pub fn below(&self, bounded: &Bounded, region: &Region) -> Option<f64> {
+    pub fn lower_bound(&self, model: &Model, region: &Region) -> Option<f64> {
         let mut totals = [0.0; 8];
         let [a, b, g] = region.half;
         let heading = TAU / self.steps.headings as f64;
-        for span in &bounded.segments {
+        for span in &model.segments {
             let mut sums = [[0.0f64; 4]; 4];
             for point in span.clone() {
                 let Some(force) = self.force_of[point] else { continue };
-                let Some(p) = bounded.placed(point, region) else { continue };
+                let Some(p) = model.placed(point, region) else { continue };
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;
@@ -113,8 +113,8 @@ impl Reduced {
                     let s = e.slope.map(f64::from);
                     let sum = &mut sums[class];
                     sum[0] += f64::from(e.value) + s[0] * off[0] + s[1] * off[1] + s[2] * off[2]
-                        - s[0].abs() * p.rest_r
-                        - s[2].abs() * p.rest_chi;
+                        - s[0].abs() * p.remainder_r
+                        - s[2].abs() * p.remainder_chi;
                     sum[1] += s[0] * p.slope_r[0] + s[2] * p.slope_chi[0];
                     sum[2] += s[1];
                     sum[3] += s[0] * p.slope_r[1] + s[2] * p.slope_chi[1];
@@ -192,8 +192,8 @@ impl Level {
 }
 
 /// All directions of the feed, forces and classes at one radius and height.
-fn row_of(bounded: &Bounded, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) -> Vec<Affine> {
-    let (arm, table, first) = (&bounded.arm, &bounded.table, bounded.first);
+fn row_of(model: &Model, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) -> Vec<Affine> {
+    let (arm, table, first) = (&model.arm, &model.table, model.first);
     let node = table.place(0, at);
     let step = TAU / steps.headings as f64;
     let half = [steps.length, steps.length, step];
@@ -201,7 +201,7 @@ fn row_of(bounded: &Bounded, forces: &[[f64; 3]], at: [usize; 2], steps: Steps) 
     // sin and cos of the directions of the feed.
     let directions: Vec<(f64, f64)> = (0..steps.headings).map(|k| libm::sincos(step * k as f64)).collect();
     for class in PostureClass::ALL {
-        let mut found: Vec<State> = Vec::new();
+        let mut found: Vec<ModelledRegion> = Vec::new();
         let mut unknown = false;
         for cell in 0..steps.headings {
             unknown |= !collect(arm, table, 0, at, cell, node, class, &mut found);

@@ -4,10 +4,10 @@
 //! to half a step around any state, and within half a step in heading: headings are cut into cells once and for all. It says
 //! that none of its states is allowed, or gives an affine model of the compliances with what that leaves out.
 
-use super::arm::{Arm, Yield};
+use super::arm::{Arm, ArmCompliance};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
-use super::lanes::{Lanes, WIDTH};
+use super::interval_simd::{Lanes, WIDTH};
 use super::number::PAIR;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
@@ -21,16 +21,16 @@ pub(super) enum Node {
     /// Nothing is known of them.
     Unknown,
     /// How they yield.
-    Known(Known),
+    Known(AffineModel),
 }
 
 /// An affine model of the states around a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Known {
+pub(super) struct AffineModel {
     /// Value and gradient of m, d1, d2 and the two vertical compliances at the node.
     pub values: [[f32; 4]; FUNCTIONS],
     /// What these leave out: of m, of the length of (d1, d2), and of that of the vertical ones.
-    pub rest: [f32; 3],
+    pub remainder: [f32; 3],
     /// Whether all the states are sure to be allowed.
     pub sure: bool,
 }
@@ -53,14 +53,14 @@ pub(super) struct Steps {
     pub headings: usize,
 }
 
-/// Functions modelled: see [`Known::values`].
+/// Functions modelled: see [`AffineModel::values`].
 pub(super) const FUNCTIONS: usize = 5;
 
 /// Neighbouring headings made at once.
 const CHUNK: usize = 16;
 
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct ComplianceTable {
     extent: Extent,
     steps: Steps,
     levels: Vec<Level>,
@@ -72,7 +72,7 @@ struct Level {
     chunks: Vec<OnceLock<Box<[Node; CHUNK]>>>,
 }
 
-impl Table {
+impl ComplianceTable {
     pub fn new(extent: Extent, steps: Steps, levels: usize) -> Self {
         let levels = (0..levels)
             .map(|level| {
@@ -191,7 +191,12 @@ pub(super) fn nodes_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], c
 }
 
 /// The closed form over four regions (radius, height, heading).
-fn enclosed(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> Option<Yield<Enclosure>> {
+fn enclosed(
+    arm: &Arm,
+    place: &[[f64; 3]; WIDTH],
+    half: [f64; 3],
+    class: PostureClass,
+) -> Option<ArmCompliance<Enclosure>> {
     let ends = place.map(|p| sine_cosine_over(p[2] - half[2], p[2] + half[2]));
     let middle = place.map(|p| libm::sincos(p[2]));
     let (sine, cosine) = Enclosure::heading(
@@ -207,7 +212,7 @@ fn enclosed(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: Posture
     arm.evaluate(radius, height, sine, cosine, class)
 }
 
-fn judged(arm: &Arm, y: &Yield<Enclosure>, lane: usize, half: [f64; 3]) -> Node {
+fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Node {
     if y.lost.lane(lane) {
         return Node::Empty;
     }
@@ -227,19 +232,19 @@ fn judged(arm: &Arm, y: &Yield<Enclosure>, lane: usize, half: [f64; 3]) -> Node 
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     });
     let most = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut rest = [0.0; 3];
+    let mut remainder = [0.0; 3];
     for (p, (i, j)) in PAIR.iter().enumerate() {
         let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
-        rest[0] += most(0, p) * factor;
-        rest[1] += libm::hypot(most(1, p), most(2, p)) * factor;
-        rest[2] += libm::hypot(most(3, p), most(4, p)) * factor;
+        remainder[0] += most(0, p) * factor;
+        remainder[1] += libm::hypot(most(1, p), most(2, p)) * factor;
+        remainder[2] += libm::hypot(most(3, p), most(4, p)) * factor;
     }
     // And what is lost by writing the values with fewer digits.
     let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
     let lost = [size(0), size(1) + size(2), size(3) + size(4)];
-    let rest = [0, 1, 2].map(|f| rest[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
-    if rest.iter().all(|r| *r < 1e30) {
-        Node::Known(Known { values: values.map(|v| v.map(|x| x as f32)), rest, sure })
+    let remainder = [0, 1, 2].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    if remainder.iter().all(|r| *r < 1e30) {
+        Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure })
     } else {
         Node::Unknown
     }
