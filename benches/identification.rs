@@ -8,9 +8,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use stead_calibration::identification::plan::{Request, plan};
-use stead_calibration::identification::synthetic::{Cell, sheet};
-use stead_calibration::identification::{Problem, identify};
+use stead_calibration::identification::design::{Request, design_experiment};
+use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
+use stead_calibration::identification::{LoadCase, Problem, identify};
 use stead_format::{read_identification, read_plan};
 use stead_model::robot::Pose;
 
@@ -27,7 +27,7 @@ fn problem(configurations: usize) -> Problem {
     let problem = read_identification(&shipped("identify-example.toml")).expect("the shipped file is good").problem;
     let found = identify(&problem).expect("the shipped sheet tells everything");
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let shot = |_| {
+    let load_case = |_| {
         let theta = std::array::from_fn(|joint| {
             let joint = &problem.robot.joints()[joint];
             random.random_range(joint.min.max(-3.1)..joint.max.min(3.1))
@@ -35,10 +35,10 @@ fn problem(configurations: usize) -> Problem {
         let (sine, cosine) = libm::sincos(random.random_range(0.0..TAU));
         let z: f64 = random.random_range(-1.0..1.0);
         let radius = libm::sqrt(1.0 - z * z);
-        (theta, Vector3::new(radius * cosine, radius * sine, z) * 2700.0, Vector3::zeros())
+        LoadCase { theta, force: Vector3::new(radius * cosine, radius * sine, z) * 2700.0, moment: Vector3::zeros() }
     };
-    let shots: Vec<_> = (0..configurations).map(shot).collect();
-    let cell = Cell {
+    let load_cases: Vec<_> = (0..configurations).map(load_case).collect();
+    let cell = MeasuringCell {
         tracker_from_base: Pose::identity(),
         load_point: problem.load_point,
         points: found.setup.points.clone(),
@@ -46,7 +46,7 @@ fn problem(configurations: usize) -> Problem {
     };
     // As good as normal for this purpose.
     let noise = || (0..6).map(|_| random.random_range(-0.5..0.5)).sum::<f64>() * 1.414 * 3e-5;
-    let readings = sheet(&found.robot, &cell, &shots, noise, || 0.0);
+    let readings = sheet(&found.robot, &cell, &load_cases, noise, || 0.0);
     Problem { sheet: readings, angle_tolerance: 0.0, ..problem }
 }
 
@@ -66,5 +66,5 @@ fn request(candidates: usize) -> Request {
 #[divan::bench(args = [500, 2000, 8000], sample_count = 3, sample_size = 1)]
 fn plan_from_candidates(bencher: Bencher, candidates: usize) {
     let request = request(candidates);
-    bencher.bench_local(|| plan(black_box(&request), &|_, _| true).expect("there is a plan"));
+    bencher.bench_local(|| design_experiment(black_box(&request), &|_, _| true).expect("there is a plan"));
 }

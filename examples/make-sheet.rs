@@ -15,7 +15,8 @@ use std::env;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
-use stead_calibration::identification::synthetic::{Cell, Shot, sheet};
+use stead_calibration::identification::LoadCase;
+use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
 use stead_format::read_robot;
 use stead_model::robot::{Compensator, Compliance, Pose};
 
@@ -35,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha: (-20.0_f64).to_radians(), free_length: 0.6 };
     laws[1] = Compliance::Compensated { alone: 0.3e-6, compensator };
     let robot = read_robot(Path::new("configs/robots/kuka-kr270-2.toml"))?.with_compliances(laws)?;
-    let cell = Cell {
+    let cell = MeasuringCell {
         tracker_from_base: Pose {
             rotation: Matrix3::new(-0.6, -0.8, 0.0, 0.8, -0.6, 0.0, 0.0, 0.0, 1.0),
             translation: Vector3::new(3.2, -1.5, 0.4),
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     // What the sheet prints is what the arm did.
     let round = |value: f64, step: f64| (value / step).round() * step;
-    let shots: Vec<Shot> = (0..COUNT)
+    let load_cases: Vec<LoadCase> = (0..COUNT)
         .map(|index| {
             let theta = std::array::from_fn(|joint| {
                 let limits = &robot.joints()[joint];
@@ -59,13 +60,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             let (sine, cosine) = libm::sincos(random.random_range(0.0..TAU));
             let radius = libm::sqrt(1.0 - z * z);
             let force = Vector3::new(radius * cosine, radius * sine, z) * LOAD;
-            (theta, force.map(|value| round(value, 0.1)), Vector3::zeros())
+            LoadCase { theta, force: force.map(|value| round(value, 0.1)), moment: Vector3::zeros() }
         })
         .collect();
     let gauss = || {
         let u: f64 = random.random_range(f64::MIN_POSITIVE..1.0);
         libm::sqrt(-2.0 * libm::log(u)) * libm::cos(random.random_range(0.0..TAU)) * noise / 1e3
     };
-    print!("{}", sheet(&robot, &cell, &shots, gauss, || 0.0).csv(if noise > 0.0 { 3 } else { 12 }));
+    print!("{}", sheet(&robot, &cell, &load_cases, gauss, || 0.0).csv(if noise > 0.0 { 3 } else { 12 }));
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
-use stead_calibration::identification::Configuration;
-use stead_calibration::identification::synthetic::{Cell, sheet};
+use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
+use stead_calibration::identification::{Configuration, LoadCase};
 use stead_model::robot::{Compensator, Compliance, Pose};
 
 const CONFIG: &str = "configs/identify-example.toml";
@@ -288,15 +288,19 @@ fn hang_loads(bench: &Bench) {
     let mut laws = TRUTH.map(|urad| Compliance::from(urad / 1e6));
     laws[1] = Compliance::Compensated { alone: 0.3e-6, compensator };
     let robot = run.problem.robot.with_compliances(laws).unwrap();
-    let cell = Cell {
+    let cell = MeasuringCell {
         tracker_from_base: Pose::identity(),
         load_point: run.problem.load_point,
         points: [[0.12, 0.0, 0.25], [-0.06, 0.11, 0.2], [-0.06, -0.11, 0.3]].map(Vector3::from).to_vec(),
         is_full_pose: false,
     };
-    let shot = |c: &Configuration| (c.theta, Vector3::new(0.0, 0.0, -2700.0), Vector3::zeros());
-    let shots: Vec<_> = run.problem.sheet.configurations.iter().map(shot).collect();
-    bench.write(SHEET, &sheet(&robot, &cell, &shots, || 0.0, || 0.0).csv(9));
+    let load_case = |c: &Configuration| LoadCase {
+        theta: c.theta,
+        force: Vector3::new(0.0, 0.0, -2700.0),
+        moment: Vector3::zeros(),
+    };
+    let load_cases: Vec<_> = run.problem.sheet.configurations.iter().map(load_case).collect();
+    bench.write(SHEET, &sheet(&robot, &cell, &load_cases, || 0.0, || 0.0).csv(9));
 }
 
 #[test]

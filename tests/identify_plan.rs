@@ -4,7 +4,8 @@ use crate::common::{Bench, Ended};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::path::Path;
-use stead_calibration::identification::synthetic::{Cell, Shot, sheet};
+use stead_calibration::identification::LoadCase;
+use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
 use stead_model::robot::{Compensator, Compliance, Pose};
 
 const CONFIG: &str = "configs/identify-plan-example.toml";
@@ -93,7 +94,7 @@ fn fill(bench: &Bench) {
     let mut laws = [0.54, 0.3, 0.42, 2.79, 3.48, 2.074].map(|urad| Compliance::from(urad / 1e6));
     laws[1] = Compliance::Compensated { alone: 0.3e-6, compensator };
     let robot = stead_format::read_robot(&bench.path("configs/robots/kuka-kr270-2.toml")).unwrap();
-    let cell = Cell {
+    let cell = MeasuringCell {
         tracker_from_base: Pose {
             rotation: Matrix3::new(-0.6, -0.8, 0.0, 0.8, -0.6, 0.0, 0.0, 0.0, 1.0),
             translation: Vector3::new(3.2, -1.5, 0.4),
@@ -108,7 +109,7 @@ fn fill(bench: &Bench) {
         is_full_pose: false,
     };
     let text = bench.read(SHEET);
-    let shots: Vec<Shot> = text
+    let load_cases: Vec<LoadCase> = text
         .lines()
         .skip(1)
         .step_by(3)
@@ -116,7 +117,7 @@ fn fill(bench: &Bench) {
             let fields: Vec<&str> = line.split(',').collect();
             let value = |k: usize| fields[k].parse::<f64>().unwrap();
             let theta = std::array::from_fn(|joint| value(1 + joint).to_radians());
-            (theta, Vector3::new(value(7), value(8), value(9)), Vector3::zeros())
+            LoadCase { theta, force: Vector3::new(value(7), value(8), value(9)), moment: Vector3::zeros() }
         })
         .collect();
     // Noise of standard deviation 0.03 mm: sums of twelve uniform numbers, less six.
@@ -126,7 +127,7 @@ fn fill(bench: &Bench) {
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let noise = || ((0..12).map(|_| uniform()).sum::<f64>() - 6.0) * 3e-5;
-    let filled = sheet(&robot.with_compliances(laws).unwrap(), &cell, &shots, noise, || 0.0).csv(4);
+    let filled = sheet(&robot.with_compliances(laws).unwrap(), &cell, &load_cases, noise, || 0.0).csv(4);
     let given = |text: &str| {
         let given = |line: &str| line.split(',').take(14).map(str::to_owned).collect::<Vec<_>>();
         text.lines().map(given).collect::<Vec<_>>()

@@ -9,7 +9,9 @@ use super::text::aligned;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use stead_calibration::compensation::{Compensated, Figures, Model, NotCompensated, Outcome, reduction};
+use stead_calibration::compensation::{
+    CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, reduction,
+};
 use stead_format::CompensateRun;
 
 /// Places and deflections, from m to mm, to a tenth of the finest tolerance that is of use.
@@ -28,7 +30,7 @@ const PER_CENT: Unit = Unit { factor: 100.0, decimals: 6 };
 pub fn write_compensation(
     folder: &Folder,
     run: &CompensateRun,
-    outcome: &Outcome,
+    outcome: &CompensatedPath,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
         ("corrected-path.csv", corrected_path(outcome)?),
@@ -77,11 +79,11 @@ const CORRECTED_PATH: [&str; 29] = [
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn corrected_path(outcome: &Outcome) -> Result<Vec<u8>, ReportError> {
+pub fn corrected_path(outcome: &CompensatedPath) -> Result<Vec<u8>, ReportError> {
     table("the table of the corrected path", &CORRECTED_PATH, outcome.points.iter().enumerate().map(row))
 }
 
-fn row((index, point): (usize, &Compensated)) -> Vec<String> {
+fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
     // The tool's z axis points out of the spindle.
     let axis: Vector3<f64> = -point.command.rotation.column(2);
     let mut row = vec![index.to_string(), point.segment.to_string()];
@@ -99,7 +101,7 @@ fn row((index, point): (usize, &Compensated)) -> Vec<String> {
 }
 
 /// What `stead compensate --json` prints, and the content of `summary.json`.
-pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
+pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Value {
     let settings = &run.job.settings;
     let placement = &run.placement;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
@@ -111,7 +113,7 @@ pub fn compensation_json(run: &CompensateRun, outcome: &Outcome) -> Value {
         "model": model(settings.model),
         "alpha": settings.alpha,
         "tolerance_mm": settings.tolerance * 1e3,
-        "max_iterations": settings.most_iterations,
+        "max_iterations": settings.max_iterations,
         "placement": {
             "x_mm": Unit::PLACE_MM.number(placement.x),
             "y_mm": Unit::PLACE_MM.number(placement.y),
@@ -143,26 +145,26 @@ pub fn not_compensated_json(failure: &NotCompensated) -> Value {
     json!({ "points": failure.of, "failed": failed })
 }
 
-fn figures(figures: &Figures) -> Value {
+fn figures(figures: &MeanAndMax) -> Value {
     json!({ "mean_mm": PLACE_MM.number(figures.mean), "max_mm": PLACE_MM.number(figures.max) })
 }
 
-fn percent(pair: [Figures; 2]) -> Value {
+fn percent(pair: [MeanAndMax; 2]) -> Value {
     reduction(pair).map_or(Value::Null, |share| json!(PER_CENT.number(share)))
 }
 
-fn model(model: Model) -> &'static str {
+fn model(model: DeflectionModel) -> &'static str {
     match model {
-        Model::Equilibrium => "equilibrium",
-        Model::Linear => "linear",
+        DeflectionModel::Equilibrium => "equilibrium",
+        DeflectionModel::Linear => "linear",
     }
 }
 
 /// The table for people.
-pub fn compensation_text(run: &CompensateRun, outcome: &Outcome) -> String {
+pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> String {
     let model = match run.job.settings.model {
-        Model::Equilibrium => "the static equilibrium",
-        Model::Linear => "the linear displacement",
+        DeflectionModel::Equilibrium => "the static equilibrium",
+        DeflectionModel::Linear => "the linear displacement",
     };
     let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
     let played = if run.has_reality {

@@ -6,7 +6,7 @@ use super::arguments::{IdentifyCommand, IdentifyFitOptions};
 use super::{Failure, out_folder, say};
 use stead_calibration::identification::law::LawError;
 use stead_calibration::identification::model::{Layout, Parameter};
-use stead_calibration::identification::normal::Unseen;
+use stead_calibration::identification::normal_equations::Unidentifiable;
 use stead_calibration::identification::setup::SetupError;
 use stead_calibration::identification::{IdentifyError, identify};
 use stead_format::input::InputError;
@@ -70,14 +70,14 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
         IdentifyError::NoiseUnknown { .. } => {
             bad(error.to_string()).at_line(first).allowed("more readings, or noise_mm in the config").into()
         }
-        IdentifyError::Unseen { unseen, layout, outliers } if !outliers.is_empty() => {
+        IdentifyError::Unidentifiable { unidentifiable, layout, outliers } if !outliers.is_empty() => {
             let lines: Vec<String> = outliers.iter().map(usize::to_string).collect();
-            bad(format!("without the outliers of lines {}, {}", lines.join(", "), unseen_words(&unseen, &layout)))
+            bad(format!("without the outliers of lines {}, {}", lines.join(", "), unidentifiable_words(&unidentifiable, &layout)))
                 .at_line(outliers[0])
                 .allowed("readings that agree with each other, and more of them for every compliance")
                 .into()
         }
-        IdentifyError::Unseen { unseen, layout, .. } => bad(unseen_words(&unseen, &layout))
+        IdentifyError::Unidentifiable { unidentifiable, layout, .. } => bad(unidentifiable_words(&unidentifiable, &layout))
             .at_line(first)
             .allowed("loads that turn every joint, each in its own way; or fit.reduce = true to keep what is not seen")
             .into(),
@@ -86,7 +86,7 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
             .in_field("force_x_n")
             .allowed("the wrench that acts on the robot, in its base frame, and the place under it as loaded_*_mm")
             .into(),
-        IdentifyError::Law(LawError::TooFewAngles { joint, .. } | LawError::Unseen { joint }) => bad(error.to_string())
+        IdentifyError::Law(LawError::TooFewAngles { joint, .. } | LawError::Unidentifiable { joint }) => bad(error.to_string())
             .at_line(first)
             .in_field(format!("theta{joint}_deg"))
             .allowed("three or more distinct angles, wide apart")
@@ -98,15 +98,15 @@ fn failure(run: &IdentifyRun, error: IdentifyError) -> Failure {
 }
 
 /// Every parameter or combination that is not seen, by name.
-fn unseen_words(unseen: &[Unseen], layout: &Layout) -> String {
+fn unidentifiable_words(unidentifiable: &[Unidentifiable], layout: &Layout) -> String {
     let name = |parameter: &Parameter| compliance_name(layout.joint(*parameter), layout.angle(*parameter));
-    let words = |unseen: &Unseen| {
-        let names: Vec<String> = unseen.parameters.iter().map(name).collect();
+    let words = |unidentifiable: &Unidentifiable| {
+        let names: Vec<String> = unidentifiable.parameters.iter().map(name).collect();
         match &names[..] {
             [alone] => format!("{alone} turns under no load"),
             several => format!("{} cannot be told apart", several.join(", ")),
         }
     };
-    let all: Vec<String> = unseen.iter().map(words).collect();
+    let all: Vec<String> = unidentifiable.iter().map(words).collect();
     format!("the readings do not see every compliance: {}", all.join("; "))
 }

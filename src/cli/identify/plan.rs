@@ -4,7 +4,7 @@ use super::super::arguments::IdentifyPlanOptions;
 use super::super::progress::Steps;
 use super::super::{Failure, on_threads, out_folder, say};
 use std::path::Path;
-use stead_calibration::identification::plan::{PlanError, plan};
+use stead_calibration::identification::design::{DesignError, design_experiment};
 use stead_format::input::InputError;
 use stead_format::{PlanRun, read_plan};
 use stead_report::identification::plan::{SHEET, is_form, plan_json, plan_text, write_plan};
@@ -15,7 +15,7 @@ pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     keep_readings(&out.folder.path().join(SHEET))?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     let steps = Steps::start("choosing");
-    let result = on_threads(options.threads, || plan(&run.request, &|done, of| steps.show(done, of)));
+    let result = on_threads(options.threads, || design_experiment(&run.request, &|done, of| steps.show(done, of)));
     steps.finish();
     let (planned, _) = result.inspect_err(|_| out.give_up())?;
     let planned = planned.map_err(|error| {
@@ -41,7 +41,7 @@ fn keep_readings(sheet: &Path) -> Result<(), Failure> {
 }
 
 /// What is wrong with the numbers asked for is bad input; what nothing was found for is not.
-fn failure(run: &PlanRun, error: PlanError) -> Failure {
+fn failure(run: &PlanRun, error: DesignError) -> Failure {
     let size = run.request.configurations.to_string();
     let few = |allowed: &str| {
         InputError::new(&run.file, error.to_string())
@@ -52,14 +52,15 @@ fn failure(run: &PlanRun, error: PlanError) -> Failure {
             .into()
     };
     match error {
-        PlanError::TooFew { .. } => {
+        DesignError::TooFew { .. } => {
             few("at least as many components as compliances: more configurations or reference points")
         }
-        PlanError::Setup(_) => few("more configurations or reference points, with the flange turned every way"),
-        PlanError::Law(_) => few("3 or more, and as many levels_deg"),
-        PlanError::NothingTold(_) => few("more configurations"),
-        PlanError::TooFewCandidates { .. } | PlanError::NoTest | PlanError::NothingSeen | PlanError::Stopped => {
-            Failure::Job(format!("{}:{}: plan: {error}", run.file.display(), run.table_line))
-        }
+        DesignError::Setup(_) => few("more configurations or reference points, with the flange turned every way"),
+        DesignError::Law(_) => few("3 or more, and as many levels_deg"),
+        DesignError::NothingTold(_) => few("more configurations"),
+        DesignError::TooFewCandidates { .. }
+        | DesignError::NoTest
+        | DesignError::NothingSeen
+        | DesignError::Stopped => Failure::Job(format!("{}:{}: plan: {error}", run.file.display(), run.table_line)),
     }
 }

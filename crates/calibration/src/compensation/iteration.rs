@@ -1,6 +1,6 @@
 //! One point: the iteration of eq. 27, and the playing of its result.
 
-use super::{Compensated, Compensation, Deflection, Model, Reason, Settings, Station};
+use super::{CompensatedPoint, CompensationProblem, Deflection, DeflectionModel, PathPoint, PointError, Settings};
 use std::f64::consts::TAU;
 use stead_model::robot::{Frames, Pose, Robot, angles::ANGLE_ROUNDING};
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
@@ -15,38 +15,38 @@ struct Command {
 }
 
 /// Corrects one point and plays it, without and with the correction.
-pub(super) fn compensated(job: &Compensation, station: &Station) -> Result<Compensated, Reason> {
-    let command = corrected(job, station)?;
-    let target = &station.base_from_tool;
-    let deflection = |joints: &[f64; 6]| -> Result<Deflection, Reason> {
-        let rest = rest(job, &job.reality, Model::Equilibrium, station, joints)
-            .map_err(|NoEquilibrium { share }| Reason::RealityGivesWay { share })?;
+pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> Result<CompensatedPoint, PointError> {
+    let command = corrected(job, point)?;
+    let target = &point.base_from_tool;
+    let deflection = |joints: &[f64; 6]| -> Result<Deflection, PointError> {
+        let rest = rest(job, &job.reality, DeflectionModel::Equilibrium, point, joints)
+            .map_err(|NoEquilibrium { share }| PointError::RealityUnstable { share })?;
         let Displacement { linear, angular } = from_to(target, &rest);
-        Ok(Deflection { linear, angular, normal: linear.dot(&station.normal) })
+        Ok(Deflection { linear, angular, normal: linear.dot(&point.normal) })
     };
-    Ok(Compensated {
-        segment: station.segment,
+    Ok(CompensatedPoint {
+        segment: point.segment,
         target: *target,
         command: command.base_from_tool,
         correction: from_to(target, &command.base_from_tool),
         joints: command.joints,
-        before: deflection(&joints(job, station, target)?)?,
+        before: deflection(&joints(job, point, target)?)?,
         after: deflection(&command.joints)?,
         iterations: command.iterations,
     })
 }
 
 /// The command at which the loaded tool of the model rests at the target.
-fn corrected(job: &Compensation, station: &Station) -> Result<Command, Reason> {
-    let Settings { alpha, tolerance, characteristic_length, most_iterations, model } = job.settings;
-    let target = &station.base_from_tool;
+fn corrected(job: &CompensationProblem, point: &PathPoint) -> Result<Command, PointError> {
+    let Settings { alpha, tolerance, characteristic_length, max_iterations, model } = job.settings;
+    let target = &point.base_from_tool;
     let mut command = *target;
     let mut last = f64::INFINITY;
     let mut iterations = 0;
     loop {
-        let joints = joints(job, station, &command)?;
-        let rest = rest(job, &job.robot, model, station, &joints)
-            .map_err(|NoEquilibrium { share }| Reason::GivesWay { share })?;
+        let joints = joints(job, point, &command)?;
+        let rest = rest(job, &job.robot, model, point, &joints)
+            .map_err(|NoEquilibrium { share }| PointError::Unstable { share })?;
         let error = from_to(&rest, target);
         let size = error.linear.norm().max(error.angular.norm() * characteristic_length);
         if size <= tolerance {
@@ -54,10 +54,10 @@ fn corrected(job: &Compensation, station: &Station) -> Result<Command, Reason> {
             return Ok(Command { base_from_tool: command, joints, iterations });
         }
         if size.is_nan() || size >= last {
-            return Err(Reason::Grows { iterations, from: last, to: size });
+            return Err(PointError::Diverged { iterations, from: last, to: size });
         }
-        if iterations == most_iterations {
-            return Err(Reason::NotSettled { iterations, error: size });
+        if iterations == max_iterations {
+            return Err(PointError::NotConverged { iterations, error: size });
         }
         command = Pose {
             rotation: rotation_from_vector(&(error.angular * alpha)) * command.rotation,
@@ -69,29 +69,29 @@ fn corrected(job: &Compensation, station: &Station) -> Result<Command, Reason> {
 }
 
 /// The joint angles that bring the unloaded tool to a pose, in the posture and the turns of the plan. rad
-fn joints(job: &Compensation, station: &Station, base_from_tool: &Pose<f64>) -> Result<[f64; 6], Reason> {
+fn joints(job: &CompensationProblem, point: &PathPoint, base_from_tool: &Pose<f64>) -> Result<[f64; 6], PointError> {
     let base_from_flange = base_from_tool.then(&job.spindle.flange_from_tool.inverse());
-    let wrapped = job.robot.inverse(&base_from_flange, station.posture).map_err(Reason::Reach)?;
-    let near = |j: usize| wrapped[j] + TAU * ((station.joints[j] - wrapped[j]) / TAU).round();
+    let wrapped = job.robot.inverse(&base_from_flange, point.posture).map_err(PointError::Reach)?;
+    let near = |j: usize| wrapped[j] + TAU * ((point.joints[j] - wrapped[j]) / TAU).round();
     Ok(std::array::from_fn(near))
 }
 
 /// Where the tool of an arm comes to rest.
 fn rest(
-    job: &Compensation,
+    job: &CompensationProblem,
     robot: &Robot,
-    model: Model,
-    station: &Station,
+    model: DeflectionModel,
+    point: &PathPoint,
     joints: &[f64; 6],
 ) -> Result<Pose<f64>, NoEquilibrium> {
-    let Station { force, moment, .. } = *station;
+    let PathPoint { force, moment, .. } = *point;
     let flange_from_tool = &job.spindle.flange_from_tool;
     match model {
-        Model::Equilibrium => {
+        DeflectionModel::Equilibrium => {
             let load = Load { point: flange_from_tool.translation, force, moment };
             Ok(robot.forward(&equilibrium(robot, joints, &load)?).then(flange_from_tool))
         }
-        Model::Linear => {
+        DeflectionModel::Linear => {
             let frames = Frames::new(robot, joints);
             let tool = frames.base_from_flange.then(flange_from_tool);
             let compliances = robot.compliances_at(joints);
@@ -112,11 +112,11 @@ fn from_to(from: &Pose<f64>, to: &Pose<f64>) -> Displacement<f64> {
     }
 }
 
-fn within_limits(robot: &Robot, joints: &[f64; 6]) -> Result<(), Reason> {
+fn within_limits(robot: &Robot, joints: &[f64; 6]) -> Result<(), PointError> {
     for (j, (joint, angle)) in robot.joints().iter().zip(joints).enumerate() {
         let by = (joint.min - angle).max(angle - joint.max);
         if by > ANGLE_ROUNDING {
-            return Err(Reason::JointLimit { joint: j + 1, by });
+            return Err(PointError::JointLimit { joint: j + 1, by });
         }
     }
     Ok(())

@@ -21,7 +21,7 @@ mod outcome;
 #[cfg(test)]
 mod tests;
 
-pub use outcome::{Compensated, Deflection, Figures, NotCompensated, Outcome, Reason, reduction};
+pub use outcome::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, NotCompensated, PointError, reduction};
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ use stead_model::robot::{Pose, Posture, Robot, Spindle};
 
 /// Everything that a compensation depends on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Compensation {
+pub struct CompensationProblem {
     /// The arm as the corrections know it.
     pub robot: Robot,
     /// The arm that the corrected commands are played on, of the same geometry ([`other_geometry`]).
@@ -37,14 +37,14 @@ pub struct Compensation {
     /// The spindle as mounted.
     pub spindle: Spindle,
     /// The points of the plan, in order.
-    pub stations: Vec<Station>,
+    pub points: Vec<PathPoint>,
     /// How the corrections are found.
     pub settings: Settings,
 }
 
 /// One point of a plan: where the tool is to be under which wrench.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
+pub struct PathPoint {
     /// Number of its segment, from 1.
     pub segment: usize,
     /// The target t_0: the tool frame (7, at the tool centre point) in the base frame.
@@ -63,7 +63,7 @@ pub struct Station {
 
 /// What the corrections take for the deflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
+pub enum DeflectionModel {
     /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
     Equilibrium,
     /// The displacement linear in the load ([`stead_model::stiffness::displacement`]), as in the score of a placement.
@@ -81,15 +81,21 @@ pub struct Settings {
     /// The length by which an error of orientation (rad) is compared with the tolerance. m
     pub characteristic_length: f64,
     /// Iterations at the most.
-    pub most_iterations: usize,
+    pub max_iterations: usize,
     /// What f of eq. 26 is.
-    pub model: Model,
+    pub model: DeflectionModel,
 }
 
 impl Default for Settings {
     /// Undamped, to 1e-6 mm, with the exact equilibrium; rotations are weighed by 1 m.
     fn default() -> Self {
-        Self { alpha: 1.0, tolerance: 1e-9, characteristic_length: 1.0, most_iterations: 50, model: Model::Equilibrium }
+        Self {
+            alpha: 1.0,
+            tolerance: 1e-9,
+            characteristic_length: 1.0,
+            max_iterations: 50,
+            model: DeflectionModel::Equilibrium,
+        }
     }
 }
 
@@ -97,9 +103,9 @@ impl Default for Settings {
 ///
 /// # Errors
 /// [`NotCompensated`] with the points that cannot be corrected and the reason for each.
-pub fn compensate(job: &Compensation) -> Result<Outcome, NotCompensated> {
-    let points: Vec<Result<Compensated, Reason>> =
-        job.stations.par_iter().map(|station| iteration::compensated(job, station)).collect();
+pub fn compensate(job: &CompensationProblem) -> Result<CompensatedPath, NotCompensated> {
+    let points: Vec<Result<CompensatedPoint, PointError>> =
+        job.points.par_iter().map(|point| iteration::compensated(job, point)).collect();
     let (mut done, mut failed) = (Vec::with_capacity(points.len()), Vec::new());
     for (point, result) in points.into_iter().enumerate() {
         match result {
@@ -108,9 +114,9 @@ pub fn compensate(job: &Compensation) -> Result<Outcome, NotCompensated> {
         }
     }
     if failed.is_empty() {
-        Ok(Outcome { points: done })
+        Ok(CompensatedPath { points: done })
     } else {
-        Err(NotCompensated { failed, of: job.stations.len() })
+        Err(NotCompensated { failed, of: job.points.len() })
     }
 }
 

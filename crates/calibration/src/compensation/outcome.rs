@@ -18,7 +18,7 @@ pub struct Deflection {
 
 /// One corrected point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compensated {
+pub struct CompensatedPoint {
     /// Number of its segment, from 1.
     pub segment: usize,
     /// Where the tool is to be: the tool frame in the base frame.
@@ -39,34 +39,34 @@ pub struct Compensated {
 
 /// A corrected path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct CompensatedPath {
     /// The points, in order; at least one.
-    pub points: Vec<Compensated>,
+    pub points: Vec<CompensatedPoint>,
 }
 
 /// Mean and largest value over the points of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figures {
+pub struct MeanAndMax {
     /// Mean. m
     pub mean: f64,
     /// Largest value. m
     pub max: f64,
 }
 
-impl Outcome {
+impl CompensatedPath {
     /// Figures of a magnitude over the points.
-    pub fn figures(&self, value: impl Fn(&Compensated) -> f64) -> Figures {
+    pub fn figures(&self, value: impl Fn(&CompensatedPoint) -> f64) -> MeanAndMax {
         let values = || self.points.iter().map(&value);
-        Figures { mean: values().sum::<f64>() / self.points.len() as f64, max: values().fold(0.0, f64::max) }
+        MeanAndMax { mean: values().sum::<f64>() / self.points.len() as f64, max: values().fold(0.0, f64::max) }
     }
 
     /// Deflections before and after.
-    pub fn deflections(&self) -> [Figures; 2] {
+    pub fn deflections(&self) -> [MeanAndMax; 2] {
         [self.figures(|point| point.before.linear.norm()), self.figures(|point| point.after.linear.norm())]
     }
 
     /// Magnitudes of their parts normal to the feed, before and after.
-    pub fn normal_parts(&self) -> [Figures; 2] {
+    pub fn normal_parts(&self) -> [MeanAndMax; 2] {
         [self.figures(|point| point.before.normal.abs()), self.figures(|point| point.after.normal.abs())]
     }
 
@@ -77,13 +77,13 @@ impl Outcome {
 }
 
 /// The share by which the mean became smaller; none where there was nothing to reduce.
-pub fn reduction([before, after]: [Figures; 2]) -> Option<f64> {
+pub fn reduction([before, after]: [MeanAndMax; 2]) -> Option<f64> {
     (before.mean > 0.0).then(|| 1.0 - after.mean / before.mean)
 }
 
 /// Why a point cannot be corrected.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Reason {
+pub enum PointError {
     /// The correction leads out of reach.
     #[error("the correction leads out of reach: {0}")]
     Reach(Unreachable),
@@ -97,13 +97,13 @@ pub enum Reason {
     },
     /// The arm of the model has no equilibrium under the load.
     #[error("the arm gives way: it has no stable equilibrium beyond {share:.3} of the load")]
-    GivesWay {
+    Unstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
     /// The arm that stands for reality has none.
     #[error("the arm of reality gives way: it has no stable equilibrium beyond {share:.3} of the load")]
-    RealityGivesWay {
+    RealityUnstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
@@ -113,7 +113,7 @@ pub enum Reason {
         from * 1e3,
         to * 1e3
     )]
-    Grows {
+    Diverged {
         /// Which iteration, from 1.
         iterations: usize,
         /// The error before it. m
@@ -123,7 +123,7 @@ pub enum Reason {
     },
     /// All iterations were used up.
     #[error("after {iterations} iterations the error is still {:.3e} mm; more iterations, or an alpha nearer to 1, may help", error * 1e3)]
-    NotSettled {
+    NotConverged {
         /// How many.
         iterations: usize,
         /// The error left. m
@@ -131,7 +131,7 @@ pub enum Reason {
     },
 }
 
-impl Reason {
+impl PointError {
     /// Whether two reasons are the same but for numbers.
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
@@ -145,7 +145,7 @@ impl Reason {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NotCompensated {
     /// The points that cannot, from 0 and ascending, each with the reason; at least one.
-    pub failed: Vec<(usize, Reason)>,
+    pub failed: Vec<(usize, PointError)>,
     /// Number of all points.
     pub of: usize,
 }

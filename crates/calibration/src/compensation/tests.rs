@@ -7,9 +7,9 @@ use stead_model::stiffness::equilibrium::{Load, displaced, equilibrium};
 use stead_model::stiffness::rotation::rotation_vector;
 
 /// The station at which an arm stands with joint angles `theta`, under a wrench.
-fn station(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> Station {
+fn path_point(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> PathPoint {
     let [fx, fy, fz, mx, my, mz] = wrench;
-    Station {
+    PathPoint {
         segment: 1,
         base_from_tool: robot.forward(theta).then(&spindle().flange_from_tool),
         posture: Posture::of(robot, theta),
@@ -20,12 +20,12 @@ fn station(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> Station {
     }
 }
 
-fn job(robot: &Robot, reality: &Robot, stations: Vec<Station>) -> Compensation {
-    Compensation {
+fn job(robot: &Robot, reality: &Robot, points: Vec<PathPoint>) -> CompensationProblem {
+    CompensationProblem {
         robot: robot.clone(),
         reality: reality.clone(),
         spindle: spindle(),
-        stations,
+        points,
         settings: Settings::default(),
     }
 }
@@ -55,14 +55,14 @@ proptest! {
     ) {
         let robot = &odd_arms()[arm];
         prop_assume!(is_regular(robot, &theta));
-        let station = station(robot, &theta, wrench);
-        let done = compensate(&job(robot, robot, vec![station])).unwrap();
+        let path_point = path_point(robot, &theta, wrench);
+        let done = compensate(&job(robot, robot, vec![path_point])).unwrap();
         let point = &done.points[0];
         // An oracle that knows nothing of the iteration: the equilibrium of the commanded joint angles.
-        let load = Load { point: spindle().flange_from_tool.translation, force: station.force, moment: station.moment };
+        let load = Load { point: spindle().flange_from_tool.translation, force: path_point.force, moment: path_point.moment };
         let rest = robot.forward(&equilibrium(robot, &point.joints, &load).unwrap()).then(&spindle().flange_from_tool);
-        prop_assert!((rest.translation - station.base_from_tool.translation).norm() <= 1e-9);
-        let turn = rotation_vector(&(rest.rotation * station.base_from_tool.rotation.transpose()));
+        prop_assert!((rest.translation - path_point.base_from_tool.translation).norm() <= 1e-9);
+        let turn = rotation_vector(&(rest.rotation * path_point.base_from_tool.rotation.transpose()));
         prop_assert!(turn.norm() <= 1e-9, "{}", turn);
         prop_assert!(point.after.linear.norm() <= 1e-9 && point.iterations >= 1);
         // The joint angles are those of the command, near those of the plan.
@@ -70,7 +70,7 @@ proptest! {
         prop_assert!((commanded.translation - point.command.translation).norm() < 1e-11);
         prop_assert!((commanded.rotation - point.command.rotation).norm() < 1e-11);
         prop_assert!(point.joints.iter().zip(theta).all(|(a, b)| (a - b).abs() < 0.3));
-        prop_assert_eq!(Posture::of(robot, &point.joints), station.posture);
+        prop_assert_eq!(Posture::of(robot, &point.joints), path_point.posture);
     }
 
     #[test]
@@ -79,22 +79,22 @@ proptest! {
     ) {
         let robot = &odd_arms()[arm];
         prop_assume!(is_regular(robot, &theta));
-        let station = station(robot, &theta, wrench);
-        let point = compensate(&job(robot, robot, vec![station])).unwrap().points[0];
-        let load = Load { point: spindle().flange_from_tool.translation, force: station.force, moment: station.moment };
+        let path_point = path_point(robot, &theta, wrench);
+        let point = compensate(&job(robot, robot, vec![path_point])).unwrap().points[0];
+        let load = Load { point: spindle().flange_from_tool.translation, force: path_point.force, moment: path_point.moment };
         let truth = displaced(robot, &theta, &load).unwrap();
         prop_assert!((point.before.linear - truth.linear).norm() < 1e-9);
         prop_assert!((point.before.angular - truth.angular).norm() < 1e-9);
-        prop_assert_eq!(point.before.normal, point.before.linear.dot(&station.normal));
+        prop_assert_eq!(point.before.normal, point.before.linear.dot(&path_point.normal));
     }
 }
 
 /// Error left after a number of iterations, with a share of the load. m
-fn left(robot: &Robot, model: Model, iterations: usize, share: f64) -> f64 {
-    let mut job = job(robot, robot, vec![station(robot, &MIDDLE, CUT.map(|w| w * share))]);
-    job.settings = Settings { tolerance: 1e-18, most_iterations: iterations, model, ..job.settings };
+fn left(robot: &Robot, model: DeflectionModel, iterations: usize, share: f64) -> f64 {
+    let mut job = job(robot, robot, vec![path_point(robot, &MIDDLE, CUT.map(|w| w * share))]);
+    job.settings = Settings { tolerance: 1e-18, max_iterations: iterations, model, ..job.settings };
     match compensate(&job).unwrap_err().failed[0].1 {
-        Reason::NotSettled { error, .. } => error,
+        PointError::NotConverged { error, .. } => error,
         reason => panic!("{reason}"),
     }
 }
@@ -103,7 +103,7 @@ fn left(robot: &Robot, model: Model, iterations: usize, share: f64) -> f64 {
 fn each_iteration_gains_one_order_in_the_load() {
     // A soft arm, so that the errors after three iterations are far above rounding.
     let robot = softer(&kr270(), 10.0);
-    for model in [Model::Equilibrium, Model::Linear] {
+    for model in [DeflectionModel::Equilibrium, DeflectionModel::Linear] {
         for iterations in 0..3_u8 {
             let ratio = left(&robot, model, iterations.into(), 1.0) / left(&robot, model, iterations.into(), 0.5);
             let expected = f64::from(2_u8 << iterations);
@@ -115,7 +115,7 @@ fn each_iteration_gains_one_order_in_the_load() {
 #[test]
 fn damping_leaves_its_share() {
     let robot = kr270();
-    let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)]);
+    let mut job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)]);
     job.settings.alpha = 0.5;
     let damped = compensate(&job).unwrap();
     // Half of the error each time: from about 1 mm to 1e-6 mm in 20 iterations.
@@ -130,9 +130,9 @@ fn damping_leaves_its_share() {
 #[test]
 fn what_the_model_does_not_know_remains() {
     let robot = kr270();
-    let stations = vec![station(&robot, &MIDDLE, CUT), station(&robot, &[-0.4, 1.2, -1.7, 0.1, 0.8, -0.3], CUT)];
+    let points = vec![path_point(&robot, &MIDDLE, CUT), path_point(&robot, &[-0.4, 1.2, -1.7, 0.1, 0.8, -0.3], CUT)];
     for known in [0.8, 0.5, 1.0 / 1.1] {
-        let done = compensate(&job(&robot, &softer(&robot, 1.0 / known), stations.clone())).unwrap();
+        let done = compensate(&job(&robot, &softer(&robot, 1.0 / known), points.clone())).unwrap();
         let found = reduction(done.deflections()).unwrap();
         assert!((found - known).abs() < 0.002, "{found} {known}");
         for point in &done.points {
@@ -147,8 +147,8 @@ fn what_the_model_does_not_know_remains() {
 fn the_linear_model_leaves_what_is_of_second_order() {
     let robot = kr270();
     let after = |share: f64| {
-        let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT.map(|w| w * share))]);
-        job.settings.model = Model::Linear;
+        let mut job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT.map(|w| w * share))]);
+        job.settings.model = DeflectionModel::Linear;
         let point = compensate(&job).unwrap().points[0];
         (point.after.linear.norm(), point.before.linear.norm())
     };
@@ -160,14 +160,14 @@ fn the_linear_model_leaves_what_is_of_second_order() {
 #[test]
 fn without_a_load_nothing_is_to_do() {
     let robot = kr270();
-    let done = compensate(&job(&robot, &robot, vec![station(&robot, &MIDDLE, [0.0; 6])])).unwrap();
+    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, [0.0; 6])])).unwrap();
     assert_eq!(done.iterations(), 0);
     assert_eq!(done.points[0].command, done.points[0].target);
     // What is left is rounding of the kinematics, not a deflection.
     assert!(done.deflections().iter().all(|figures| figures.max < 1e-14));
 }
 
-fn reason(job: &Compensation) -> Reason {
+fn reason(job: &CompensationProblem) -> PointError {
     let failed = compensate(job).unwrap_err();
     assert_eq!((failed.failed.len(), failed.of), (1, 1));
     failed.failed[0].1
@@ -176,29 +176,31 @@ fn reason(job: &Compensation) -> Reason {
 #[test]
 fn an_arm_that_gives_way_has_no_result() {
     let robot = kr270();
-    let heavy = job(&robot, &robot, vec![station(&robot, &MIDDLE, TWIST.map(|w| w * 1e3))]);
-    assert!(matches!(reason(&heavy), Reason::GivesWay { share } if share < 1.0));
+    let heavy = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, TWIST.map(|w| w * 1e3))]);
+    assert!(matches!(reason(&heavy), PointError::Unstable { share } if share < 1.0));
     // The model holds and corrects, and reality does not.
-    let only_there = job(&robot, &softer(&robot, 1e3), vec![station(&robot, &MIDDLE, TWIST)]);
-    assert!(matches!(reason(&only_there), Reason::RealityGivesWay { share } if share < 1.0));
+    let only_there = job(&robot, &softer(&robot, 1e3), vec![path_point(&robot, &MIDDLE, TWIST)]);
+    assert!(matches!(reason(&only_there), PointError::RealityUnstable { share } if share < 1.0));
 }
 
 #[test]
 fn a_diverging_iteration_is_no_result() {
     let robot = kr270();
-    let mut job = job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)]);
+    let mut job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)]);
     // Beyond 2 each iteration overshoots by more than it started with.
     job.settings.alpha = 2.5;
-    assert!(matches!(reason(&job), Reason::Grows { iterations: 1, from, to } if to > 1.4 * from && to < 1.6 * from));
+    assert!(
+        matches!(reason(&job), PointError::Diverged { iterations: 1, from, to } if to > 1.4 * from && to < 1.6 * from)
+    );
     job.settings.alpha = 2.0;
-    assert!(matches!(reason(&job), Reason::Grows { .. } | Reason::NotSettled { .. }), "{}", reason(&job));
-    job.settings = Settings { alpha: 0.1, most_iterations: 20, ..Settings::default() };
-    assert!(matches!(reason(&job), Reason::NotSettled { iterations: 20, error } if error > 1e-9));
+    assert!(matches!(reason(&job), PointError::Diverged { .. } | PointError::NotConverged { .. }), "{}", reason(&job));
+    job.settings = Settings { alpha: 0.1, max_iterations: 20, ..Settings::default() };
+    assert!(matches!(reason(&job), PointError::NotConverged { iterations: 20, error } if error > 1e-9));
     // So soft that the linear deflection is a turn of the arm: its direction changes faster than it is corrected.
     let soft = softer(&robot, 300.0);
-    let mut job = self::job(&soft, &soft, vec![station(&soft, &MIDDLE, CUT)]);
-    job.settings.model = Model::Linear;
-    assert!(matches!(reason(&job), Reason::Grows { .. } | Reason::Reach(_)), "{}", reason(&job));
+    let mut job = self::job(&soft, &soft, vec![path_point(&soft, &MIDDLE, CUT)]);
+    job.settings.model = DeflectionModel::Linear;
+    assert!(matches!(reason(&job), PointError::Diverged { .. } | PointError::Reach(_)), "{}", reason(&job));
 }
 
 #[test]
@@ -206,7 +208,7 @@ fn limits_and_reach_hold_for_the_corrected_command() {
     let robot = kr270();
     let mut joints = robot.joints().clone();
     // Just wide enough for the plan; the correction turns joint 1 against its deflection.
-    let done = compensate(&job(&robot, &robot, vec![station(&robot, &MIDDLE, CUT)])).unwrap();
+    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)])).unwrap();
     let step = done.points[0].joints[0] - MIDDLE[0];
     assert!(step.abs() > 1e-5);
     if step > 0.0 {
@@ -215,7 +217,8 @@ fn limits_and_reach_hold_for_the_corrected_command() {
         joints[0].min = MIDDLE[0] + 0.25 * step;
     }
     let narrow = Robot::new("narrow", joints).unwrap();
-    let Reason::JointLimit { joint: 1, by } = reason(&job(&narrow, &narrow, vec![station(&narrow, &MIDDLE, CUT)]))
+    let PointError::JointLimit { joint: 1, by } =
+        reason(&job(&narrow, &narrow, vec![path_point(&narrow, &MIDDLE, CUT)]))
     else {
         panic!("joint 1 is within its limits");
     };
@@ -223,18 +226,18 @@ fn limits_and_reach_hold_for_the_corrected_command() {
 
     // Stretched but for a tenth of a millimetre, and pulled back by the load: the command would have to be farther out.
     let stretched = [0.3, 0.5, -robot.geometry().forearm_angle - 0.01, 0.4, 1.1, 0.5];
-    let there = station(&robot, &stretched, [-900.0, -300.0, -300.0, 0.0, 0.0, 0.0]);
+    let there = path_point(&robot, &stretched, [-900.0, -300.0, -300.0, 0.0, 0.0, 0.0]);
     let soft = softer(&robot, 5.0);
-    assert!(matches!(reason(&job(&soft, &soft, vec![there])), Reason::Reach(_)));
+    assert!(matches!(reason(&job(&soft, &soft, vec![there])), PointError::Reach(_)));
 }
 
 #[test]
 fn failures_are_told_in_runs_of_points() {
     let robot = kr270();
-    let good = station(&robot, &MIDDLE, CUT);
-    let heavy = station(&robot, &MIDDLE, TWIST.map(|w| w * 1e3));
-    let stations = vec![heavy, good, heavy, heavy, heavy, good];
-    let message = compensate(&job(&robot, &robot, stations)).unwrap_err().to_string();
+    let good = path_point(&robot, &MIDDLE, CUT);
+    let heavy = path_point(&robot, &MIDDLE, TWIST.map(|w| w * 1e3));
+    let points = vec![heavy, good, heavy, heavy, heavy, good];
+    let message = compensate(&job(&robot, &robot, points)).unwrap_err().to_string();
     let lines: Vec<&str> = message.lines().collect();
     assert_eq!(lines[0], "4 of 6 points cannot be compensated:");
     assert!(lines[1].starts_with("  point 0: the arm gives way"), "{message}");

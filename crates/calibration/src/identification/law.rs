@@ -6,7 +6,7 @@
 //! Gauss-Newton on the compliances themselves, together with those of the other joints, gives the least sum of squares over
 //! all readings: the errors are normal in the compliances, not in their inverses.
 
-use super::normal::{Normal, Solution};
+use super::normal_equations::{NormalEquations, Solution};
 use super::spring::{Geometry, scaled_inverse, spring_start};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 
@@ -67,7 +67,7 @@ pub enum LawError {
     },
     /// The angles are too much alike.
     #[error("the distinct angles of joint {joint} do not tell its own stiffness from its compensator's")]
-    Unseen {
+    Unidentifiable {
         /// Number of the joint, from 1.
         joint: usize,
     },
@@ -90,54 +90,60 @@ pub enum LawError {
 
 const STEPS: usize = 60;
 
-/// Fits the arm's numbers to the sums of the readings. `joints` says which joints are free, `seen` is the estimate with one
+/// Fits the arm's numbers to the sums of the readings. `joints` says which joints are free, `by_angle` is the estimate with one
 /// compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors
 /// [`LawError`] where the law is a spring that the angles do not tell.
-pub fn fit(normal: &Normal, joints: [bool; 6], seen: &Solution, angles: &[f64], law: Law) -> Result<ArmFit, LawError> {
+pub fn fit(
+    normal: &NormalEquations,
+    joints: [bool; 6],
+    by_angle: &Solution,
+    angles: &[f64],
+    law: Law,
+) -> Result<ArmFit, LawError> {
     let fit = Fit::new(normal, joints, angles, law);
     let number = normal.varying.map_or(0, |joint| joint + 1);
-    let unseen = LawError::Unseen { joint: number };
+    let unidentifiable = LawError::Unidentifiable { joint: number };
     let start = match (normal.varying, law) {
         (None, _) => vec![],
-        (Some(_), Law::Constant) => vec![seen.groups.first().copied().unwrap_or_default()],
+        (Some(_), Law::Constant) => vec![by_angle.groups.first().copied().unwrap_or_default()],
         (Some(_), Law::Spring(_)) if angles.len() < 3 => {
             return Err(LawError::TooFewAngles { found: angles.len(), joint: number });
         }
         (Some(_), Law::Spring(geometry)) => {
             let rows: Vec<_> = angles.iter().map(|angle| geometry.row(*angle)).collect();
-            spring_start(normal, joints, seen, &rows).ok_or(unseen)?.iter().copied().collect()
+            spring_start(normal, joints, by_angle, &rows).ok_or(unidentifiable)?.iter().copied().collect()
         }
     };
-    let mut state = State { joints: seen.joints, law: start };
+    let mut iterate = Iterate { joints: by_angle.joints, law: start };
     for _ in 0..STEPS {
-        let step = fit.step(&state).ok_or(unseen)?;
-        let next = fit.moved(&state, &step.0).ok_or(unseen)?;
+        let step = fit.step(&iterate).ok_or(unidentifiable)?;
+        let next = fit.moved(&iterate, &step.0).ok_or(unidentifiable)?;
         let change = step.0.component_div(&step.1).amax();
-        state = next;
+        iterate = next;
         if change < 1e-14 {
             break;
         }
     }
-    fit.finish(state, number, unseen)
+    fit.finish(iterate, number, unidentifiable)
 }
 
-struct State {
+struct Iterate {
     joints: Vector6<f64>,
     /// Compliance, or (K_theta, K_GC, s_0 K_GC), or nothing.
     law: Vec<f64>,
 }
 
 struct Fit<'a> {
-    normal: &'a Normal,
+    normal: &'a NormalEquations,
     law: Law,
     rows: Vec<Vector3<f64>>,
     parameters: Vec<ArmParameter>,
 }
 
 impl<'a> Fit<'a> {
-    fn new(normal: &'a Normal, joints: [bool; 6], angles: &[f64], law: Law) -> Self {
+    fn new(normal: &'a NormalEquations, joints: [bool; 6], angles: &[f64], law: Law) -> Self {
         let mut parameters = Vec::new();
         for joint in 0..6 {
             let quantities: &[Quantity] = match (normal.varying == Some(joint), law) {
@@ -176,18 +182,18 @@ impl<'a> Fit<'a> {
     }
 
     /// Normal matrix and gradient of the sum of squares in the parameters.
-    fn equations(&self, state: &State) -> (DMatrix<f64>, DVector<f64>) {
+    fn equations(&self, iterate: &Iterate) -> (DMatrix<f64>, DVector<f64>) {
         let size = self.parameters.len();
         let normal = self.normal;
         let own: Vec<Option<usize>> = self.parameters.iter().map(|parameter| self.place(parameter)).collect();
         let joint = |index: usize| self.parameters[index].joint;
         let mut matrix = DMatrix::zeros(size, size);
         let mut gradient = DVector::zeros(size);
-        let mut shared_gradient = normal.shared_rhs - normal.shared * state.joints;
+        let mut shared_gradient = normal.shared_rhs - normal.shared * iterate.joints;
         for (index, group) in normal.groups.iter().enumerate() {
-            let (compliance, slope) = self.compliance(&state.law, index);
+            let (compliance, slope) = self.compliance(&iterate.law, index);
             shared_gradient -= group.coupling * compliance;
-            let rest = group.rhs - group.coupling.dot(&state.joints) - group.diagonal * compliance;
+            let rest = group.rhs - group.coupling.dot(&iterate.joints) - group.diagonal * compliance;
             for a in 0..size {
                 let Some(place) = own[a] else { continue };
                 gradient[a] += slope[place] * rest;
@@ -210,22 +216,22 @@ impl<'a> Fit<'a> {
     }
 
     /// A Gauss-Newton step, and the size of each parameter.
-    fn step(&self, state: &State) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (matrix, gradient) = self.equations(state);
+    fn step(&self, iterate: &Iterate) -> Option<(DVector<f64>, DVector<f64>)> {
+        let (matrix, gradient) = self.equations(iterate);
         let step = scaled_inverse(&matrix)? * gradient;
         let size = |parameter: &ArmParameter| match self.place(parameter) {
-            Some(place) => state.law[place].abs().max(f64::MIN_POSITIVE),
-            None => state.joints[parameter.joint].abs().max(f64::MIN_POSITIVE),
+            Some(place) => iterate.law[place].abs().max(f64::MIN_POSITIVE),
+            None => iterate.joints[parameter.joint].abs().max(f64::MIN_POSITIVE),
         };
         let sizes = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(size));
         step.iter().all(|value| value.is_finite()).then_some((step, sizes))
     }
 
     /// The state after as much of a step as leaves every stiffness above zero.
-    fn moved(&self, state: &State, step: &DVector<f64>) -> Option<State> {
+    fn moved(&self, iterate: &Iterate, step: &DVector<f64>) -> Option<Iterate> {
         let mut part = 1.0;
         while part > 1e-6 {
-            let mut next = State { joints: state.joints, law: state.law.clone() };
+            let mut next = Iterate { joints: iterate.joints, law: iterate.law.clone() };
             for (parameter, change) in self.parameters.iter().zip(step.iter()) {
                 match self.place(parameter) {
                     Some(place) => next.law[place] += part * change,
@@ -242,15 +248,15 @@ impl<'a> Fit<'a> {
     }
 
     /// From stiffnesses to the numbers that robot files have.
-    fn finish(&self, state: State, number: usize, unseen: LawError) -> Result<ArmFit, LawError> {
-        let (matrix, _) = self.equations(&state);
-        let covariance = scaled_inverse(&matrix).ok_or(unseen)?;
+    fn finish(&self, iterate: Iterate, number: usize, unidentifiable: LawError) -> Result<ArmFit, LawError> {
+        let (matrix, _) = self.equations(&iterate);
+        let covariance = scaled_inverse(&matrix).ok_or(unidentifiable)?;
         let size = self.parameters.len();
         let mut change = DMatrix::<f64>::identity(size, size);
         let mut values = DVector::zeros(size);
         for (index, parameter) in self.parameters.iter().enumerate() {
-            values[index] = match (self.place(parameter), self.law, &state.law[..]) {
-                (None, ..) => state.joints[parameter.joint],
+            values[index] = match (self.place(parameter), self.law, &iterate.law[..]) {
+                (None, ..) => iterate.joints[parameter.joint],
                 (Some(0), Law::Spring(_), [stiffness, ..]) => {
                     change[(index, index)] = -1.0 / (stiffness * stiffness);
                     1.0 / stiffness
@@ -260,10 +266,10 @@ impl<'a> Fit<'a> {
                     change[(index, index - 1)] = -pull / (spring * spring);
                     pull / spring
                 }
-                (Some(place), ..) => state.law[place],
+                (Some(place), ..) => iterate.law[place],
             };
         }
-        if let (Law::Spring(_), [stiffness, spring, pull]) = (self.law, &state.law[..]) {
+        if let (Law::Spring(_), [stiffness, spring, pull]) = (self.law, &iterate.law[..]) {
             let length_mm = pull / spring * 1e3;
             let wrong = |what, value, unit| LawError::NoSpring { joint: number, what, value, unit };
             if *stiffness <= 0.0 {
@@ -276,9 +282,9 @@ impl<'a> Fit<'a> {
                 return Err(wrong("the free length of the spring", length_mm, "mm"));
             }
         }
-        let undo = change.clone().try_inverse().ok_or(unseen)?;
+        let undo = change.clone().try_inverse().ok_or(unidentifiable)?;
         let group = |index: usize| {
-            let (compliance, slope) = self.compliance(&state.law, index);
+            let (compliance, slope) = self.compliance(&iterate.law, index);
             let slopes = self.parameters.iter().map(|p| self.place(p).map_or(0.0, |place| slope[place]));
             (compliance, undo.transpose() * DVector::from_iterator(size, slopes))
         };
@@ -286,7 +292,7 @@ impl<'a> Fit<'a> {
             parameters: self.parameters.clone(),
             values,
             covariance: &change * covariance * change.transpose(),
-            joints: state.joints,
+            joints: iterate.joints,
             groups: (0..self.rows.len()).map(group).collect(),
         })
     }

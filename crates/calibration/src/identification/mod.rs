@@ -6,22 +6,25 @@
 //! 1. [`setup`]: where the tracker stands and where the points sit, from the unloaded readings alone (eq. 24);
 //! 2. [`model`]: deflections as linear functions of the compliances, the joint beside a compensator having one for each
 //!    distinct angle (eq. 16, 20);
-//! 3. [`normal`]: least squares with covariance (eq. 18, 19, 23), and which parameters cannot be seen;
+//! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters cannot be seen;
 //! 4. [`outliers`]: readings that do not belong with the others;
 //! 5. [`law`]: from the compliances at distinct angles to joint, spring and free length (eq. 21, 22);
-//! 6. [`validate`]: how well a configuration is predicted that was left out.
+//! 6. [`cross_validation`]: how well a configuration is predicted that was left out.
 //!
 //! Nothing is regularised: what cannot be seen is refused by name, or on request held at its value in the starting robot.
 
+mod assemble;
+pub mod cross_validation;
+pub mod design;
 pub mod distribution;
-mod found;
-mod job;
+mod error;
+mod identify;
 pub mod law;
 pub mod model;
-pub mod normal;
+pub mod normal_equations;
 pub mod outcome;
 pub mod outliers;
-pub mod plan;
+mod problem;
 pub mod rotation;
 pub mod setup;
 pub mod sheet;
@@ -29,8 +32,9 @@ pub mod spring;
 pub mod synthetic;
 #[cfg(test)]
 mod tests;
-pub mod validate;
 
-pub use job::{IdentifyError, Problem, identify};
+pub use error::IdentifyError;
+pub use identify::identify;
 pub use outcome::{Estimate, Identified, RowResult};
-pub use sheet::{Configuration, Reading, Sheet};
+pub use problem::Problem;
+pub use sheet::{Configuration, LoadCase, Reading, Sheet};

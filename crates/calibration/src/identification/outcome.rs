@@ -1,9 +1,9 @@
 //! What an identification finds. SI units and radians.
 
+use super::cross_validation::Prediction;
 use super::law::ArmParameter;
 use super::model::Parameter;
 use super::setup::{Setup, SetupFit};
-use super::validate::Prediction;
 use nalgebra::{DMatrix, Vector3};
 use stead_model::robot::Robot;
 
@@ -49,7 +49,7 @@ pub struct Identified {
     /// How well those fit the unloaded readings.
     pub setup_fit: SetupFit,
     /// One compliance for each joint, and for each distinct angle of the joint beside a compensator. rad/(N m)
-    pub seen: Vec<Estimate<Parameter>>,
+    pub compliances: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.
     pub varying: Option<usize>,
     /// The numbers of the arm, in the units of [`ArmParameter`].
@@ -71,7 +71,7 @@ pub struct Identified {
     /// Mean square of the residuals over that of the noise: near 1 where the noise was stated rightly.
     pub variance_ratio: f64,
     /// Equations less parameters.
-    pub degrees: usize,
+    pub degrees_of_freedom: usize,
     /// Whether there were equations enough to look for outliers.
     pub are_outliers_searched: bool,
     /// Probability of residuals that grow so much by the law of the varying joint, were the law right.

@@ -7,17 +7,17 @@
 
 use super::distribution::tail;
 use super::model::{Layout, Observation};
-use super::normal::{Free, Normal, Solution};
+use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::sheet::Sheet;
 use nalgebra::{Matrix6, Vector6};
 
 /// The estimate without outliers, and how each reading stands to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judgement {
+pub struct RobustEstimate {
     /// The estimate.
     pub solution: Solution,
     /// The equations it solves.
-    pub normal: Normal,
+    pub normal: NormalEquations,
     /// Mean square of the residuals over the degrees of freedom, 1 where the noise is as stated.
     pub variance: f64,
     /// Equations less parameters.
@@ -31,7 +31,7 @@ pub struct Judgement {
 }
 
 /// What is to be estimated.
-pub struct Task<'a> {
+pub struct OutlierSearch<'a> {
     /// The readings.
     pub sheet: &'a Sheet,
     /// The parameters.
@@ -39,27 +39,29 @@ pub struct Task<'a> {
     /// The equations.
     pub observations: &'a [Observation],
     /// Which parameters are free.
-    pub free: &'a Free,
+    pub free: &'a FreeParameters,
     /// What the others are held at.
     pub held: (&'a Vector6<f64>, &'a [f64]),
     /// The scale of the residuals is not less than this: what the noise is known to be, or what no tracker resolves.
-    pub least_scale: f64,
+    pub min_scale: f64,
 }
 
+/// Residuals below this are rounding, whatever the tracker. m
+pub(super) const ROUNDING: f64 = 1e-10;
 /// One false outlier in so many sheets of ordinary noise.
 const SHEETS: f64 = 100.0;
 /// Rounds of reweighting, and of judging.
 const ROUNDS: usize = 30;
 /// No weight is less in the robust start, so that no parameter is left without readings.
-const LEAST_WEIGHT: f64 = 1e-6;
+const MIN_WEIGHT: f64 = 1e-6;
 
-impl Task<'_> {
+impl OutlierSearch<'_> {
     fn parameters(&self) -> usize {
         self.free.joints.iter().chain(&self.free.groups).filter(|free| **free).count()
     }
 
-    fn solve(&self, weights: &[f64]) -> Option<(Normal, Solution)> {
-        let normal = Normal::new(self.sheet, self.layout, self.observations, weights);
+    fn solve(&self, weights: &[f64]) -> Option<(NormalEquations, Solution)> {
+        let normal = NormalEquations::new(self.sheet, self.layout, self.observations, weights);
         let solution = normal.solve(self.free, self.held)?;
         Some((normal, solution))
     }
@@ -78,7 +80,7 @@ impl Task<'_> {
     ///
     /// # Errors
     /// The readings that were kept when they did not tell all parameters any more.
-    pub fn judge(&self) -> Result<Judgement, Vec<bool>> {
+    pub fn robust_estimate(&self) -> Result<RobustEstimate, Vec<bool>> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();
         let mut kept = vec![true; readings];
@@ -87,13 +89,13 @@ impl Task<'_> {
             kept = self.robust_start(equations).ok_or_else(|| kept.clone())?;
         }
         for _ in 0..ROUNDS {
-            let (judgement, verdict) = self.judged(&kept, is_searched).ok_or_else(|| kept.clone())?;
-            if !is_searched || verdict == kept {
-                return Ok(judgement);
+            let (robust, keep) = self.estimate_without(&kept, is_searched).ok_or_else(|| kept.clone())?;
+            if !is_searched || keep == kept {
+                return Ok(robust);
             }
-            kept = verdict;
+            kept = keep;
         }
-        self.judged(&kept, is_searched).map(|(judgement, _)| judgement).ok_or(kept)
+        self.estimate_without(&kept, is_searched).map(|(robust, _)| robust).ok_or(kept)
     }
 
     fn robust_start(&self, equations: usize) -> Option<Vec<bool>> {
@@ -107,11 +109,11 @@ impl Task<'_> {
             let lengths: Vec<f64> = (0..weights.len()).map(|k| self.residual(&solution, k).norm()).collect();
             let mut sorted = lengths.clone();
             sorted.sort_by(f64::total_cmp);
-            let scale = (sorted[sorted.len() / 2] / median * correction).max(self.least_scale);
+            let scale = (sorted[sorted.len() / 2] / median * correction).max(self.min_scale);
             let mut change = 0.0_f64;
             for (index, length) in lengths.iter().enumerate() {
                 let far = length / (reach * scale);
-                let weight = if round < ROUNDS { huber(far) } else { bisquare(far / 2.0) }.max(LEAST_WEIGHT);
+                let weight = if round < ROUNDS { huber(far) } else { bisquare(far / 2.0) }.max(MIN_WEIGHT);
                 change = change.max((weight - weights[index]).abs());
                 weights[index] = weight;
                 kept[index] = far < 2.0;
@@ -138,7 +140,7 @@ impl Task<'_> {
     }
 
     /// The estimate from the readings that are kept, and which readings it keeps.
-    fn judged(&self, kept: &[bool], is_searched: bool) -> Option<(Judgement, Vec<bool>)> {
+    fn estimate_without(&self, kept: &[bool], is_searched: bool) -> Option<(RobustEstimate, Vec<bool>)> {
         let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
         let (normal, solution) = self.solve(&weights)?;
         let rows = self.sheet.rows_per_reading();
@@ -147,10 +149,10 @@ impl Task<'_> {
         let residuals: Vec<Vector6<f64>> = (0..kept.len()).map(|index| self.residual(&solution, index)).collect();
         let squares: f64 = residuals.iter().zip(kept).filter(|(_, kept)| **kept).map(|(r, _)| r.norm_squared()).sum();
         let variance = if degrees > 0 { squares / degrees as f64 } else { 0.0 };
-        let floor = self.least_scale * self.least_scale;
+        let floor = self.min_scale * self.min_scale;
         let limit = 1.0 / (SHEETS * kept.len() as f64);
         let mut studentised = Vec::with_capacity(kept.len());
-        let mut verdict = Vec::with_capacity(kept.len());
+        let mut keep = Vec::with_capacity(kept.len());
         for (index, residual) in residuals.iter().enumerate() {
             let design = &self.observations[index].design;
             let covariance = solution.covariance(self.layout.varying, self.group(index));
@@ -163,12 +165,12 @@ impl Task<'_> {
             let spread = (others / below.max(1) as f64).max(floor);
             let ratio = if spread > 0.0 { square / rows as f64 / spread } else { 0.0 };
             studentised.push(libm::sqrt(ratio));
-            verdict.push(!is_searched || below == 0 || tail(ratio, rows, below) > limit);
+            keep.push(!is_searched || below == 0 || tail(ratio, rows, below) > limit);
         }
-        self.restore(&mut verdict);
-        let judgement =
-            Judgement { solution, normal, variance, degrees, kept: kept.to_vec(), studentised, is_searched };
-        Some((judgement, verdict))
+        self.restore(&mut keep);
+        let robust =
+            RobustEstimate { solution, normal, variance, degrees, kept: kept.to_vec(), studentised, is_searched };
+        Some((robust, keep))
     }
 }
 

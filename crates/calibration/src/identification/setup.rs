@@ -36,7 +36,7 @@ pub enum SetupError {
     },
     /// The configurations are too much alike.
     #[error("the unloaded readings do not tell the base transform from the reference points")]
-    Unseen,
+    Unidentifiable,
     /// The readings are not where any tracker and reference points would put them.
     #[error(
         "the unloaded readings are {off_mm:.3} mm (rms) away from where the joint angles put their points, this one \
@@ -108,29 +108,29 @@ pub fn estimate(
     if 3 * all.len() < unknowns {
         return Err(SetupError::TooFew { equations: 3 * all.len(), unknowns });
     }
-    let whole = Problem::new(sheet, flanges, &all);
+    let whole = SetupProblem::new(sheet, flanges, &all);
     whole.check_spread()?;
     let stride = sheet.configurations.len().div_ceil(START);
     let few: Vec<usize> =
         all.iter().copied().filter(|i| sheet.readings[*i].configuration.is_multiple_of(stride)).collect();
-    let sample = Problem::new(sheet, flanges, &few);
+    let sample = SetupProblem::new(sheet, flanges, &few);
     let rotations = start.map_or_else(cube_rotations, |rotation| vec![*rotation]);
-    let mut best: Option<(f64, State)> = None;
+    let mut best: Option<(f64, Unknowns)> = None;
     for rotation in rotations {
         let found = sample.descend(sample.state_at(rotation));
         if best.as_ref().is_none_or(|(cost, _)| found.0 < *cost) {
             best = Some(found);
         }
     }
-    let (_, state) = best.ok_or(SetupError::Unseen)?;
-    let (cost, state) = whole.descend(state);
-    if whole.step(&state).is_none() {
-        return Err(SetupError::Unseen);
+    let (_, iterate) = best.ok_or(SetupError::Unidentifiable)?;
+    let (cost, iterate) = whole.descend(iterate);
+    if whole.step(&iterate).is_none() {
+        return Err(SetupError::Unidentifiable);
     }
-    let translation = state.shift + whole.read_centre - state.rotation * whole.flange_centre;
+    let translation = iterate.shift + whole.read_centre - iterate.rotation * whole.flange_centre;
     Ok(Setup {
-        tracker_from_base: Pose { rotation: state.rotation, translation },
-        points: state.points,
+        tracker_from_base: Pose { rotation: iterate.rotation, translation },
+        points: iterate.points,
         residual_rms: libm::sqrt(cost / all.len() as f64),
     })
 }
@@ -141,15 +141,16 @@ pub fn estimate(
 /// [`SetupError::Misfit`] where it does not: joint angles, zero positions, axes or units are others than the robot file's.
 pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup) -> Result<SetupFit, SetupError> {
     let all: Vec<usize> = (0..sheet.readings.len()).filter(|index| used[*index]).collect();
-    let whole = Problem::new(sheet, flanges, &all);
+    let whole = SetupProblem::new(sheet, flanges, &all);
     let Pose { rotation, translation } = setup.tracker_from_base;
     let shift = translation - whole.read_centre + rotation * whole.flange_centre;
-    let state = State { rotation, shift, points: setup.points.clone() };
-    let squares: Vec<f64> = whole.rows.iter().map(|row| whole.residual(&state, row).norm_squared()).collect();
+    let iterate = Unknowns { rotation, shift, points: setup.points.clone() };
+    let squares: Vec<f64> = whole.rows.iter().map(|row| whole.residual(&iterate, row).norm_squared()).collect();
     let sum: f64 = squares.iter().sum();
     let mean = |sum: f64, count: usize| libm::sqrt(sum.max(0.0) / count.max(1) as f64);
     let flange_rms = mean(whole.rows.iter().map(|row| row.origin.norm_squared()).sum(), all.len());
-    let farthest = (0..all.len()).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).ok_or(SetupError::Unseen)?;
+    let farthest =
+        (0..all.len()).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).ok_or(SetupError::Unidentifiable)?;
     let worst = (sheet.readings[all[farthest]].line, libm::sqrt(squares[farthest]));
     let off = mean(sum, all.len());
     if off > MISFIT * flange_rms {
@@ -158,8 +159,8 @@ pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup)
     }
     let degrees = (3 * all.len()).saturating_sub(6 + 3 * sheet.points.len());
     let variance = if degrees > 0 { sum / degrees as f64 } else { 0.0 };
-    let (matrix, _) = whole.equations(&state);
-    let inverse = Scaled::new(&matrix).ok_or(SetupError::Unseen)?.inverse();
+    let (matrix, _) = whole.equations(&iterate);
+    let inverse = Scaled::new(&matrix).ok_or(SetupError::Unidentifiable)?.inverse();
     let deviation = |point: usize| {
         let own: Matrix3<f64> = inverse.fixed_view::<3, 3>(6 + 3 * point, 6 + 3 * point).into_owned();
         libm::sqrt((own.symmetric_eigenvalues().max() * variance).max(0.0))
@@ -170,7 +171,7 @@ pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup)
 
 /// The unknowns. Readings and flange origins count from their centres, so that `shift` and `rotation` are hardly coupled.
 #[derive(Debug, Clone)]
-struct State {
+struct Unknowns {
     rotation: Matrix3<f64>,
     shift: Vector3<f64>,
     points: Vec<Vector3<f64>>,
@@ -183,7 +184,7 @@ struct Row {
     point: usize,
 }
 
-struct Problem {
+struct SetupProblem {
     rows: Vec<Row>,
     points: usize,
     read_centre: Vector3<f64>,
@@ -222,7 +223,7 @@ impl Scaled {
     }
 }
 
-impl Problem {
+impl SetupProblem {
     fn new(sheet: &Sheet, flanges: &[Pose<f64>], readings: &[usize]) -> Self {
         let count = readings.len().max(1) as f64;
         let flange = |index: &usize| &flanges[sheet.readings[*index].configuration];
@@ -247,28 +248,28 @@ impl Problem {
         Ok(())
     }
 
-    fn state_at(&self, rotation: Matrix3<f64>) -> State {
-        State { rotation, shift: Vector3::zeros(), points: vec![Vector3::zeros(); self.points] }
+    fn state_at(&self, rotation: Matrix3<f64>) -> Unknowns {
+        Unknowns { rotation, shift: Vector3::zeros(), points: vec![Vector3::zeros(); self.points] }
     }
 
-    fn residual(&self, state: &State, row: &Row) -> Vector3<f64> {
-        row.read - state.rotation * (row.rotation * state.points[row.point] + row.origin) - state.shift
+    fn residual(&self, iterate: &Unknowns, row: &Row) -> Vector3<f64> {
+        row.read - iterate.rotation * (row.rotation * iterate.points[row.point] + row.origin) - iterate.shift
     }
 
-    fn cost(&self, state: &State) -> f64 {
-        self.rows.iter().map(|row| self.residual(state, row).norm_squared()).sum()
+    fn cost(&self, iterate: &Unknowns) -> f64 {
+        self.rows.iter().map(|row| self.residual(iterate, row).norm_squared()).sum()
     }
 
     /// Normal matrix and gradient. Unknowns in order: turn of the rotation from the left, shift, points.
-    fn equations(&self, state: &State) -> (DMatrix<f64>, DVector<f64>) {
+    fn equations(&self, iterate: &Unknowns) -> (DMatrix<f64>, DVector<f64>) {
         let size = 6 + 3 * self.points;
         let mut matrix = DMatrix::<f64>::zeros(size, size);
         let mut gradient = DVector::<f64>::zeros(size);
         for row in &self.rows {
-            let residual = self.residual(state, row);
-            let turned = state.rotation * (row.rotation * state.points[row.point] + row.origin);
+            let residual = self.residual(iterate, row);
+            let turned = iterate.rotation * (row.rotation * iterate.points[row.point] + row.origin);
             let by_turn = -turned.cross_matrix();
-            let by_point = state.rotation * row.rotation;
+            let by_point = iterate.rotation * row.rotation;
             let blocks = [(0, by_turn), (3, Matrix3::identity()), (6 + 3 * row.point, by_point)];
             for (i, left) in &blocks {
                 let mut slot = gradient.fixed_rows_mut::<3>(*i);
@@ -283,19 +284,19 @@ impl Problem {
     }
 
     /// A Gauss-Newton step, where the normal matrix is regular.
-    fn step(&self, state: &State) -> Option<DVector<f64>> {
-        let (matrix, gradient) = self.equations(state);
+    fn step(&self, iterate: &Unknowns) -> Option<DVector<f64>> {
+        let (matrix, gradient) = self.equations(iterate);
         Scaled::new(&matrix).map(|scaled| scaled.solve(&gradient))
     }
 
-    fn descend(&self, mut state: State) -> (f64, State) {
-        let mut cost = self.cost(&state);
+    fn descend(&self, mut iterate: Unknowns) -> (f64, Unknowns) {
+        let mut cost = self.cost(&iterate);
         for _ in 0..STEPS {
-            let Some(step) = self.step(&state) else { break };
+            let Some(step) = self.step(&iterate) else { break };
             let mut part = 1.0;
             let mut better = None;
             while part > 1e-3 {
-                let trial = state.moved(&step, part);
+                let trial = iterate.moved(&step, part);
                 let trial_cost = self.cost(&trial);
                 if trial_cost < cost {
                     better = Some((trial_cost, trial));
@@ -304,13 +305,13 @@ impl Problem {
                 part /= 2.0;
             }
             let Some((lower, next)) = better else { break };
-            (cost, state) = (lower, next);
+            (cost, iterate) = (lower, next);
         }
-        (cost, state)
+        (cost, iterate)
     }
 }
 
-impl State {
+impl Unknowns {
     fn moved(&self, step: &DVector<f64>, part: f64) -> Self {
         let block = |at: usize| step.fixed_rows::<3>(at).into_owned() * part;
         Self {

@@ -3,6 +3,17 @@
 use nalgebra::Vector3;
 use std::ops::Range;
 
+/// Joint angles and a wrench: a configuration to measure, or one in which the deflection is to be predicted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadCase {
+    /// Joint angles. rad
+    pub theta: [f64; 6],
+    /// Force, in the base frame. N
+    pub force: Vector3<f64>,
+    /// Moment, in the base frame. N m
+    pub moment: Vector3<f64>,
+}
+
 /// One configuration of the arm and the load that was put on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configuration {

@@ -1,6 +1,6 @@
 //! A compensator's spring: how the stiffness of its joint hangs on its unknowns, and their first estimate.
 
-use super::normal::{Normal, Solution};
+use super::normal_equations::{NormalEquations, Solution};
 use nalgebra::{DMatrix, Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
 /// Where the two ends of a compensator's spring are.
@@ -27,16 +27,16 @@ impl Geometry {
 
 /// Eq. 21 with the inverse of the covariance of the stiffnesses as weights; `joints` says which of the others are free.
 pub(super) fn spring_start(
-    normal: &Normal,
+    normal: &NormalEquations,
     joints: [bool; 6],
-    seen: &Solution,
+    by_angle: &Solution,
     rows: &[Vector3<f64>],
 ) -> Option<Vector3<f64>> {
     let mut matrix = Matrix3::zeros();
     let mut rhs = Vector3::zeros();
     let mut coupling = Matrix3x6::zeros();
     let mut coupling_rhs = Vector6::zeros();
-    for ((group, row), compliance) in normal.groups.iter().zip(rows).zip(&seen.groups) {
+    for ((group, row), compliance) in normal.groups.iter().zip(rows).zip(&by_angle.groups) {
         if *compliance <= 0.0 {
             continue;
         }
@@ -65,7 +65,7 @@ pub(super) fn spring_start(
 
 /// The inverse of a symmetric matrix that is positive definite after scaling its diagonal to one, well enough.
 pub(super) fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    const LEAST: f64 = 1e-7;
+    const MIN_PIVOT: f64 = 1e-7;
     let size = matrix.nrows();
     let scale: Vec<f64> = matrix.diagonal().iter().map(|value| 1.0 / libm::sqrt(*value)).collect();
     let scaled = DMatrix::from_fn(size, size, |a, b| (matrix[(a, b)] + matrix[(b, a)]) / 2.0 * scale[a] * scale[b]);
@@ -73,7 +73,7 @@ pub(super) fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         return None;
     }
     let factor = scaled.cholesky()?;
-    if factor.l().diagonal().min() < LEAST {
+    if factor.l().diagonal().min() < MIN_PIVOT {
         return None;
     }
     let inverse = factor.inverse();

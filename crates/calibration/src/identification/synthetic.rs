@@ -2,13 +2,13 @@
 
 use super::model::Response;
 use super::rotation::{rotation_from_vector, vector_from_rotation};
-use super::sheet::{Configuration, Reading, Sheet};
+use super::sheet::{Configuration, LoadCase, Reading, Sheet};
 use nalgebra::{Vector3, Vector6};
 use stead_model::robot::{Pose, Robot};
 
 /// The measuring cell.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
+pub struct MeasuringCell {
     /// The robot base in the tracker's frame.
     pub tracker_from_base: Pose<f64>,
     /// Where the wrench acts, in the flange frame. m
@@ -19,25 +19,22 @@ pub struct Cell {
     pub is_full_pose: bool,
 }
 
-/// Joint angles (rad), force (N) and moment (N m) on the load point in the base frame.
-pub type Shot = ([f64; 6], Vector3<f64>, Vector3<f64>);
-
 /// What the tracker would read, with `position_error` (m) added to every coordinate and `orientation_error` (rad) to every
 /// component of a turn. Configurations are called c1, c2, ... and points p1, p2, ...; line numbers are those of
 /// a file with one line of header.
 pub fn sheet(
     robot: &Robot,
-    cell: &Cell,
-    shots: &[Shot],
+    cell: &MeasuringCell,
+    load_cases: &[LoadCase],
     mut position_error: impl FnMut() -> f64,
     mut orientation_error: impl FnMut() -> f64,
 ) -> Sheet {
     let mut sheet = Sheet {
         points: (1..=cell.points.len()).map(|number| format!("p{number}")).collect(),
-        configurations: Vec::with_capacity(shots.len()),
-        readings: Vec::with_capacity(shots.len() * cell.points.len()),
+        configurations: Vec::with_capacity(load_cases.len()),
+        readings: Vec::with_capacity(load_cases.len() * cell.points.len()),
     };
-    for (index, (theta, force, moment)) in shots.iter().enumerate() {
+    for (index, LoadCase { theta, force, moment }) in load_cases.iter().enumerate() {
         let first = sheet.readings.len();
         let configuration = Configuration {
             name: format!("c{}", index + 1),

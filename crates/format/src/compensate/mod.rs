@@ -13,7 +13,7 @@ use crate::input::{InputError, InputFile};
 use rows::rows_from;
 use stations::placed;
 use std::path::Path;
-use stead_calibration::compensation::{Compensation, Model, Settings, other_geometry};
+use stead_calibration::compensation::{CompensationProblem, DeflectionModel, Settings, other_geometry};
 use stead_model::robot::Robot;
 use stead_placement::problem::Placement;
 
@@ -21,7 +21,7 @@ use stead_placement::problem::Placement;
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensateRun {
     /// What is to be compensated.
-    pub job: Compensation,
+    pub job: CompensationProblem,
     /// Where the workpiece stands, as the plan has it.
     pub placement: Placement,
     /// Whether the commands are played on another robot file than the run's.
@@ -80,7 +80,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
             reality_from(&source, &robot)?
         }
     };
-    let job = Compensation { robot, reality, spindle: run.problem.spindle, stations: plan.stations, settings };
+    let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
     Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes: plan.note.into_iter().collect() })
 }
 
@@ -93,13 +93,13 @@ fn settings_from(table: &Table<'_>) -> Result<Settings, InputError> {
     let share = |field: &Field<'_>| field.number_where("a number above 0 and not above 1", |v| v > 0.0 && v <= 1.0);
     // Below a nanometre the rounding of the kinematics is in the way.
     let small = |field: &Field<'_>| field.number_where("a number from 1e-9 to 1", |v| (1e-9..=1.0).contains(&v));
-    let models = [("equilibrium", Model::Equilibrium), ("linear", Model::Linear)];
+    let models = [("equilibrium", DeflectionModel::Equilibrium), ("linear", DeflectionModel::Linear)];
     Ok(Settings {
         alpha: alpha.optional(share)?.unwrap_or(default.alpha),
         tolerance: tolerance.optional(small)?.map_or(default.tolerance, |mm| mm / 1e3),
-        most_iterations: iterations
+        max_iterations: iterations
             .optional(|field| field.integer(1..=MOST_ITERATIONS))?
-            .map_or(default.most_iterations, |most| most as usize),
+            .map_or(default.max_iterations, |most| most as usize),
         model: model.optional(|field| field.one_of(&models))?.unwrap_or(default.model),
         ..default
     })

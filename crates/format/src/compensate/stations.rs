@@ -9,7 +9,7 @@ use super::rows::{FORCE, JOINTS, POSITION, PlanRow};
 use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
-use stead_calibration::compensation::Station;
+use stead_calibration::compensation::PathPoint;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use stead_model::stiffness::displacement;
 use stead_placement::problem::{Placement, Problem};
@@ -18,7 +18,7 @@ use stead_placement::problem::{Placement, Problem};
 #[derive(Debug)]
 pub(super) struct PlacedPlan {
     pub placement: Placement,
-    pub stations: Vec<Station>,
+    pub points: Vec<PathPoint>,
     /// What the user should know.
     pub note: Option<String>,
 }
@@ -67,7 +67,7 @@ pub(super) fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result
         note = note.or_else(|| deflection_note(problem, &station, row));
         stations.push(station);
     }
-    Ok(PlacedPlan { placement, stations, note })
+    Ok(PlacedPlan { placement, points: stations, note })
 }
 
 fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {
@@ -142,13 +142,13 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow) -> Station {
+fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow) -> PathPoint {
     let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let base_from_workpiece = placement.base_from_workpiece();
     let (path_point, wrench) = (&problem.task.points()[point], &problem.task.wrenches()[point]);
     let base_from_flange = problem.base_from_flange(point, &pose, row.beta);
     let tool = base_from_flange.then(&problem.spindle.flange_from_tool);
-    Station {
+    PathPoint {
         segment: problem.task.path().segment_of(point) + 1,
         base_from_tool: Pose { translation: base_from_workpiece.point(&path_point.position), ..tool },
         posture: row.posture,
@@ -159,7 +159,7 @@ fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow
     }
 }
 
-fn check_force(station: &Station, row: &PlanRow) -> Result<(), Misfit> {
+fn check_force(station: &PathPoint, row: &PlanRow) -> Result<(), Misfit> {
     let off = (station.force - row.force).norm();
     if off > FORCE_TOLERANCE.0 + FORCE_TOLERANCE.1 * station.force.norm() {
         return Err((FORCE.join(","), format!("{off:.4} N away from the force that the task has here")));
@@ -168,7 +168,7 @@ fn check_force(station: &Station, row: &PlanRow) -> Result<(), Misfit> {
 }
 
 /// Whether the joint angles are those of the posture.
-fn check_posture(problem: &Problem, station: &Station, row: &PlanRow) -> Result<(), Misfit> {
+fn check_posture(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Result<(), Misfit> {
     let base_from_flange = station.base_from_tool.then(&problem.spindle.flange_from_tool.inverse());
     let posture = row.posture;
     let angles = problem
@@ -186,7 +186,7 @@ fn check_posture(problem: &Problem, station: &Station, row: &PlanRow) -> Result<
 }
 
 /// Whether the deflection of a row is that of the run's robot.
-fn deflection_note(problem: &Problem, station: &Station, row: &PlanRow) -> Option<String> {
+fn deflection_note(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Option<String> {
     let frames = Frames::new(&problem.robot, &row.joints);
     let compliances = problem.robot.compliances_at(&row.joints);
     let tip = &station.base_from_tool.translation;

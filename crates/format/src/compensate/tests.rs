@@ -36,9 +36,9 @@ fn a_plan_tells_its_placement() {
         }
         assert!((found.yaw.to_degrees() - yaw).abs() < 1e-4, "{name}");
         assert_eq!(placed.note, None);
-        assert_eq!(placed.stations.len(), 105);
+        assert_eq!(placed.points.len(), 105);
         let spindle = &problem.spindle.flange_from_tool;
-        for (station, row) in placed.stations.iter().zip(&rows) {
+        for (station, row) in placed.points.iter().zip(&rows) {
             let tool = problem.robot.forward(&row.joints).then(spindle);
             assert!((tool.translation - station.base_from_tool.translation).norm() < 1e-5);
             assert!((tool.rotation - station.base_from_tool.rotation).norm() < 2e-5);
@@ -77,7 +77,7 @@ proptest! {
         let file = Path::new("plan.csv");
         let result = rows_from(file, &bytes, problem.task.path()).and_then(|rows| placed(file, &rows, problem));
         match result {
-            Ok(placed) => prop_assert_eq!(placed.stations.len(), 105),
+            Ok(placed) => prop_assert_eq!(placed.points.len(), 105),
             Err(error) => prop_assert!(error.line.is_some() && error.allowed.is_some(), "{}", error),
         }
     }

@@ -7,8 +7,9 @@ use crate::source::Source;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
+use stead_calibration::identification::design::{Loads, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
-use stead_calibration::identification::plan::{Loads, Request, Test, Tests, Volume};
+use stead_calibration::identification::sheet::LoadCase;
 use stead_model::robot::Robot;
 
 /// What `stead identify plan` reads.
@@ -130,16 +131,16 @@ pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> 
         max_deflection: deflection.optional(Field::positive)?.unwrap_or(MOST_MM) / 1e3,
         tip: tip.optional(Field::vector3)?.map_or(shared.load_point, |tip| tip / 1e3),
         tests: if test.is_given() {
-            Tests::Given(test.tables()?.iter().map(|table| test_from(table, robot)).collect::<Result<_, _>>()?)
+            TestCases::Given(test.tables()?.iter().map(|table| test_from(table, robot)).collect::<Result<_, _>>()?)
         } else {
-            Tests::Drawn(count(&tests, TESTS, 1)?)
+            TestCases::Drawn(count(&tests, TESTS, 1)?)
         },
         configurations: size,
         candidates: candidate_count,
         seed: seed.map_or_else(|| Ok(file_seed.optional(|f| f.integer(0..=i64::MAX as u64))?.unwrap_or(1)), Ok)?,
         starts: count(&starts, STARTS, 2)?,
         random_sets: count(&random_sets, RANDOM_SETS, 1)?,
-        hardly: hardly.optional(Field::positive)?.unwrap_or(HARDLY_PERCENT) / 100.0,
+        max_relative_deviation: hardly.optional(Field::positive)?.unwrap_or(HARDLY_PERCENT) / 100.0,
         robot: shared.robot,
     };
     Ok(PlanRun {
@@ -242,17 +243,17 @@ fn loads_from(field: &Field<'_>) -> Result<Loads, InputError> {
 fn volume_from(table: &Table<'_>) -> Result<Volume, InputError> {
     let [x, y, z, radius] = table.fields(["x_mm", "y_mm", "z_mm", "min_radius_mm"])?;
     let mut volume = Volume::OPEN;
-    for (ends, field) in volume.ends.iter_mut().zip([x, y, z]) {
+    for (ends, field) in volume.ranges.iter_mut().zip([x, y, z]) {
         if let Some(given) = field.optional(Field::interval)? {
             *ends = given.map(|end| end / 1e3);
         }
     }
     let rule = "a finite number not below 0";
     let radius = radius.optional(|field| field.number_where(rule, |radius| radius >= 0.0))?;
-    Ok(Volume { least_radius: radius.unwrap_or_default() / 1e3, ..volume })
+    Ok(Volume { min_radius: radius.unwrap_or_default() / 1e3, ..volume })
 }
 
-fn test_from(table: &Table<'_>, robot: &Robot) -> Result<Test, InputError> {
+fn test_from(table: &Table<'_>, robot: &Robot) -> Result<LoadCase, InputError> {
     let [joints, force, moment] = table.fields(["joints_deg", "force_n", "moment_nm"])?;
     let theta: [f64; 6] = joints.numbers_where("six joint angles in degrees", |_| true)?.map(f64::to_radians);
     for (index, joint) in robot.joints().iter().enumerate() {
@@ -266,5 +267,5 @@ fn test_from(table: &Table<'_>, robot: &Robot) -> Result<Test, InputError> {
     if force_given.norm() == 0.0 && moment.norm() == 0.0 {
         return Err(force.error("is a load of zero", "a force, or a moment_nm, that is not zero"));
     }
-    Ok(Test { theta, force: force_given, moment })
+    Ok(LoadCase { theta, force: force_given, moment })
 }

@@ -29,7 +29,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         "inputs": inputs(&run.inputs),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
-        "compliances": found.seen.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
+        "compliances": found.compliances.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
         "compensator": compensator(found),
         "arm": found.arm.iter().map(|estimate| {
             let (name, factor) = key(&estimate.parameter);
@@ -41,7 +41,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         "noise_mm": millimetres(found.noise),
         "noise_estimated": found.is_noise_estimated,
         "noise_ratio": rounded(libm::sqrt(found.variance_ratio), 6),
-        "degrees_of_freedom": found.degrees,
+        "degrees_of_freedom": found.degrees_of_freedom,
         "residual_rms_mm": millimetres(found.residual_rms),
         "outliers": found.outliers().map(|row| outlier(run, row)).collect::<Vec<_>>(),
         "outliers_searched": found.are_outliers_searched,

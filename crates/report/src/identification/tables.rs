@@ -19,7 +19,7 @@ fn number(value: f64) -> String {
 /// numbers of the robot file, each with its standard deviation and 95 % interval.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
     let header = ["parameter", "unit", "angle_deg", "value", "std", "low", "high"];
-    let seen = found.seen.iter().map(|estimate| {
+    let seen = found.compliances.iter().map(|estimate| {
         let joint = match estimate.parameter {
             Parameter::Joint(joint) => joint,
             Parameter::Group(_) => found.varying.unwrap_or_default(),

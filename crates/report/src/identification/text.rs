@@ -60,7 +60,7 @@ fn cells<P>(estimate: &Estimate<P>, factor: f64) -> [String; 4] {
 fn seen_rows(found: &Identified) -> Vec<Vec<String>> {
     let header = ["joint", "at deg", "urad/(N m)", "std", "%", "95 % interval"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for estimate in &found.seen {
+    for estimate in &found.compliances {
         let angle = estimate.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
         let mut row = vec![(joint_of(found, estimate.parameter) + 1).to_string(), angle];
         row.extend(cells(estimate, URAD));
@@ -144,7 +144,7 @@ fn scale_note(run: &IdentifyRun, found: &Identified) -> Option<String> {
     let start = run.problem.robot.joints();
     let ratio =
         |e: &Estimate<Parameter>| e.value / start[joint_of(found, e.parameter)].compliance_at(e.angle.unwrap_or(0.0));
-    let mut ratios: Vec<f64> = found.seen.iter().map(ratio).collect();
+    let mut ratios: Vec<f64> = found.compliances.iter().map(ratio).collect();
     ratios.sort_by(f64::total_cmp);
     let middle = *ratios.get(ratios.len() / 2)?;
     (!(1.0 / SCALE..=SCALE).contains(&middle)).then(|| {

@@ -7,7 +7,7 @@ use crate::number::figures;
 use crate::number::fixed;
 use crate::output::ReportError;
 use plotters::style::RGBColor;
-use stead_calibration::compensation::{Compensated, Deflection, Figures, Outcome, reduction};
+use stead_calibration::compensation::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, reduction};
 
 const LEFT: i32 = 95;
 const RIGHT: i32 = 970;
@@ -17,7 +17,7 @@ const RIGHT: i32 = 970;
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn compensation(outcome: &Outcome) -> Result<String, ReportError> {
+pub fn compensation(outcome: &CompensatedPath) -> Result<String, ReportError> {
     picture("the picture of the compensation", (1000, 780), |canvas| {
         canvas.text("Deflection before and after compensation", (LEFT, 26), Lettering::new(17.0).bold())?;
         for (top, title, pair, y_label, value) in [
@@ -42,7 +42,7 @@ pub fn compensation(outcome: &Outcome) -> Result<String, ReportError> {
 }
 
 /// By how much the mean changes, to go on with.
-fn change(pair: [Figures; 2]) -> String {
+fn change(pair: [MeanAndMax; 2]) -> String {
     reduction(pair).map_or_else(String::new, |share| {
         let word = if share < 0.0 { "more" } else { "less" };
         format!(", {} % {word}", fixed(share.abs() * 100.0, 1))
@@ -51,7 +51,7 @@ fn change(pair: [Figures; 2]) -> String {
 
 fn draw(
     canvas: &Canvas<'_>,
-    outcome: &Outcome,
+    outcome: &CompensatedPath,
     top: i32,
     y_label: &'static str,
     value: fn(&Deflection) -> f64,
@@ -73,8 +73,9 @@ fn draw(
             let between = panel.x.pixel(first as f64 - 0.5);
             canvas.line(vec![(between, panel.y.start), (between, panel.y.end)], PALE, 1)?;
         }
-        let curve = |of: fn(&Compensated) -> &Deflection, colour: RGBColor| {
-            let place = |(k, point): (usize, &Compensated)| panel.place((first + k) as f64, value(of(point)) * 1e3);
+        let curve = |of: fn(&CompensatedPoint) -> &Deflection, colour: RGBColor| {
+            let place =
+                |(k, point): (usize, &CompensatedPoint)| panel.place((first + k) as f64, value(of(point)) * 1e3);
             let places: Vec<Place> = segment.iter().enumerate().map(place).collect();
             if let [alone] = places[..] { canvas.dot(alone, 3, colour) } else { canvas.curve(&places, colour, 2) }
         };
@@ -102,7 +103,7 @@ mod tests {
     use stead_calibration::compensation::compensate;
     use stead_format::read_compensation;
 
-    fn outcome() -> Outcome {
+    fn outcome() -> CompensatedPath {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
         let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();

@@ -7,8 +7,9 @@ use crate::number::{figures, fixed};
 use crate::output::ReportError;
 use nalgebra::{Vector2, Vector3};
 use plotters::style::RGBColor;
-use stead_calibration::identification::plan::expected::Bar;
-use stead_calibration::identification::plan::{Plan, Request};
+use stead_calibration::identification::LoadCase;
+use stead_calibration::identification::design::expected::ExpectedCompliance;
+use stead_calibration::identification::design::{Design, Request};
 use stead_model::robot::Frames;
 
 const LEFT: i32 = 85;
@@ -26,9 +27,9 @@ const ARROW: f64 = 34.0;
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn measurement_plan(request: &Request, plan: &Plan) -> Result<String, ReportError> {
+pub fn measurement_plan(request: &Request, plan: &Design) -> Result<String, ReportError> {
     picture("the picture of the plan", (1100, 1020), |canvas| {
-        let title = format!("Expected errors of {} configurations", plan.shots.len());
+        let title = format!("Expected errors of {} configurations", plan.load_cases.len());
         canvas.text(&title, (LEFT, 26), Lettering::new(17.0).bold())?;
         legend(canvas, plan)?;
         draw_bars(canvas, plan)?;
@@ -37,16 +38,16 @@ pub fn measurement_plan(request: &Request, plan: &Plan) -> Result<String, Report
 }
 
 /// The three standard deviations of a compliance in per cent of it: plan, best and median of the random sets.
-fn percents(bar: &Bar) -> [Option<f64>; 3] {
+fn percents(bar: &ExpectedCompliance) -> [Option<f64>; 3] {
     [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| 100.0 * d / bar.value))
 }
 
 const COLOURS: [RGBColor; 3] = [GREEN, BLUE, PALE];
 
-fn legend(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
-    let scores = &plan.scores;
+fn legend(canvas: &Canvas<'_>, plan: &Design) -> Drawn {
+    let expected = &plan.errors;
     let names = ["the plan", "best random set", "median random set"];
-    let errors = [scores.planned, scores.best_random, scores.median_random];
+    let errors = [expected.planned, expected.best_random, expected.median_random];
     for (index, (name, error)) in names.into_iter().zip(errors).enumerate() {
         let (x, y) = (LEFT + 330 * index as i32, 56);
         canvas.fill((x, y - 7), (x + 26, y + 7), COLOURS[index])?;
@@ -58,12 +59,12 @@ fn legend(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
         "mm: expected error of the deflection of the tip over {} tests, rms, where the deflection itself is {} mm; random sets: {}",
         plan.tests.len(),
         figures(plan.deflection * 1e3),
-        scores.random_sets
+        expected.random_sets
     );
     canvas.text(&text, (LEFT, 84), Lettering::new(12.0).coloured(INK))
 }
 
-fn draw_bars(canvas: &Canvas<'_>, plan: &Plan) -> Drawn {
+fn draw_bars(canvas: &Canvas<'_>, plan: &Design) -> Drawn {
     let most = plan.bars.iter().flat_map(percents).flatten().fold(0.0, f64::max);
     let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.bars.len().max(1) as f64, LEFT, RIGHT);
@@ -99,8 +100,8 @@ struct Posed {
     force: Vector2<f64>,
 }
 
-fn posed(request: &Request, plan: &Plan, from_above: bool) -> Vec<Posed> {
-    let pose = |(theta, force, _): &([f64; 6], Vector3<f64>, Vector3<f64>)| {
+fn posed(request: &Request, plan: &Design, from_above: bool) -> Vec<Posed> {
+    let pose = |LoadCase { theta, force, .. }: &LoadCase| {
         let frames = Frames::new(&request.robot, theta);
         let load = frames.base_from_flange.point(&request.load_point);
         let (sine, cosine) = libm::sincos(libm::atan2(load.y, load.x));
@@ -112,10 +113,10 @@ fn posed(request: &Request, plan: &Plan, from_above: bool) -> Vec<Posed> {
         let places = [Vector3::zeros(), shoulder, second, third, wrist, frames.base_from_flange.translation, load];
         Posed { arm: places.iter().map(seen).collect(), force: seen(force) / request.load }
     };
-    plan.shots.iter().map(pose).collect()
+    plan.load_cases.iter().map(pose).collect()
 }
 
-fn draw_views(canvas: &Canvas<'_>, request: &Request, plan: &Plan) -> Drawn {
+fn draw_views(canvas: &Canvas<'_>, request: &Request, plan: &Design) -> Drawn {
     let (top, side) = VIEWS;
     let titles = ["From above", "In the vertical plane through axis 1 and the load point"];
     for (index, title) in titles.into_iter().enumerate() {

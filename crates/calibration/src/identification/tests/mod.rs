@@ -3,7 +3,7 @@
 use super::law::{Law, Quantity};
 use super::model::Parameter;
 use super::spring::Geometry;
-use super::synthetic::{Cell, Shot, sheet};
+use super::synthetic::{MeasuringCell, sheet};
 use super::*;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -30,9 +30,9 @@ pub(super) fn arm() -> Robot {
     kr270().with_compliances(laws).unwrap()
 }
 
-pub(super) fn cell(points: usize) -> Cell {
+pub(super) fn cell(points: usize) -> MeasuringCell {
     let places = [Vector3::new(0.1, 0.05, 0.2), Vector3::new(-0.12, 0.08, 0.25), Vector3::new(0.02, -0.15, 0.3)];
-    Cell {
+    MeasuringCell {
         tracker_from_base: Pose {
             rotation: rotation::rotation_from_vector(&Vector3::new(0.7, -1.9, 1.2)),
             translation: Vector3::new(3.1, -2.2, 0.7),
@@ -52,17 +52,17 @@ fn direction(random: &mut ChaCha8Rng) -> Vector3<f64> {
 }
 
 /// Configurations all over the limits, joint 2 at one of some angles, with 2.7 kN in random directions.
-fn shots(random: &mut ChaCha8Rng, count: usize, distinct: usize) -> Vec<Shot> {
+fn load_cases(random: &mut ChaCha8Rng, count: usize, distinct: usize) -> Vec<LoadCase> {
     let robot = arm();
-    let shot = |index: usize| {
+    let load_case = |index: usize| {
         let mut theta: [f64; 6] = std::array::from_fn(|joint| {
             let joint = &robot.joints()[joint];
             random.random_range(joint.min.max(-PI)..joint.max.min(PI))
         });
         theta[1] = 0.2 + 2.3 * (index % distinct) as f64 / (distinct - 1).max(1) as f64;
-        (theta, direction(random) * 2700.0, Vector3::zeros())
+        LoadCase { theta, force: direction(random) * 2700.0, moment: Vector3::zeros() }
     };
-    (0..count).map(shot).collect()
+    (0..count).map(load_case).collect()
 }
 
 /// Normal numbers (Box and Muller 1958).
@@ -71,7 +71,7 @@ pub(super) fn gauss(random: &mut ChaCha8Rng) -> f64 {
     libm::sqrt(-2.0 * libm::log(u)) * libm::cos(random.random_range(0.0..TAU))
 }
 
-pub(super) fn problem(sheet: Sheet, cell: &Cell) -> Problem {
+pub(super) fn problem(sheet: Sheet, cell: &MeasuringCell) -> Problem {
     Problem {
         robot: kr270(),
         sheet,
@@ -88,9 +88,9 @@ pub(super) fn problem(sheet: Sheet, cell: &Cell) -> Problem {
 /// A problem of 20 configurations and 5 distinct angles.
 fn standard(seed: u64, noise: f64, points: usize) -> Problem {
     let cell = cell(points);
-    let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let readings = sheet(&arm(), &cell, &shots, || noise * gauss(&mut random), || 0.0);
+    let readings = sheet(&arm(), &cell, &load_cases, || noise * gauss(&mut random), || 0.0);
     problem(readings, &cell)
 }
 
@@ -115,8 +115,8 @@ fn arm_truth(parameter: law::ArmParameter) -> f64 {
 fn without_noise_everything_is_found_again() {
     for points in [1, 3] {
         let found = identify(&standard(1, 0.0, points)).unwrap();
-        assert_eq!(found.seen.len(), 10);
-        for estimate in &found.seen {
+        assert_eq!(found.compliances.len(), 10);
+        for estimate in &found.compliances {
             let truth = truth(estimate.parameter, estimate.angle);
             assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
         }
@@ -159,8 +159,8 @@ fn reported_deviations_and_intervals_are_those_of_many_sheets() {
     let found: Vec<Identified> =
         (0..REPETITIONS).into_par_iter().map(|seed| identify(&repeated(seed, NOISE)).unwrap()).collect();
     for index in 0..10 {
-        let truth = truth(found[0].seen[index].parameter, found[0].seen[index].angle);
-        assert_calibrated(&format!("seen {index}"), found.iter().map(|found| found.seen[index]), truth);
+        let truth = truth(found[0].compliances[index].parameter, found[0].compliances[index].angle);
+        assert_calibrated(&format!("seen {index}"), found.iter().map(|found| found.compliances[index]), truth);
     }
     for index in 0..8 {
         let truth = arm_truth(found[0].arm[index].parameter);
@@ -202,7 +202,7 @@ fn three_gross_outliers_of_sixty_readings_are_named_and_move_nothing() {
             let named: Vec<usize> = spoilt.outliers().map(|row| row.line).collect();
             assert!(lines.iter().all(|line| named.contains(line)), "{lines:?} are not among {named:?}");
             let moved = |from: &Identified| {
-                let pairs = from.seen.iter().zip(&spoilt.seen);
+                let pairs = from.compliances.iter().zip(&spoilt.compliances);
                 pairs.map(|(a, b)| (a.value - b.value).abs() / a.deviation).fold(0.0, f64::max)
             };
             assert!(moved(&never) < 1e-6, "beside a sheet without these readings: {}", moved(&never));
@@ -229,12 +229,12 @@ fn without(sheet: &Sheet, lines: &[usize]) -> Sheet {
 #[test]
 fn ten_thousand_configurations_of_as_many_angles() {
     let cell = cell(3);
-    let shots = shots(&mut ChaCha8Rng::seed_from_u64(5), 10_000, 10_000);
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(5), 10_000, 10_000);
     let mut random = ChaCha8Rng::seed_from_u64(6);
-    let readings = sheet(&arm(), &cell, &shots, || NOISE * gauss(&mut random), || 0.0);
+    let readings = sheet(&arm(), &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
     let problem = problem(readings, &cell);
     let found = identify(&problem).unwrap();
-    assert_eq!(found.seen.len(), 10_005);
+    assert_eq!(found.compliances.len(), 10_005);
     for estimate in &found.arm {
         let off = (estimate.value - arm_truth(estimate.parameter)) / estimate.deviation;
         assert!(off.abs() < 4.0, "{estimate:?}");
@@ -243,22 +243,22 @@ fn ten_thousand_configurations_of_as_many_angles() {
 
 #[test]
 fn full_poses_are_taken_too() {
-    let cell = Cell { is_full_pose: true, ..cell(1) };
-    let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    let cell = MeasuringCell { is_full_pose: true, ..cell(1) };
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
     let weighted =
         |sheet: Sheet| Problem { noise: Some(NOISE), orientation_noise: Some(1e-4), ..problem(sheet, &cell) };
-    let exact = identify(&weighted(sheet(&arm(), &cell, &shots, || 0.0, || 0.0))).unwrap();
-    for estimate in &exact.seen {
+    let exact = identify(&weighted(sheet(&arm(), &cell, &load_cases, || 0.0, || 0.0))).unwrap();
+    for estimate in &exact.compliances {
         let truth = truth(estimate.parameter, estimate.angle);
         assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
     }
     let [mut first, mut second] = [1, 2].map(ChaCha8Rng::seed_from_u64);
-    let noisy = sheet(&arm(), &cell, &shots, || NOISE * gauss(&mut first), || 1e-4 * gauss(&mut second));
+    let noisy = sheet(&arm(), &cell, &load_cases, || NOISE * gauss(&mut first), || 1e-4 * gauss(&mut second));
     let found = identify(&weighted(noisy.clone())).unwrap();
     let mut places = weighted(noisy);
     places.sheet.readings.iter_mut().for_each(|reading| reading.turn = None);
     let less = identify(&places).unwrap();
-    for (estimate, by_places) in found.seen.iter().zip(&less.seen) {
+    for (estimate, by_places) in found.compliances.iter().zip(&less.compliances) {
         let off = (estimate.value - truth(estimate.parameter, estimate.angle)) / estimate.deviation;
         assert!(off.abs() < 4.0 && estimate.deviation < by_places.deviation, "{estimate:?} {by_places:?}");
     }

@@ -1,34 +1,34 @@
 //! What a sheet does not tell.
 
 use super::super::law::LawError;
-use super::super::normal::Unseen;
+use super::super::normal_equations::Unidentifiable;
 use super::*;
 
 /// What is refused as unseen, by parameters.
-fn unseen(problem: &Problem) -> Vec<Unseen> {
+fn unidentifiable(problem: &Problem) -> Vec<Unidentifiable> {
     match identify(problem) {
-        Err(IdentifyError::Unseen { unseen, .. }) => unseen,
+        Err(IdentifyError::Unidentifiable { unidentifiable, .. }) => unidentifiable,
         other => panic!("{other:?}"),
     }
 }
 
 /// The standard problem without noise, its shots changed.
-fn changed(change: impl Fn(&mut Shot), cell: &Cell) -> Problem {
-    let mut shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
-    shots.iter_mut().for_each(change);
-    problem(sheet(&arm(), cell, &shots, || 0.0, || 0.0), cell)
+fn changed(change: impl Fn(&mut LoadCase), cell: &MeasuringCell) -> Problem {
+    let mut load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    load_cases.iter_mut().for_each(change);
+    problem(sheet(&arm(), cell, &load_cases, || 0.0, || 0.0), cell)
 }
 
 #[test]
 fn what_cannot_be_seen_is_named_and_held_only_on_request() {
-    let vertical = |shot: &mut Shot| shot.1 = Vector3::new(0.0, 0.0, -2700.0);
+    let vertical = |load_case: &mut LoadCase| load_case.force = Vector3::new(0.0, 0.0, -2700.0);
     let no_first = changed(vertical, &cell(3));
-    assert_eq!(unseen(&no_first), [Unseen { parameters: vec![Parameter::Joint(0)] }]);
-    let on_axis = Cell { load_point: Vector3::new(0.0, 0.0, 0.2), ..cell(3) };
+    assert_eq!(unidentifiable(&no_first), [Unidentifiable { parameters: vec![Parameter::Joint(0)] }]);
+    let on_axis = MeasuringCell { load_point: Vector3::new(0.0, 0.0, 0.2), ..cell(3) };
     let no_last = changed(|_| (), &on_axis);
-    assert_eq!(unseen(&no_last), [Unseen { parameters: vec![Parameter::Joint(5)] }]);
-    let straight = changed(|shot| shot.0[4] = 0.0, &cell(3));
-    let alike = unseen(&straight);
+    assert_eq!(unidentifiable(&no_last), [Unidentifiable { parameters: vec![Parameter::Joint(5)] }]);
+    let straight = changed(|load_case| load_case.theta[4] = 0.0, &cell(3));
+    let alike = unidentifiable(&straight);
     assert_eq!(alike.len(), 1);
     let mut pair = alike[0].parameters.clone();
     pair.sort_by_key(|parameter| matches!(parameter, Parameter::Joint(5)));
@@ -37,23 +37,23 @@ fn what_cannot_be_seen_is_named_and_held_only_on_request() {
     let found = identify(&Problem { reduce: true, ..no_first }).unwrap();
     assert_eq!(found.held, [Parameter::Joint(0)]);
     assert_eq!(found.robot.joints()[0].compliance, kr270().joints()[0].compliance);
-    for estimate in &found.seen {
+    for estimate in &found.compliances {
         let truth = truth(estimate.parameter, estimate.angle);
         assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
     }
-    assert!(found.seen.iter().all(|estimate| estimate.parameter != Parameter::Joint(0)));
+    assert!(found.compliances.iter().all(|estimate| estimate.parameter != Parameter::Joint(0)));
 }
 
 #[test]
 fn a_varying_joint_that_is_seen_at_no_angle_keeps_its_law() {
     // Along axes 2 and 3: nothing but rounding is left of their columns.
-    let along = |shot: &mut Shot| {
-        let axis = stead_model::robot::Frames::new(&arm(), &shot.0).twist(1, &Vector3::zeros()).1;
-        shot.1 = axis * 2700.0;
+    let along = |load_case: &mut LoadCase| {
+        let axis = stead_model::robot::Frames::new(&arm(), &load_case.theta).twist(1, &Vector3::zeros()).1;
+        load_case.force = axis * 2700.0;
     };
     for law in [Law::Constant, Law::Spring(GEOMETRY)] {
         let problem = Problem { varying: Some((1, law)), ..changed(along, &cell(3)) };
-        assert_eq!(unseen(&problem).len(), 6);
+        assert_eq!(unidentifiable(&problem).len(), 6);
         let found = identify(&Problem { reduce: true, ..problem }).unwrap();
         assert_eq!(found.held, [Parameter::Joint(1), Parameter::Joint(2)]);
         assert_eq!(found.robot.joints()[1].compliance, kr270().joints()[1].compliance);
@@ -66,7 +66,7 @@ fn a_varying_joint_that_is_seen_at_no_angle_keeps_its_law() {
 
 #[test]
 fn of_two_joints_that_look_alike_one_is_held_and_the_compensator_is_found_all_the_same() {
-    let straight = Problem { reduce: true, ..changed(|shot| shot.0[4] = 0.0, &cell(3)) };
+    let straight = Problem { reduce: true, ..changed(|load_case| load_case.theta[4] = 0.0, &cell(3)) };
     // Held at the truth, the rest comes out true; straight through the sum of both otherwise.
     let mut compliances = kr270().constant_compliances().unwrap();
     compliances[3] = 2.79e-6;
@@ -77,7 +77,7 @@ fn of_two_joints_that_look_alike_one_is_held_and_the_compensator_is_found_all_th
     for estimate in &found.arm {
         assert!((estimate.value / arm_truth(estimate.parameter) - 1.0).abs() < 1e-9, "{estimate:?}");
     }
-    for estimate in &found.seen {
+    for estimate in &found.compliances {
         let truth = truth(estimate.parameter, estimate.angle);
         assert!((estimate.value / truth - 1.0).abs() < 1e-9, "{estimate:?} {truth}");
     }
@@ -86,8 +86,8 @@ fn of_two_joints_that_look_alike_one_is_held_and_the_compensator_is_found_all_th
 #[test]
 fn sheets_that_tell_too_little_are_refused() {
     let few = |count: usize, distinct: usize| {
-        let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), count, distinct);
-        problem(sheet(&arm(), &cell(3), &shots, || 0.0, || 0.0), &cell(3))
+        let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), count, distinct);
+        problem(sheet(&arm(), &cell(3), &load_cases, || 0.0, || 0.0), &cell(3))
     };
     let error = identify(&few(1, 1)).unwrap_err();
     assert!(

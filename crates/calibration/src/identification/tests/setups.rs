@@ -55,18 +55,18 @@ fn the_reading_farthest_off_is_known() {
 #[test]
 fn deviations_of_reference_points_are_those_of_many_sheets() {
     // Flanges that are tilted but a little: how high a point sits on them is told by that alone.
-    let mut shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
-    for (index, (theta, ..)) in shots.iter_mut().enumerate() {
+    let mut load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    for (index, LoadCase { theta, .. }) in load_cases.iter_mut().enumerate() {
         theta[3] = 0.01 * (index % 3) as f64;
         theta[4] = 0.02 * (index % 4) as f64 - theta[1] - theta[2];
     }
     let cell = cell(3);
-    let flanges: Vec<_> = shots.iter().map(|shot| arm().forward(&shot.0)).collect();
+    let flanges: Vec<_> = load_cases.iter().map(|load_case| arm().forward(&load_case.theta)).collect();
     let found: Vec<_> = (0..300_u64)
         .into_par_iter()
         .map(|seed| {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
-            let readings = sheet(&arm(), &cell, &shots, || NOISE * gauss(&mut random), || 0.0);
+            let readings = sheet(&arm(), &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
             let kept = vec![true; readings.readings.len()];
             let start = cell.tracker_from_base.rotation;
             let setup = setup::estimate(&readings, &flanges, &kept, Some(&start)).unwrap();
@@ -96,7 +96,7 @@ fn a_point_whose_deflections_are_all_outliers_is_left_out() {
     }
     let found = identify(&problem).unwrap();
     assert!(found.outliers().count() == 20 && found.outliers().all(|row| row.point == 2));
-    for estimate in &found.seen {
+    for estimate in &found.compliances {
         let off = (estimate.value - truth(estimate.parameter, estimate.angle)) / estimate.deviation;
         assert!(off.abs() < 4.0, "{estimate:?}");
     }
@@ -104,18 +104,18 @@ fn a_point_whose_deflections_are_all_outliers_is_left_out() {
 
 #[test]
 fn what_outliers_alone_see_is_refused_with_their_lines() {
-    let mut shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
-    shots.iter_mut().for_each(|shot| shot.1 = Vector3::new(0.0, 0.0, -2700.0));
-    shots[7].1 = Vector3::new(1500.0, 1500.0, -1500.0);
+    let mut load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    load_cases.iter_mut().for_each(|load_case| load_case.force = Vector3::new(0.0, 0.0, -2700.0));
+    load_cases[7].force = Vector3::new(1500.0, 1500.0, -1500.0);
     let mut random = ChaCha8Rng::seed_from_u64(4);
-    let mut problem = problem(sheet(&arm(), &cell(3), &shots, || NOISE * gauss(&mut random), || 0.0), &cell(3));
+    let mut problem = problem(sheet(&arm(), &cell(3), &load_cases, || NOISE * gauss(&mut random), || 0.0), &cell(3));
     for reading in &mut problem.sheet.readings[21..24] {
         reading.loaded += direction(&mut random) * 3e-3;
     }
     for reduce in [false, true] {
         match identify(&Problem { reduce, ..problem.clone() }) {
-            Err(IdentifyError::Unseen { unseen, outliers, .. }) => {
-                assert_eq!(unseen[0].parameters, [Parameter::Joint(0)]);
+            Err(IdentifyError::Unidentifiable { unidentifiable, outliers, .. }) => {
+                assert_eq!(unidentifiable[0].parameters, [Parameter::Joint(0)]);
                 assert_eq!(outliers, [23, 24, 25]);
             }
             other => panic!("{other:?}"),

@@ -7,22 +7,22 @@ fn leaving_a_configuration_out_is_what_estimating_without_it_gives() {
     let cell = cell(3);
     let plain = [0.54e-6, 0.3e-6, 0.42e-6, 2.79e-6, 3.48e-6, 2.074e-6].map(Compliance::from);
     let robot = kr270().with_compliances(plain).unwrap();
-    let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 8, 8);
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 8, 8);
     let mut random = ChaCha8Rng::seed_from_u64(4);
-    let readings = sheet(&robot, &cell, &shots, || NOISE * gauss(&mut random), || 0.0);
+    let readings = sheet(&robot, &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
     let setup =
         setup::Setup { tracker_from_base: cell.tracker_from_base, points: cell.points.clone(), residual_rms: 0.0 };
     let noise = model::Noise { position: NOISE, orientation: 1.0 };
     let equations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise);
     let layout = model::Layout::new(&readings, None, 0.0);
     let solved = |weights: &[f64]| {
-        let normal = normal::Normal::new(&readings, &layout, &equations, weights);
+        let normal = normal_equations::NormalEquations::new(&readings, &layout, &equations, weights);
         let solution = normal.solve(&normal.all_free(), (&nalgebra::Vector6::zeros(), &[])).unwrap();
         (normal, solution)
     };
     let (normal, solution) = solved(&[1.0; 24]);
     let arm = law::fit(&normal, [true; 6], &solution, &[], Law::Constant).unwrap();
-    let found = validate::leave_one_out(&readings, &layout, &equations, &[true; 24], &arm);
+    let found = cross_validation::leave_one_out(&readings, &layout, &equations, &[true; 24], &arm);
     let mut sum = 0.0;
     for out in 0..8 {
         let weights: Vec<f64> = (0..24).map(|reading| if reading / 3 == out { 0.0 } else { 1.0 }).collect();
@@ -40,8 +40,8 @@ fn intervals_are_students_where_the_noise_is_estimated_and_normal_where_it_is_kn
     // 180 equations for 10 compliances; 1.974017 is the upper 2.5 % point of t with 170 degrees of freedom.
     for (noise, expected) in [(None, 1.974_017), (Some(NOISE), 1.959_964)] {
         let found = identify(&Problem { noise, ..standard(1, NOISE, 3) }).unwrap();
-        assert_eq!(found.degrees, 170);
-        for Estimate { value, deviation, interval: [low, high], .. } in &found.seen {
+        assert_eq!(found.degrees_of_freedom, 170);
+        for Estimate { value, deviation, interval: [low, high], .. } in &found.compliances {
             assert!(((high - value) / deviation - expected).abs() < 1e-6);
             assert!(((value - low) / deviation - expected).abs() < 1e-6);
         }
@@ -54,27 +54,27 @@ fn a_reading_that_is_left_out_is_judged_by_how_well_the_others_predict_it() {
     let cell = cell(1);
     let plain = [0.54e-6, 0.3e-6, 0.42e-6, 2.79e-6, 3.48e-6, 2.074e-6].map(Compliance::from);
     let robot = kr270().with_compliances(plain).unwrap();
-    let shots = shots(&mut ChaCha8Rng::seed_from_u64(3), 9, 9);
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 9, 9);
     let mut random = ChaCha8Rng::seed_from_u64(4);
-    let mut readings = sheet(&robot, &cell, &shots, || NOISE * gauss(&mut random), || 0.0);
+    let mut readings = sheet(&robot, &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
     readings.readings[4].loaded += direction(&mut random) * 5e-3;
     let setup =
         setup::Setup { tracker_from_base: cell.tracker_from_base, points: cell.points.clone(), residual_rms: 0.0 };
     let noise = model::Noise { position: NOISE, orientation: 1.0 };
     let observations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise);
     let layout = model::Layout::new(&readings, None, 0.0);
-    let free = normal::Normal::new(&readings, &layout, &observations, &[1.0; 9]).all_free();
+    let free = normal_equations::NormalEquations::new(&readings, &layout, &observations, &[1.0; 9]).all_free();
     let held = (&nalgebra::Vector6::zeros(), &[][..]);
-    let task = outliers::Task {
+    let search = outliers::OutlierSearch {
         sheet: &readings,
         layout: &layout,
         observations: &observations,
         free: &free,
         held,
-        least_scale: 1e-12,
+        min_scale: 1e-12,
     };
-    let judged = task.judge().unwrap();
-    assert!(judged.kept.iter().enumerate().all(|(index, kept)| *kept == (index != 4)), "{:?}", judged.kept);
+    let robust = search.robust_estimate().unwrap();
+    assert!(robust.kept.iter().enumerate().all(|(index, kept)| *kept == (index != 4)), "{:?}", robust.kept);
     // By dense matrices: the others' estimate, and the variance of its prediction beside that of the reading.
     let mut design = nalgebra::DMatrix::zeros(24, 6);
     let mut deflection = nalgebra::DVector::zeros(24);
@@ -91,6 +91,6 @@ fn a_reading_that_is_left_out_is_judged_by_how_well_the_others_predict_it() {
     let predicted = nalgebra::Matrix3::identity() + own * &covariance * own.transpose();
     let square = (residual.transpose() * predicted.try_inverse().unwrap() * residual)[(0, 0)];
     let expected = libm::sqrt(square / 3.0 / variance);
-    assert!((judged.studentised[4] / expected - 1.0).abs() < 1e-6, "{} {expected}", judged.studentised[4]);
-    assert!((judged.variance / variance - 1.0).abs() < 1e-6);
+    assert!((robust.studentised[4] / expected - 1.0).abs() < 1e-6, "{} {expected}", robust.studentised[4]);
+    assert!((robust.variance / variance - 1.0).abs() < 1e-6);
 }

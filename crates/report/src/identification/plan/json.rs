@@ -5,17 +5,17 @@ use super::super::super::number::Unit;
 use super::super::{URAD, key, rounded};
 use super::warnings;
 use serde_json::{Map, Value, json};
-use stead_calibration::identification::plan::Plan;
-use stead_calibration::identification::plan::blind::{Blind, Reason};
-use stead_calibration::identification::plan::expected::Bar;
+use stead_calibration::identification::design::Design;
+use stead_calibration::identification::design::expected::ExpectedCompliance;
+use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason};
 use stead_format::PlanRun;
 
 /// Significant digits of expected errors.
 const DIGITS: usize = 9;
 
 /// The document: configurations in the order of measuring, expected errors beside those of random sets, warnings.
-pub fn plan_json(run: &PlanRun, plan: &Plan) -> Value {
-    let (request, scores, refused) = (&run.request, &plan.scores, &plan.refused);
+pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
+    let (request, errors, rejected) = (&run.request, &plan.errors, &plan.rejected);
     let configurations = plan.sheet.configurations.iter().map(|configuration| {
         let force: Vec<f64> = configuration.force.iter().map(|part| Unit::FORCE_N.number(*part)).collect();
         json!({
@@ -28,7 +28,7 @@ pub fn plan_json(run: &PlanRun, plan: &Plan) -> Value {
         let (name, factor) = key(&bar.parameter);
         json!({ "parameter": name, "value": digits(bar.value * factor), "std": digits(bar.deviation * factor) })
     });
-    let hardly = plan.hardly.iter().map(|hardly| {
+    let hardly = plan.weakly_observed.iter().map(|hardly| {
         let mut value = compliance(hardly.joint, hardly.angle);
         value.insert("std_percent".to_owned(), digits(hardly.share * 100.0));
         value.insert("lever_mm".to_owned(), json!(Unit::PLACE_MM.number(hardly.lever)));
@@ -48,21 +48,21 @@ pub fn plan_json(run: &PlanRun, plan: &Plan) -> Value {
         "deflection": {
             "tests": plan.tests.len(),
             "rms_mm": length(plan.deflection),
-            "error_mm": length(scores.planned),
-            "best_random_error_mm": length(scores.best_random),
-            "median_random_error_mm": length(scores.median_random),
-            "random_sets": scores.random_sets,
-            "random_sets_that_do_not_tell_all": scores.blind_sets,
+            "error_mm": length(errors.planned),
+            "best_random_error_mm": length(errors.best_random),
+            "median_random_error_mm": length(errors.median_random),
+            "random_sets": errors.random_sets,
+            "random_sets_that_do_not_tell_all": errors.unidentifiable_sets,
         },
         "candidates": {
             "allowed": plan.candidates,
             "drawn": plan.draws,
-            "outside_volume": refused.volume,
-            "too_near_base": refused.radius,
-            "deflected_too_far": refused.deflection,
+            "outside_volume": rejected.volume,
+            "too_near_base": rejected.radius,
+            "deflected_too_far": rejected.deflection,
         },
         "travel_deg": Unit::ANGLE_DEG.number(plan.travel),
-        "unseen": plan.blind.iter().map(unseen).collect::<Vec<_>>(),
+        "unseen": plan.unobservable.iter().map(unidentifiable).collect::<Vec<_>>(),
         "hardly_seen": hardly.collect::<Vec<_>>(),
         "warnings": warnings(run, plan),
     })
@@ -85,7 +85,7 @@ fn compliance(joint: usize, angle: Option<f64>) -> Map<String, Value> {
     map
 }
 
-fn bar(bar: &Bar) -> Value {
+fn bar(bar: &ExpectedCompliance) -> Value {
     let mut map = compliance(bar.joint, bar.angle);
     let urad = |value: Option<f64>| value.map_or(Value::Null, |value| digits(value * URAD));
     map.insert("urad_per_nm".to_owned(), urad(Some(bar.value)));
@@ -100,15 +100,15 @@ fn bar(bar: &Bar) -> Value {
     Value::Object(map)
 }
 
-fn unseen(blind: &Blind) -> Value {
-    let reason = match blind.reason {
-        Reason::LoadsAlongAxis => "loads-along-axis",
-        Reason::LoadOnAxis => "load-on-axis",
-        Reason::NoTorque => "no-torque",
-        Reason::PointsOnAxis => "points-on-axis",
-        Reason::NotApart => "not-apart",
+fn unidentifiable(unobservable: &Unobservable) -> Value {
+    let reason = match unobservable.reason {
+        UnobservableReason::LoadsAlongAxis => "loads-along-axis",
+        UnobservableReason::LoadOnAxis => "load-on-axis",
+        UnobservableReason::NoTorque => "no-torque",
+        UnobservableReason::PointsOnAxis => "points-on-axis",
+        UnobservableReason::NotApart => "not-apart",
     };
     let compliances: Vec<Value> =
-        blind.compliances.iter().map(|(joint, angle)| Value::Object(compliance(*joint, *angle))).collect();
+        unobservable.compliances.iter().map(|(joint, angle)| Value::Object(compliance(*joint, *angle))).collect();
     json!({ "compliances": compliances, "reason": reason })
 }

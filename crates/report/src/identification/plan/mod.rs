@@ -13,8 +13,8 @@ use super::super::picture;
 use super::super::words::compliance_name;
 use crate::number::{figures, fixed};
 use std::path::PathBuf;
-use stead_calibration::identification::plan::blind::{Blind, Reason};
-use stead_calibration::identification::plan::{Loads, Plan};
+use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason};
+use stead_calibration::identification::design::{Design, Loads};
 use stead_calibration::identification::sheet::COLUMNS;
 use stead_format::PlanRun;
 
@@ -25,7 +25,7 @@ pub const SHEET: &str = "sheet.csv";
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Plan) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Design) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
         (SHEET, plan.sheet.form().into_bytes()),
         ("plan.json", documents::bytes(&plan_json(run, plan))),
@@ -45,9 +45,10 @@ pub fn is_form(bytes: &[u8]) -> bool {
 }
 
 /// What the plan does not show or hardly shows, in sentences without a full stop.
-pub fn warnings(run: &PlanRun, plan: &Plan) -> Vec<String> {
-    let mut warnings: Vec<String> = plan.blind.iter().map(|blind| unseen(run, blind)).collect();
-    for hardly in &plan.hardly {
+pub fn warnings(run: &PlanRun, plan: &Design) -> Vec<String> {
+    let mut warnings: Vec<String> =
+        plan.unobservable.iter().map(|unobservable| unidentifiable(run, unobservable)).collect();
+    for hardly in &plan.weakly_observed {
         let axis = hardly.joint + 1;
         warnings.push(format!(
             "{} is hardly seen: its expected standard deviation is {} % of it; the load's lever about axis {axis} is {} mm \
@@ -61,7 +62,7 @@ pub fn warnings(run: &PlanRun, plan: &Plan) -> Vec<String> {
 }
 
 /// Where the plan has no configuration, though it may, in a sentence.
-fn left_out(plan: &Plan) -> Option<String> {
+fn left_out(plan: &Design) -> Option<String> {
     let unused: Vec<String> = plan
         .bars
         .iter()
@@ -76,19 +77,20 @@ fn left_out(plan: &Plan) -> Option<String> {
     })
 }
 
-fn unseen(run: &PlanRun, blind: &Blind) -> String {
-    let names: Vec<String> = blind.compliances.iter().map(|(joint, angle)| compliance_name(*joint, *angle)).collect();
+fn unidentifiable(run: &PlanRun, unobservable: &Unobservable) -> String {
+    let names: Vec<String> =
+        unobservable.compliances.iter().map(|(joint, angle)| compliance_name(*joint, *angle)).collect();
     let first = names.first().map_or("", String::as_str);
-    let axis = blind.compliances.first().map_or(0, |(joint, _)| joint + 1);
-    let told = match blind.reason {
-        Reason::LoadsAlongAxis if run.request.loads == Loads::Vertical => {
+    let axis = unobservable.compliances.first().map_or(0, |(joint, _)| joint + 1);
+    let told = match unobservable.reason {
+        UnobservableReason::LoadsAlongAxis if run.request.loads == Loads::Vertical => {
             format!("{first} is not seen: every load is vertical, along axis {axis}")
         }
-        Reason::LoadsAlongAxis => format!("{first} is not seen: every load is along axis {axis}"),
-        Reason::LoadOnAxis => format!("{first} is not seen: the load acts on axis {axis}"),
-        Reason::NoTorque => format!("{first} is not seen: no load turns joint {axis}"),
-        Reason::PointsOnAxis => format!("{first} is not seen: every reference point is on axis {axis}"),
-        Reason::NotApart => format!("{} cannot be told apart, and {first} is given up", names.join(", ")),
+        UnobservableReason::LoadsAlongAxis => format!("{first} is not seen: every load is along axis {axis}"),
+        UnobservableReason::LoadOnAxis => format!("{first} is not seen: the load acts on axis {axis}"),
+        UnobservableReason::NoTorque => format!("{first} is not seen: no load turns joint {axis}"),
+        UnobservableReason::PointsOnAxis => format!("{first} is not seen: every reference point is on axis {axis}"),
+        UnobservableReason::NotApart => format!("{} cannot be told apart, and {first} is given up", names.join(", ")),
     };
     format!("{told}; the plan is for the others, and a fit needs fit.reduce = true to keep the value of the robot file")
 }

@@ -4,7 +4,7 @@ use super::super::super::number::Unit;
 use super::super::super::output::ReportError;
 use super::super::super::tables::table;
 use super::super::{URAD, key, rounded, unit};
-use stead_calibration::identification::plan::Plan;
+use stead_calibration::identification::design::Design;
 
 /// Significant digits of expected errors.
 const DIGITS: usize = 6;
@@ -15,7 +15,7 @@ fn number(value: f64) -> String {
 
 /// `expected.csv`: every compliance with the standard deviation that `fit` will report for it alone (`std`), that by the law of
 /// its joint over all angles (`std_by_law`), and the same from random sets; then the numbers of the compensator.
-pub(super) fn expected(plan: &Plan) -> Result<Vec<u8>, ReportError> {
+pub(super) fn expected(plan: &Design) -> Result<Vec<u8>, ReportError> {
     let header = [
         "parameter",
         "unit",

@@ -4,17 +4,17 @@ use super::super::super::number::{figures, fixed};
 use super::super::super::text::aligned;
 use super::super::{URAD, key};
 use super::{left_out, warnings};
-use stead_calibration::identification::plan::{Plan, Tests};
+use stead_calibration::identification::design::{Design, TestCases};
 use stead_format::PlanRun;
 
 /// Expected errors of the compliances beside those of random sets, the expected error of the deflection, where the candidates
 /// come from, and what the plan does not show.
-pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
+pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
     let request = &run.request;
     let mut text = format!(
         "{}: {} configurations chosen of {}, {} reference points, {} N, {} mm of noise\n\n",
         request.robot.name(),
-        plan.shots.len(),
+        plan.load_cases.len(),
         plan.candidates,
         request.points.len(),
         figures(request.load),
@@ -25,37 +25,37 @@ pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
         text += "\n";
         text += &aligned(&spring_rows(plan), &[0]);
     }
-    let scores = &plan.scores;
+    let errors = &plan.errors;
     let millimetres = |value: f64| {
         if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "does not tell everything".to_owned() }
     };
     let tests = match &request.tests {
-        Tests::Given(tests) => format!("the {} tests", tests.len()),
-        Tests::Drawn(_) => {
+        TestCases::Given(tests) => format!("the {} tests", tests.len()),
+        TestCases::Drawn(_) => {
             format!("{} random poses under {} N in any direction", plan.tests.len(), figures(request.load))
         }
     };
     text += &format!(
         "\nexpected error of the deflection at {tests}: {} rms, of {} rms\nbest of {} random sets: {}; their median: {}",
-        millimetres(scores.planned),
+        millimetres(errors.planned),
         millimetres(plan.deflection),
-        scores.random_sets,
-        millimetres(scores.best_random),
-        millimetres(scores.median_random)
+        errors.random_sets,
+        millimetres(errors.best_random),
+        millimetres(errors.median_random)
     );
-    if scores.blind_sets > 0 {
-        text += &format!("; sets that do not tell everything: {}", scores.blind_sets);
+    if errors.unidentifiable_sets > 0 {
+        text += &format!("; sets that do not tell everything: {}", errors.unidentifiable_sets);
     }
-    if !plan.blind.is_empty() {
+    if !plan.unobservable.is_empty() {
         text += "\nall errors are without that of the compliances that are not seen (see below)";
     }
-    let refused = &plan.refused;
+    let rejected = &plan.rejected;
     text += &format!(
         "\nof {} configurations drawn {} would leave the volume, {} come too near to the base, {} deflect by more than {} mm\n",
         plan.draws,
-        refused.volume,
-        refused.radius,
-        refused.deflection,
+        rejected.volume,
+        rejected.radius,
+        rejected.deflection,
         figures(request.max_deflection * 1e3)
     );
     text += &format!(
@@ -71,7 +71,7 @@ pub fn plan_text(run: &PlanRun, plan: &Plan) -> String {
     text
 }
 
-fn bar_rows(plan: &Plan) -> Vec<Vec<String>> {
+fn bar_rows(plan: &Design) -> Vec<Vec<String>> {
     let has_law = plan.bars.iter().any(|bar| bar.angle.is_some());
     let mut header = vec!["joint", "at deg", "urad/(N m)", "std", "%"];
     header.extend(has_law.then_some("% by law"));
@@ -92,7 +92,7 @@ fn bar_rows(plan: &Plan) -> Vec<Vec<String>> {
     rows
 }
 
-fn spring_rows(plan: &Plan) -> Vec<Vec<String>> {
+fn spring_rows(plan: &Design) -> Vec<Vec<String>> {
     let header = ["in the robot file", "value", "std", "%"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for bar in &plan.spring {

@@ -3,15 +3,16 @@
 use super::super::law::{Law, LawError};
 use super::super::model::{Layout, Parameter, Response};
 use super::super::setup::{SetupError, estimate};
-use super::super::sheet::Sheet;
-use super::super::synthetic::Shot;
-use super::basis::{Basis, Information, NUMBERS};
-use super::blind::{Blind, Hardly, blind, hardly};
-use super::candidates::{Drawn, Refused, candidates, tests};
-use super::exchange::{Criterion, choose, random_set, worths};
-use super::expected::{ArmBar, Bar, bars, covariance, normal_of, seen, sheet_of, spring_bars};
+use super::super::sheet::{LoadCase, Sheet};
+use super::candidates::{Candidates, Rejected, draw_candidates, test_cases};
+use super::expected::{
+    ExpectedCompliance, ExpectedParameter, bars, covariance, expected_compensator, normal_of, seen, sheet_of,
+};
+use super::fedorov::{IOptimality, exchange, random_set, values};
 use super::order::{ordered, travel};
-use super::request::{Request, Test, Tests};
+use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
+use super::request::{Request, TestCases};
+use super::unobservable::{Unobservable, WeaklyObserved, unobservable, weakly_observed};
 use nalgebra::{Matrix3, Vector6};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,38 +20,38 @@ use stead_model::robot::{Frames, Pose};
 
 /// A set of configurations to measure, and what it will tell.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct Design {
     /// Joint angles and loads, in the order in which to measure.
-    pub shots: Vec<Shot>,
+    pub load_cases: Vec<LoadCase>,
     /// The sheet of these, with what the starting arm would show; base and tracker frame are the same.
     pub sheet: Sheet,
     /// Every compliance with its expected error.
-    pub bars: Vec<Bar>,
+    pub bars: Vec<ExpectedCompliance>,
     /// The numbers of joint and compensator likewise, where the starting robot has a compensator.
-    pub spring: Vec<ArmBar>,
+    pub spring: Vec<ExpectedParameter>,
     /// What sets are worth: root of the mean square error of the deflection of the tip over the tests. m
-    pub scores: Scores,
+    pub errors: ExpectedErrors,
     /// Root of the mean square of that deflection itself, by the starting arm. m
     pub deflection: f64,
     /// Where the deflection of the tip is to be known.
-    pub tests: Vec<Test>,
+    pub tests: Vec<LoadCase>,
     /// What no candidate shows, or this set does not.
-    pub blind: Vec<Blind>,
+    pub unobservable: Vec<Unobservable>,
     /// What is hardly seen.
-    pub hardly: Vec<Hardly>,
+    pub weakly_observed: Vec<WeaklyObserved>,
     /// Candidates the set was chosen from.
     pub candidates: usize,
     /// Configurations drawn to have these.
     pub draws: usize,
     /// Configurations that were not allowed, and why.
-    pub refused: Refused,
+    pub rejected: Rejected,
     /// The joint that turns furthest, summed over the ways from one configuration to the next. rad
     pub travel: f64,
 }
 
 /// What sets are worth. m
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scores {
+pub struct ExpectedErrors {
     /// The plan.
     pub planned: f64,
     /// The best of the random sets, infinite where none tells everything.
@@ -60,17 +61,17 @@ pub struct Scores {
     /// How many random sets there are.
     pub random_sets: usize,
     /// How many of those do not tell everything that the candidates tell.
-    pub blind_sets: usize,
+    pub unidentifiable_sets: usize,
 }
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PlanError {
+pub enum DesignError {
     /// Too few configurations are allowed.
     #[error(
         "of {draws} random configurations only {found} are allowed, where {wanted} are wanted: {} would leave the volume, {} come \
          too near to the base, {} deflect too far",
-        refused.volume, refused.radius, refused.deflection
+        rejected.volume, rejected.radius, rejected.deflection
     )]
     TooFewCandidates {
         /// How many are allowed.
@@ -80,7 +81,7 @@ pub enum PlanError {
         /// How many were drawn.
         draws: usize,
         /// Why the others are not.
-        refused: Refused,
+        rejected: Rejected,
     },
     /// No test pose is allowed.
     #[error("no random test pose is allowed by the volume and the largest deflection")]
@@ -115,8 +116,11 @@ pub enum PlanError {
 /// The plan is at least as good as the best of the random sets: that is one of the starts.
 ///
 /// # Errors
-/// [`PlanError`] when there is no plan.
-pub fn plan(request: &Request, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Plan, PlanError> {
+/// [`DesignError`] when there is no plan.
+pub fn design_experiment(
+    request: &Request,
+    progress: &(dyn Fn(usize, usize) -> bool + Sync),
+) -> Result<Design, DesignError> {
     check_counts(request)?;
     let size = request.configurations;
     let pool = Pool::new(request)?;
@@ -124,88 +128,88 @@ pub fn plan(request: &Request, progress: &(dyn Fn(usize, usize) -> bool + Sync))
     let starts = random.starts(request.starts.saturating_sub(1));
     let (done, of) = (AtomicUsize::new(0), starts.len() + 1);
     let watch = |more: usize| progress(done.fetch_add(more, Ordering::Relaxed) + more, of);
-    let chosen = choose(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(PlanError::Stopped)?;
-    let planned = pool.covariance(&chosen.set).filter(|_| chosen.worth.is_finite());
-    let planned = planned.ok_or(PlanError::NothingTold(size))?;
+    let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(DesignError::Stopped)?;
+    let planned = pool.covariance(&chosen.set).filter(|_| chosen.value.is_finite());
+    let planned = planned.ok_or(DesignError::NothingTold(size))?;
 
-    let shots = ordered(&chosen.set.iter().map(|index| pool.drawn.shots[*index]).collect::<Vec<_>>());
-    let sheet = sheet_of(request, &shots);
+    let load_cases = ordered(&chosen.set.iter().map(|index| pool.drawn.load_cases[*index]).collect::<Vec<_>>());
+    let sheet = sheet_of(request, &load_cases);
     check_setup(request, &sheet)?;
     let (layout, normal) = normal_of(request, &sheet);
-    let (alone, unseen) = seen(&layout, &normal);
-    let mut blind_spots = pool.blind.clone();
-    for spot in blind(request, &shots, &layout, &unseen) {
-        if !blind_spots.iter().any(|known| known.is_same(&spot)) {
-            blind_spots.push(spot);
+    let (alone, unidentifiable) = seen(&layout, &normal);
+    let mut all_unobservable = pool.unobservable.clone();
+    for spot in unobservable(request, &load_cases, &layout, &unidentifiable) {
+        if !all_unobservable.iter().any(|known| known.is_same(&spot)) {
+            all_unobservable.push(spot);
         }
     }
-    let spreads: Vec<Information> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
+    let spreads: Vec<InformationMatrix> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
     let best_random = random.best.and_then(|best| pool.covariance(&random.sets[best]));
-    let mut bars = bars(request, &pool.basis, &pool.free, &planned, &spreads, best_random.as_ref());
+    let mut bars = bars(request, &pool.parameters, &pool.free, &planned, &spreads, best_random.as_ref());
     bars.iter_mut().for_each(|bar| bar.deviation = own_deviation(request, bar, &layout, &alone));
-    Ok(Plan {
-        travel: travel(&shots),
-        hardly: hardly(request, &shots, &bars),
-        shots,
+    Ok(Design {
+        travel: travel(&load_cases),
+        weakly_observed: weakly_observed(request, &load_cases, &bars),
+        load_cases,
         sheet,
         bars,
-        spring: spring_bars(request, &planned),
-        scores: random.scores(chosen.worth),
+        spring: expected_compensator(request, &planned),
+        errors: random.errors(chosen.value),
         deflection: deflection(request, &pool.tests),
         tests: pool.tests,
-        blind: blind_spots,
-        candidates: pool.drawn.shots.len(),
+        unobservable: all_unobservable,
+        candidates: pool.drawn.load_cases.len(),
         draws: pool.drawn.draws,
-        refused: pool.drawn.refused,
+        rejected: pool.drawn.rejected,
     })
 }
 
 /// What there is to choose from, and by what.
 struct Pool<'a> {
     request: &'a Request,
-    drawn: Drawn,
-    tests: Vec<Test>,
-    basis: Basis<'a>,
-    informations: Vec<Information>,
+    drawn: Candidates,
+    tests: Vec<LoadCase>,
+    parameters: Parameters<'a>,
+    informations: Vec<InformationMatrix>,
     /// The numbers of the arm that the candidates tell all together.
-    free: [bool; NUMBERS],
+    free: [bool; MAX_PARAMETERS],
     /// What they do not.
-    blind: Vec<Blind>,
-    criterion: Criterion,
+    unobservable: Vec<Unobservable>,
+    criterion: IOptimality,
 }
 
 impl<'a> Pool<'a> {
-    fn new(request: &'a Request) -> Result<Self, PlanError> {
+    fn new(request: &'a Request) -> Result<Self, DesignError> {
         let size = request.configurations;
-        let drawn = candidates(request);
-        if drawn.shots.len() < size {
-            let (found, draws, refused) = (drawn.shots.len(), drawn.draws, drawn.refused);
-            return Err(PlanError::TooFewCandidates { found, wanted: size, draws, refused });
+        let drawn = draw_candidates(request);
+        if drawn.load_cases.len() < size {
+            let (found, draws, rejected) = (drawn.load_cases.len(), drawn.draws, drawn.rejected);
+            return Err(DesignError::TooFewCandidates { found, wanted: size, draws, rejected });
         }
         let tests = match &request.tests {
-            Tests::Given(tests) => tests.clone(),
-            Tests::Drawn(count) => tests(request, *count),
+            TestCases::Given(tests) => tests.clone(),
+            TestCases::Drawn(count) => test_cases(request, *count),
         };
         if tests.is_empty() {
-            return Err(PlanError::NoTest);
+            return Err(DesignError::NoTest);
         }
-        let basis = Basis::new(&request.robot, request.varying);
-        let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.shots));
-        let (seen, unseen) = normal.tellable();
-        let free = basis.free(&seen);
+        let parameters = Parameters::new(&request.robot, request.varying);
+        let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.load_cases));
+        let (seen, unidentifiable) = normal.identifiable();
+        let free = parameters.free(&seen);
         if !free.contains(&true) {
-            return Err(PlanError::NothingSeen);
+            return Err(DesignError::NothingSeen);
         }
-        let blind = blind(request, &drawn.shots, &layout, &unseen);
-        let informations: Vec<Information> =
-            drawn.shots.par_iter().map(|shot| basis.information(request, shot)).collect();
-        let criterion = Criterion::new(&basis.quality(request, &tests), &free, &informations, size);
-        Ok(Self { request, drawn, tests, basis, informations, free, blind, criterion })
+        let unobservable = unobservable(request, &drawn.load_cases, &layout, &unidentifiable);
+        let informations: Vec<InformationMatrix> =
+            drawn.load_cases.par_iter().map(|load_case| parameters.information(request, load_case)).collect();
+        let criterion = IOptimality::new(&parameters.weighting(request, &tests), &free, &informations, size);
+        Ok(Self { request, drawn, tests, parameters, informations, free, unobservable, criterion })
     }
 
     /// Covariance of the numbers of the arm from a set; nothing where it does not tell them.
-    fn covariance(&self, set: &[usize]) -> Option<Information> {
-        let sum = set.iter().fold(Information::zeros(), |sum, index| sum + self.informations[*index]);
+    fn covariance(&self, set: &[usize]) -> Option<InformationMatrix> {
+        let sum = set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + self.informations[*index]);
         covariance(&sum, &self.free)
     }
 }
@@ -213,7 +217,7 @@ impl<'a> Pool<'a> {
 /// Random sets and what they are worth.
 struct RandomSets {
     sets: Vec<Vec<usize>>,
-    worths: Vec<f64>,
+    values: Vec<f64>,
     best: Option<usize>,
 }
 
@@ -222,9 +226,9 @@ impl RandomSets {
         let (request, of) = (pool.request, pool.informations.len());
         let draw = |draw| random_set(request.seed, draw, request.configurations, of);
         let sets: Vec<Vec<usize>> = (0..request.random_sets).into_par_iter().map(draw).collect();
-        let worths = worths(&pool.criterion, &pool.informations, &sets);
-        let best = (0..sets.len()).min_by(|a, b| worths[*a].total_cmp(&worths[*b]));
-        Self { sets, worths, best }
+        let values = values(&pool.criterion, &pool.informations, &sets);
+        let best = (0..sets.len()).min_by(|a, b| values[*a].total_cmp(&values[*b]));
+        Self { sets, values, best }
     }
 
     /// The best of them, and others in their order.
@@ -233,22 +237,27 @@ impl RandomSets {
         self.best.into_iter().chain(others).take(count).map(|set| self.sets[set].clone()).collect()
     }
 
-    fn scores(&self, planned: f64) -> Scores {
-        let mut ascending = self.worths.clone();
+    fn errors(&self, planned: f64) -> ExpectedErrors {
+        let mut ascending = self.values.clone();
         ascending.sort_by(f64::total_cmp);
-        let root = |worth: Option<&f64>| libm::sqrt(*worth.unwrap_or(&f64::INFINITY));
-        Scores {
+        let root = |value: Option<&f64>| libm::sqrt(*value.unwrap_or(&f64::INFINITY));
+        ExpectedErrors {
             planned: libm::sqrt(planned),
             best_random: root(ascending.first()),
             median_random: root(ascending.get(ascending.len() / 2)),
             random_sets: ascending.len(),
-            blind_sets: ascending.iter().filter(|worth| worth.is_infinite()).count(),
+            unidentifiable_sets: ascending.iter().filter(|value| value.is_infinite()).count(),
         }
     }
 }
 
 /// The standard deviation that a fit reports for a compliance on its own, where the set has its angle.
-fn own_deviation(request: &Request, bar: &Bar, layout: &Layout, alone: &[(Parameter, f64)]) -> Option<f64> {
+fn own_deviation(
+    request: &Request,
+    bar: &ExpectedCompliance,
+    layout: &Layout,
+    alone: &[(Parameter, f64)],
+) -> Option<f64> {
     let is_it = |parameter: Parameter| {
         layout.joint(parameter) == bar.joint
             && match (bar.angle, layout.angle(parameter)) {
@@ -260,7 +269,7 @@ fn own_deviation(request: &Request, bar: &Bar, layout: &Layout, alone: &[(Parame
 }
 
 /// Refuses what cannot be told by counting.
-fn check_counts(request: &Request) -> Result<(), PlanError> {
+fn check_counts(request: &Request) -> Result<(), DesignError> {
     let (size, levels) = (request.configurations, request.levels.len());
     let equations = 3 * size * request.points.len();
     let unknowns = match request.varying {
@@ -271,7 +280,7 @@ fn check_counts(request: &Request) -> Result<(), PlanError> {
         _ => 6,
     };
     if equations < unknowns {
-        return Err(PlanError::TooFew { equations, unknowns });
+        return Err(DesignError::TooFew { equations, unknowns });
     }
     let setup = 6 + 3 * request.points.len();
     if equations < setup {
@@ -281,15 +290,15 @@ fn check_counts(request: &Request) -> Result<(), PlanError> {
 }
 
 /// Refuses a set from whose unloaded readings tracker and reference points could not be found.
-fn check_setup(request: &Request, sheet: &Sheet) -> Result<(), PlanError> {
+fn check_setup(request: &Request, sheet: &Sheet) -> Result<(), DesignError> {
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| request.robot.forward(&c.theta)).collect();
     estimate(sheet, &flanges, &vec![true; sheet.readings.len()], Some(&Matrix3::identity()))?;
     Ok(())
 }
 
 /// Root of the mean square of the deflection in the tests.
-fn deflection(request: &Request, tests: &[Test]) -> f64 {
-    let square = |test: &Test| {
+fn deflection(request: &Request, tests: &[LoadCase]) -> f64 {
+    let square = |test: &LoadCase| {
         let frames = Frames::new(&request.robot, &test.theta);
         let tip = frames.base_from_flange.point(&request.tip);
         let response = Response::new(&frames, &tip, &tip, &test.force, &test.moment);

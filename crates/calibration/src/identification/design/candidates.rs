@@ -1,8 +1,8 @@
 //! Random configurations under random loads, as many as a user could take.
 
 use super::super::model::Response;
-use super::super::synthetic::Shot;
-use super::request::{Loads, Request, Test, Volume};
+use super::super::sheet::LoadCase;
+use super::request::{Loads, Request, Volume};
 use nalgebra::{Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -11,18 +11,18 @@ use stead_model::robot::Frames;
 
 /// What has been drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct Candidates {
     /// The configurations that are allowed.
-    pub shots: Vec<Shot>,
+    pub load_cases: Vec<LoadCase>,
     /// How many were drawn.
     pub draws: usize,
     /// How many of those were not allowed, and why.
-    pub refused: Refused,
+    pub rejected: Rejected,
 }
 
 /// Counts of configurations that are not allowed, by the first reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Refused {
+pub struct Rejected {
     /// Something would be outside the volume.
     pub volume: usize,
     /// Something would be too near to the z axis of the base.
@@ -48,15 +48,16 @@ pub(super) fn stream(seed: u64, purpose: Purpose, index: usize) -> ChaCha8Rng {
 }
 
 /// So many draws for each configuration that is wanted; what is not found by then is not there.
-const PATIENCE: usize = 200;
+const MAX_DRAWS_PER_CANDIDATE: usize = 200;
 
 /// Draws configurations until there are as many candidates as asked for, or nobody would wait for more.
 ///
 /// Joint angles are uniform within the limits and whole hundredths of a degree, components of the force whole tenths of a
 /// newton, so that what a sheet prints is what is planned.
-pub fn candidates(request: &Request) -> Drawn {
-    let mut drawn = Drawn { shots: Vec::with_capacity(request.candidates), draws: 0, refused: Refused::default() };
-    while drawn.shots.len() < request.candidates && drawn.draws < PATIENCE * request.candidates {
+pub fn draw_candidates(request: &Request) -> Candidates {
+    let mut drawn =
+        Candidates { load_cases: Vec::with_capacity(request.candidates), draws: 0, rejected: Rejected::default() };
+    while drawn.load_cases.len() < request.candidates && drawn.draws < MAX_DRAWS_PER_CANDIDATE * request.candidates {
         let mut random = stream(request.seed, Purpose::Candidates, drawn.draws);
         drawn.draws += 1;
         let mut theta = angles(request, &mut random);
@@ -64,27 +65,28 @@ pub fn candidates(request: &Request) -> Drawn {
             theta[request.level_joint] = request.levels[random.random_range(0..request.levels.len())];
         }
         let force = (direction(&request.loads, &mut random) * request.load).map(|value| (value * 10.0).round() / 10.0);
-        let shot = (theta, force, Vector3::zeros());
-        match refusal(request, &shot) {
-            None => drawn.shots.push(shot),
-            Some(reason) => *reason(&mut drawn.refused) += 1,
+        let load_case = LoadCase { theta, force, moment: Vector3::zeros() };
+        match rejection(request, &load_case) {
+            None => drawn.load_cases.push(load_case),
+            Some(reason) => *reason(&mut drawn.rejected) += 1,
         }
     }
     drawn
 }
 
 /// Draws test poses likewise, under loads in any direction.
-pub fn tests(request: &Request, count: usize) -> Vec<Test> {
+pub fn test_cases(request: &Request, count: usize) -> Vec<LoadCase> {
     let mut tests = Vec::with_capacity(count);
-    for draw in 0..PATIENCE * count {
+    for draw in 0..MAX_DRAWS_PER_CANDIDATE * count {
         if tests.len() == count {
             break;
         }
         let mut random = stream(request.seed, Purpose::Tests, draw);
         let theta = angles(request, &mut random);
         let force = direction(&Loads::Any, &mut random) * request.load;
-        if refusal(request, &(theta, force, Vector3::zeros())).is_none() {
-            tests.push(Test { theta, force, moment: Vector3::zeros() });
+        let test = LoadCase { theta, force, moment: Vector3::zeros() };
+        if rejection(request, &test).is_none() {
+            tests.push(test);
         }
     }
     tests
@@ -115,18 +117,21 @@ fn direction(loads: &Loads, random: &mut ChaCha8Rng) -> Vector3<f64> {
 }
 
 /// Why a configuration is not allowed: the count that it belongs to.
-fn refusal(request: &Request, (theta, force, moment): &Shot) -> Option<fn(&mut Refused) -> &mut usize> {
+fn rejection(
+    request: &Request,
+    LoadCase { theta, force, moment }: &LoadCase,
+) -> Option<fn(&mut Rejected) -> &mut usize> {
     let frames = Frames::new(&request.robot, theta);
     let flange = &frames.base_from_flange;
     let at = |place: &Vector3<f64>| flange.point(place);
     let on_flange = request.points.iter().chain([&request.load_point, &request.tip]).map(at);
     let places = || on_flange.clone().chain([frames.wrist_centre(), flange.translation]);
-    let boxed = Volume { least_radius: 0.0, ..request.volume };
+    let boxed = Volume { min_radius: 0.0, ..request.volume };
     if places().any(|place| !boxed.contains(&place)) {
-        return Some(|refused| &mut refused.volume);
+        return Some(|rejected| &mut rejected.volume);
     }
     if places().any(|place| !request.volume.contains(&place)) {
-        return Some(|refused| &mut refused.radius);
+        return Some(|rejected| &mut rejected.radius);
     }
     let compliances = Vector6::from(request.robot.compliances_at(theta));
     let load = at(&request.load_point);
@@ -134,5 +139,5 @@ fn refusal(request: &Request, (theta, force, moment): &Shot) -> Option<fn(&mut R
         let response = Response::new(&frames, &at(point), &load, force, moment);
         (response.linear * compliances).norm() > request.max_deflection
     });
-    is_far.then_some(|refused| &mut refused.deflection)
+    is_far.then_some(|rejected| &mut rejected.deflection)
 }

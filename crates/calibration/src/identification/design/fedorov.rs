@@ -3,33 +3,33 @@
 //!
 //! With eight numbers at most a criterion costs as much as an update of the last one would: everything is computed anew.
 
-use super::basis::{Information, NUMBERS};
 use super::candidates::{Purpose, stream};
+use super::parameters::{InformationMatrix, MAX_PARAMETERS};
 use nalgebra::{SMatrix, SymmetricEigen};
 use rand::RngExt;
 use rayon::prelude::*;
 
 /// The free numbers only, each in a unit in which the sum over a set of mean configurations has a diagonal of one.
-type Packed = [[f64; NUMBERS]; NUMBERS];
+type Packed = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
 
 /// `trace(Q M^-1)`, ready to be evaluated for many M.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Criterion {
+pub struct IOptimality {
     /// The free numbers.
     free: Vec<usize>,
     /// Their units.
-    unit: [f64; NUMBERS],
+    unit: [f64; MAX_PARAMETERS],
     /// Columns whose products sum up to Q.
     factor: Packed,
 }
 
 /// A set of candidates and what it is worth.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chosen {
+pub struct ExactDesign {
     /// Places among the candidates, ascending.
     pub set: Vec<usize>,
     /// `trace(Q M^-1)`. m^2
-    pub worth: f64,
+    pub value: f64,
 }
 
 /// A pivot of less than this part of its diagonal element means that a number is not told, as in the fit.
@@ -41,22 +41,27 @@ const ROUNDS: usize = 200;
 /// Weight of the mean candidate that a greedy start begins with, so that its first steps are told apart.
 const PRIOR: f64 = 1e-3;
 
-impl Criterion {
+impl IOptimality {
     /// For Q, the free numbers, and sets of so many of these candidates.
-    pub fn new(quality: &Information, free: &[bool; NUMBERS], informations: &[Information], size: usize) -> Self {
-        let sum = informations.iter().fold(Information::zeros(), |sum, information| sum + information);
+    pub fn new(
+        weighting: &InformationMatrix,
+        free: &[bool; MAX_PARAMETERS],
+        informations: &[InformationMatrix],
+        size: usize,
+    ) -> Self {
+        let sum = informations.iter().fold(InformationMatrix::zeros(), |sum, information| sum + information);
         let share = size as f64 / informations.len().max(1) as f64;
         let unit = std::array::from_fn(|k| {
             let diagonal = sum[(k, k)] * share;
             if diagonal > 0.0 { 1.0 / libm::sqrt(diagonal) } else { 1.0 }
         });
-        let free: Vec<usize> = (0..NUMBERS).filter(|k| free[*k]).collect();
-        let mut criterion = Self { free, unit, factor: [[0.0; NUMBERS]; NUMBERS] };
+        let free: Vec<usize> = (0..MAX_PARAMETERS).filter(|k| free[*k]).collect();
+        let mut criterion = Self { free, unit, factor: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS] };
         // trace(Q M^-1) is trace(D Q D (D M D)^-1) with the units D: Q is packed as M is.
-        let packed = criterion.packed(quality);
+        let packed = criterion.packed(weighting);
         let size = criterion.free.len();
-        let eigen = SymmetricEigen::new(SMatrix::<f64, NUMBERS, NUMBERS>::from_fn(|i, j| packed[i][j]));
-        for column in 0..NUMBERS {
+        let eigen = SymmetricEigen::new(SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| packed[i][j]));
+        for column in 0..MAX_PARAMETERS {
             let root = libm::sqrt(eigen.eigenvalues[column].max(0.0));
             for row in 0..size {
                 criterion.factor[row][column] = eigen.eigenvectors[(row, column)] * root;
@@ -65,8 +70,8 @@ impl Criterion {
         criterion
     }
 
-    fn packed(&self, information: &Information) -> Packed {
-        let mut packed = [[0.0; NUMBERS]; NUMBERS];
+    fn packed(&self, information: &InformationMatrix) -> Packed {
+        let mut packed = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
         for (i, a) in self.free.iter().enumerate() {
             for (j, b) in self.free.iter().enumerate() {
                 packed[i][j] = information[(*a, *b)] * self.unit[*a] * self.unit[*b];
@@ -76,13 +81,13 @@ impl Criterion {
     }
 
     /// `trace(Q M^-1)`, infinite where M does not tell every free number.
-    pub fn of(&self, information: &Information) -> f64 {
-        self.worth(&self.packed(information))
+    pub fn value(&self, information: &InformationMatrix) -> f64 {
+        self.packed_value(&self.packed(information))
     }
 
-    fn worth(&self, matrix: &Packed) -> f64 {
+    fn packed_value(&self, matrix: &Packed) -> f64 {
         let size = self.free.len();
-        let mut lower = [[0.0; NUMBERS]; NUMBERS];
+        let mut lower = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
         for i in 0..size {
             for j in 0..=i {
                 let mut rest = matrix[i][j];
@@ -99,22 +104,22 @@ impl Criterion {
                 }
             }
         }
-        let mut worth = 0.0;
+        let mut trace = 0.0;
         let mut solved = self.factor;
         for i in 0..size {
             let (done, rest) = solved.split_at_mut(i);
             let row = &mut rest[0];
             for (k, known) in done.iter().enumerate() {
-                for column in 0..NUMBERS {
+                for column in 0..MAX_PARAMETERS {
                     row[column] -= lower[i][k] * known[column];
                 }
             }
             for value in row {
                 *value *= lower[i][i];
-                worth += *value * *value;
+                trace += *value * *value;
             }
         }
-        worth
+        trace
     }
 }
 
@@ -127,7 +132,7 @@ fn add(sum: &mut Packed, part: &Packed, sign: f64) {
 }
 
 fn sum_of(parts: &[Packed], set: &[usize]) -> Packed {
-    let mut sum = [[0.0; NUMBERS]; NUMBERS];
+    let mut sum = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
     set.iter().for_each(|index| add(&mut sum, &parts[*index], 1.0));
     sum
 }
@@ -146,22 +151,22 @@ pub fn random_set(seed: u64, draw: usize, size: usize, of: usize) -> Vec<usize> 
 }
 
 /// What sets are worth, in their order.
-pub fn worths(criterion: &Criterion, informations: &[Information], sets: &[Vec<usize>]) -> Vec<f64> {
-    let sum = |set: &Vec<usize>| set.iter().fold(Information::zeros(), |sum, index| sum + informations[*index]);
-    sets.iter().map(|set| criterion.of(&sum(set))).collect()
+pub fn values(criterion: &IOptimality, informations: &[InformationMatrix], sets: &[Vec<usize>]) -> Vec<f64> {
+    let sum = |set: &Vec<usize>| set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + informations[*index]);
+    sets.iter().map(|set| criterion.value(&sum(set))).collect()
 }
 
 /// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `progress` is told how
 /// many more starts are done and says whether to go on. The result does not depend on the number of threads; ties go to the first.
-pub fn choose(
-    criterion: &Criterion,
-    informations: &[Information],
+pub fn exchange(
+    criterion: &IOptimality,
+    informations: &[InformationMatrix],
     size: usize,
     starts: &[Vec<usize>],
     progress: &(dyn Fn(usize) -> bool + Sync),
-) -> Option<Chosen> {
+) -> Option<ExactDesign> {
     let parts: Vec<Packed> = informations.iter().map(|information| criterion.packed(information)).collect();
-    let improved: Vec<Option<Chosen>> = (0..=starts.len())
+    let improved: Vec<Option<ExactDesign>> = (0..=starts.len())
         .into_par_iter()
         .map(|start| {
             let set = if start == 0 { greedy(criterion, &parts, size) } else { starts[start - 1].clone() };
@@ -169,10 +174,10 @@ pub fn choose(
             if progress(1) { Some(chosen) } else { None }
         })
         .collect();
-    let mut best: Option<Chosen> = None;
+    let mut best: Option<ExactDesign> = None;
     for chosen in improved {
         let chosen = chosen?;
-        if best.as_ref().is_none_or(|best| chosen.worth < best.worth * BETTER) {
+        if best.as_ref().is_none_or(|best| chosen.value < best.value * BETTER) {
             best = Some(chosen);
         }
     }
@@ -180,8 +185,8 @@ pub fn choose(
 }
 
 /// Takes what helps most, one after the other, on top of a little of the mean of all.
-fn greedy(criterion: &Criterion, parts: &[Packed], size: usize) -> Vec<usize> {
-    let mut sum = [[0.0; NUMBERS]; NUMBERS];
+fn greedy(criterion: &IOptimality, parts: &[Packed], size: usize) -> Vec<usize> {
+    let mut sum = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
     let share = PRIOR / parts.len() as f64 * size as f64;
     parts.iter().for_each(|part| add(&mut sum, part, share));
     let mut set = Vec::with_capacity(size);
@@ -200,7 +205,7 @@ fn greedy(criterion: &Criterion, parts: &[Packed], size: usize) -> Vec<usize> {
 
 /// The candidate outside a set that makes the sum worth least, if that is less than a bound.
 fn best_addition(
-    criterion: &Criterion,
+    criterion: &IOptimality,
     parts: &[Packed],
     sum: &Packed,
     is_in: &[bool],
@@ -214,37 +219,37 @@ fn best_addition(
         }
         let mut trial = *sum;
         add(&mut trial, part, 1.0);
-        let worth = criterion.worth(&trial);
-        if worth < least * BETTER {
-            (best, least) = (Some((index, worth)), worth);
+        let value = criterion.packed_value(&trial);
+        if value < least * BETTER {
+            (best, least) = (Some((index, value)), value);
         }
     }
     best
 }
 
 fn improve(
-    criterion: &Criterion,
+    criterion: &IOptimality,
     parts: &[Packed],
     mut set: Vec<usize>,
     goes_on: &(dyn Fn() -> bool + Sync),
-) -> Chosen {
+) -> ExactDesign {
     let mut is_in = vec![false; parts.len()];
     set.iter().for_each(|index| is_in[*index] = true);
-    let mut worth = criterion.worth(&sum_of(parts, &set));
+    let mut value = criterion.packed_value(&sum_of(parts, &set));
     for _ in 0..ROUNDS {
         let mut has_changed = false;
         for place in 0..set.len() {
             let mut without = sum_of(parts, &set);
             add(&mut without, &parts[set[place]], -1.0);
-            let Some((index, _)) = best_addition(criterion, parts, &without, &is_in, worth) else { continue };
+            let Some((index, _)) = best_addition(criterion, parts, &without, &is_in, value) else { continue };
             let mut trial = set.clone();
             trial[place] = index;
             // Anew, without what was taken away and put back.
-            let exact = criterion.worth(&sum_of(parts, &trial));
-            if exact < worth || (worth.is_infinite() && exact.is_finite()) {
+            let exact = criterion.packed_value(&sum_of(parts, &trial));
+            if exact < value || (value.is_infinite() && exact.is_finite()) {
                 is_in[set[place]] = false;
                 is_in[index] = true;
-                (set, worth, has_changed) = (trial, exact, true);
+                (set, value, has_changed) = (trial, exact, true);
             }
         }
         if !has_changed || !goes_on() {
@@ -252,5 +257,5 @@ fn improve(
         }
     }
     set.sort_unstable();
-    Chosen { worth: criterion.worth(&sum_of(parts, &set)), set }
+    ExactDesign { value: criterion.packed_value(&sum_of(parts, &set)), set }
 }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Matrix6, SymmetricEigen, Vector6};
 
 /// Sums over readings: of the products of columns, and of columns and deflections.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Normal {
+pub struct NormalEquations {
     /// The varying joint, whose row and column of `shared` are zero.
     pub varying: Option<usize>,
     /// Products of the columns of the joints that do not vary.
@@ -35,14 +35,14 @@ pub struct Group {
 
 /// Which parameters are free; the others keep the values they are given.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Free {
+pub struct FreeParameters {
     /// Joints; the varying one is not among them.
     pub joints: [bool; 6],
     /// Distinct angles.
     pub groups: Vec<bool>,
 }
 
-impl Free {
+impl FreeParameters {
     /// Holds a parameter; whether it was free before.
     fn hold(&mut self, parameter: Parameter) -> bool {
         let slot = match parameter {
@@ -76,19 +76,19 @@ pub struct Solution {
 
 /// A combination of parameters that the readings do not see.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Unseen {
+pub struct Unidentifiable {
     /// The parameters in it, the one with the largest share first. One alone cannot be seen at all.
     pub parameters: Vec<Parameter>,
 }
 
 /// A column whose root mean square is less than this part of the largest is taken for zero: what is left is rounding.
-const DEAD: f64 = 1e-8;
+const ZERO_COLUMN: f64 = 1e-8;
 /// Columns of unit length whose smallest singular value squared is less than this part of the largest are dependent.
 const DEPENDENT: f64 = 1e-11;
 /// Parameters with less than this share of a dependence are not named.
 const SHARE: f64 = 0.05;
 
-impl Normal {
+impl NormalEquations {
     /// Sums over all readings with these weights, one for each reading.
     pub fn new(sheet: &Sheet, layout: &Layout, observations: &[Observation], weights: &[f64]) -> Self {
         let group = Group { coupling: Vector6::zeros(), diagonal: 0.0, rhs: 0.0, weight: 0.0 };
@@ -126,26 +126,32 @@ impl Normal {
     }
 
     /// All parameters free.
-    pub fn all_free(&self) -> Free {
-        Free { joints: std::array::from_fn(|joint| self.varying != Some(joint)), groups: vec![true; self.groups.len()] }
+    pub fn all_free(&self) -> FreeParameters {
+        FreeParameters {
+            joints: std::array::from_fn(|joint| self.varying != Some(joint)),
+            groups: vec![true; self.groups.len()],
+        }
     }
 
     /// Parameters whose columns are nothing but rounding.
-    fn dead(&self, free: &Free) -> Vec<Parameter> {
+    fn zero_columns(&self, free: &FreeParameters) -> Vec<Parameter> {
         let mean = |square: f64, weight: f64| if weight > 0.0 { square / weight } else { 0.0 };
         let joint = |joint: usize| mean(self.shared[(joint, joint)], self.weight);
         let group = |group: usize| mean(self.groups[group].diagonal, self.groups[group].weight);
         let largest = (0..6).map(joint).chain((0..self.groups.len()).map(group)).fold(0.0, f64::max);
-        let joints = (0..6).filter(|j| free.joints[*j] && joint(*j) <= DEAD * DEAD * largest).map(Parameter::Joint);
-        let groups = (0..self.groups.len()).filter(|g| free.groups[*g] && group(*g) <= DEAD * DEAD * largest);
+        let joints = (0..6)
+            .filter(|j| free.joints[*j] && joint(*j) <= ZERO_COLUMN * ZERO_COLUMN * largest)
+            .map(Parameter::Joint);
+        let groups =
+            (0..self.groups.len()).filter(|g| free.groups[*g] && group(*g) <= ZERO_COLUMN * ZERO_COLUMN * largest);
         joints.chain(groups.map(Parameter::Group)).collect()
     }
 
     /// Everything that the readings do not see: dead columns first, or, where there are none, dependent ones.
-    pub fn unseen(&self, free: &Free) -> Vec<Unseen> {
-        let dead = self.dead(free);
-        if !dead.is_empty() {
-            return dead.into_iter().map(|parameter| Unseen { parameters: vec![parameter] }).collect();
+    pub fn unidentifiable(&self, free: &FreeParameters) -> Vec<Unidentifiable> {
+        let zero_columns = self.zero_columns(free);
+        if !zero_columns.is_empty() {
+            return zero_columns.into_iter().map(|parameter| Unidentifiable { parameters: vec![parameter] }).collect();
         }
         let joints = free_joints(free);
         if joints.is_empty() {
@@ -170,22 +176,22 @@ impl Normal {
             }
             shares.retain(|(_, share)| share.abs() > SHARE);
             shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-            Unseen { parameters: shares.into_iter().map(|(parameter, _)| parameter).collect() }
+            Unidentifiable { parameters: shares.into_iter().map(|(parameter, _)| parameter).collect() }
         };
         dependent.map(name).collect()
     }
 
     /// The parameters that can be told, and what the readings do not see, all of it: of every combination the first parameter is
     /// taken out until the others can be told.
-    pub fn tellable(&self) -> (Free, Vec<Unseen>) {
+    pub fn identifiable(&self) -> (FreeParameters, Vec<Unidentifiable>) {
         let mut free = self.all_free();
-        let mut all: Vec<Unseen> = Vec::new();
+        let mut all: Vec<Unidentifiable> = Vec::new();
         loop {
-            let unseen = self.unseen(&free);
+            let unidentifiable = self.unidentifiable(&free);
             let known = all.len();
-            for unseen in unseen {
-                if unseen.parameters.first().is_some_and(|first| free.hold(*first)) {
-                    all.push(unseen);
+            for unidentifiable in unidentifiable {
+                if unidentifiable.parameters.first().is_some_and(|first| free.hold(*first)) {
+                    all.push(unidentifiable);
                 }
             }
             if all.len() == known {
@@ -195,14 +201,14 @@ impl Normal {
     }
 
     /// Products of the joints' columns less what the free groups explain of them (Schur complement).
-    fn reduced(&self, free: &Free) -> Matrix6<f64> {
+    fn reduced(&self, free: &FreeParameters) -> Matrix6<f64> {
         let groups = self.groups.iter().zip(&free.groups).filter(|(_, free)| **free);
         groups.fold(self.shared, |sum, (group, _)| sum - group.coupling * group.coupling.transpose() / group.diagonal)
     }
 
     /// The least-squares estimate (Klimchik et al. 2017, eq. 18), with what is not free held at the values of `held`;
     /// nothing where the matrix is singular.
-    pub fn solve(&self, free: &Free, held: (&Vector6<f64>, &[f64])) -> Option<Solution> {
+    pub fn solve(&self, free: &FreeParameters, held: (&Vector6<f64>, &[f64])) -> Option<Solution> {
         let (mut joints, mut groups) = (*held.0, held.1.to_vec());
         for (joint, is_free) in free.joints.iter().enumerate() {
             if *is_free || self.varying == Some(joint) {
@@ -242,12 +248,12 @@ impl Normal {
 }
 
 /// The free joints in order.
-fn free_joints(free: &Free) -> Vec<usize> {
+fn free_joints(free: &FreeParameters) -> Vec<usize> {
     (0..6).filter(|joint| free.joints[*joint]).collect()
 }
 
 /// The inverse over the free joints, zero elsewhere.
-fn inverse(matrix: &Matrix6<f64>, free: &Free) -> Option<Matrix6<f64>> {
+fn inverse(matrix: &Matrix6<f64>, free: &FreeParameters) -> Option<Matrix6<f64>> {
     let joints = free_joints(free);
     let scale: Vec<f64> = joints.iter().map(|j| 1.0 / libm::sqrt(matrix[(*j, *j)])).collect();
     let size = joints.len();

@@ -2,19 +2,19 @@
 
 use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::model::{Layout, Noise, Parameter, observations};
-use super::super::normal::{Normal, Unseen};
+use super::super::normal_equations::{NormalEquations, Unidentifiable};
 use super::super::setup::Setup;
-use super::super::sheet::Sheet;
+use super::super::sheet::{LoadCase, Sheet};
 use super::super::spring::scaled_inverse;
-use super::super::synthetic::{Cell, Shot, sheet};
-use super::basis::{Basis, Information, NUMBERS};
+use super::super::synthetic::{MeasuringCell, sheet};
+use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
 use super::request::Request;
 use nalgebra::{DMatrix, SVector, Vector6};
 use stead_model::robot::{Compliance, Pose};
 
 /// A compliance and how well it will be known. rad/(N m)
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bar {
+pub struct ExpectedCompliance {
     /// The joint, from 0.
     pub joint: usize,
     /// The angle to which it belongs, where the joint has several compliances. rad
@@ -31,7 +31,7 @@ pub struct Bar {
     pub median_random: Option<f64>,
 }
 
-impl Bar {
+impl ExpectedCompliance {
     /// The smallest standard deviation that the plan gives, as a share of the compliance.
     pub fn share(&self) -> f64 {
         self.by_law / self.value
@@ -40,7 +40,7 @@ impl Bar {
 
 /// A number of the robot file beside which a compensator stands, and how well it will be known. SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArmBar {
+pub struct ExpectedParameter {
     /// Which number.
     pub parameter: ArmParameter,
     /// As the starting robot has it.
@@ -50,32 +50,32 @@ pub struct ArmBar {
 }
 
 /// A sheet of configurations with what the starting arm would show, base and tracker frame being the same.
-pub fn sheet_of(request: &Request, shots: &[Shot]) -> Sheet {
-    let cell = Cell {
+pub fn sheet_of(request: &Request, load_cases: &[LoadCase]) -> Sheet {
+    let cell = MeasuringCell {
         tracker_from_base: Pose::identity(),
         load_point: request.load_point,
         points: request.points.clone(),
         is_full_pose: false,
     };
-    sheet(&request.robot, &cell, shots, || 0.0, || 0.0)
+    sheet(&request.robot, &cell, load_cases, || 0.0, || 0.0)
 }
 
 /// The normal equations that `fit` will have for a sheet, in equations of unit variance, and its parameters.
-pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, Normal) {
+pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) {
     let setup = Setup { tracker_from_base: Pose::identity(), points: request.points.clone(), residual_rms: 0.0 };
     let noise = Noise { position: request.noise, orientation: 1.0 };
     let equations = observations(&request.robot, sheet, &setup, &request.load_point, &noise);
     let layout = Layout::new(sheet, request.varying.map(|(joint, _)| joint), request.angle_tolerance);
-    let normal = Normal::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
+    let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     (layout, normal)
 }
 
 /// The compliances that `fit` will report from a sheet, each on its own, with their standard deviations; and what it will
 /// not see.
-pub fn seen(layout: &Layout, normal: &Normal) -> (Vec<(Parameter, f64)>, Vec<Unseen>) {
-    let (free, unseen) = normal.tellable();
+pub fn seen(layout: &Layout, normal: &NormalEquations) -> (Vec<(Parameter, f64)>, Vec<Unidentifiable>) {
+    let (free, unidentifiable) = normal.identifiable();
     let held = vec![0.0; layout.angles.len()];
-    let Some(solution) = normal.solve(&free, (&Vector6::zeros(), &held)) else { return (vec![], unseen) };
+    let Some(solution) = normal.solve(&free, (&Vector6::zeros(), &held)) else { return (vec![], unidentifiable) };
     let deviation = |parameter: Parameter| {
         let joint = layout.joint(parameter);
         let group = match parameter {
@@ -84,14 +84,17 @@ pub fn seen(layout: &Layout, normal: &Normal) -> (Vec<(Parameter, f64)>, Vec<Uns
         };
         (parameter, libm::sqrt(solution.covariance(layout.varying, group)[(joint, joint)]))
     };
-    (layout.parameters().into_iter().filter(|parameter| free.contains(*parameter)).map(deviation).collect(), unseen)
+    (
+        layout.parameters().into_iter().filter(|parameter| free.contains(*parameter)).map(deviation).collect(),
+        unidentifiable,
+    )
 }
 
 /// Covariance of the free numbers of the arm, zero elsewhere; nothing where they are not told.
-pub fn covariance(information: &Information, free: &[bool; NUMBERS]) -> Option<Information> {
-    let free: Vec<usize> = (0..NUMBERS).filter(|k| free[*k]).collect();
+pub fn covariance(information: &InformationMatrix, free: &[bool; MAX_PARAMETERS]) -> Option<InformationMatrix> {
+    let free: Vec<usize> = (0..MAX_PARAMETERS).filter(|k| free[*k]).collect();
     let inverse = scaled_inverse(&DMatrix::from_fn(free.len(), free.len(), |i, j| information[(free[i], free[j])]))?;
-    let mut covariance = Information::zeros();
+    let mut covariance = InformationMatrix::zeros();
     for (i, a) in free.iter().enumerate() {
         for (j, b) in free.iter().enumerate() {
             covariance[(*a, *b)] = inverse[(i, j)];
@@ -101,12 +104,12 @@ pub fn covariance(information: &Information, free: &[bool; NUMBERS]) -> Option<I
 }
 
 /// Standard deviation of something with these derivatives by the numbers of the arm.
-pub fn deviation(covariance: &Information, derivatives: &SVector<f64, NUMBERS>) -> f64 {
+pub fn deviation(covariance: &InformationMatrix, derivatives: &SVector<f64, MAX_PARAMETERS>) -> f64 {
     libm::sqrt((covariance * derivatives).dot(derivatives).max(0.0))
 }
 
 /// The joints and, where one varies, its angles: every compliance that a plan has an error bar for.
-pub fn compliances(request: &Request, free: &[bool; NUMBERS]) -> Vec<(usize, Option<f64>)> {
+pub fn compliances(request: &Request, free: &[bool; MAX_PARAMETERS]) -> Vec<(usize, Option<f64>)> {
     let entry = |joint: usize| match request.varying {
         Some((varying, _)) if varying == joint => request.levels.iter().map(|angle| (joint, Some(*angle))).collect(),
         _ => vec![(joint, None)],
@@ -115,7 +118,7 @@ pub fn compliances(request: &Request, free: &[bool; NUMBERS]) -> Vec<(usize, Opt
 }
 
 /// The numbers of the compensator and of the joint beside it, where the starting robot has them.
-pub fn spring_bars(request: &Request, covariance: &Information) -> Vec<ArmBar> {
+pub fn expected_compensator(request: &Request, covariance: &InformationMatrix) -> Vec<ExpectedParameter> {
     let Some((joint, Law::Spring(_))) = request.varying else { return vec![] };
     let Compliance::Compensated { alone, compensator } = request.robot.joints()[joint].compliance else {
         return vec![];
@@ -124,7 +127,7 @@ pub fn spring_bars(request: &Request, covariance: &Information) -> Vec<ArmBar> {
     let bar = |quantity: Quantity, value: f64, derivatives: [(usize, f64); 2]| {
         let mut row = SVector::zeros();
         derivatives.iter().for_each(|(number, slope)| row[*number] += slope);
-        ArmBar { parameter: ArmParameter { joint, quantity }, value, deviation: deviation(covariance, &row) }
+        ExpectedParameter { parameter: ArmParameter { joint, quantity }, value, deviation: deviation(covariance, &row) }
     };
     vec![
         bar(Quantity::Compliance, alone, [(joint, -alone * alone), (joint, 0.0)]),
@@ -136,18 +139,18 @@ pub fn spring_bars(request: &Request, covariance: &Information) -> Vec<ArmBar> {
 /// The covariances by which the compliance of a joint at an angle is judged.
 pub(super) fn bars(
     request: &Request,
-    basis: &Basis<'_>,
-    free: &[bool; NUMBERS],
-    plan: &Information,
-    random: &[Information],
-    best_random: Option<&Information>,
-) -> Vec<Bar> {
+    parameters: &Parameters<'_>,
+    free: &[bool; MAX_PARAMETERS],
+    plan: &InformationMatrix,
+    random: &[InformationMatrix],
+    best_random: Option<&InformationMatrix>,
+) -> Vec<ExpectedCompliance> {
     let bar = |(joint, angle): (usize, Option<f64>)| {
         let at = angle.unwrap_or_default();
-        let row = basis.row(joint, at);
+        let row = parameters.row(joint, at);
         let mut spread: Vec<f64> = random.iter().map(|covariance| deviation(covariance, &row)).collect();
         spread.sort_by(f64::total_cmp);
-        Bar {
+        ExpectedCompliance {
             joint,
             angle,
             value: request.robot.joints()[joint].compliance_at(at),

@@ -7,35 +7,35 @@
 
 use super::super::law::Law;
 use super::super::model::{Noise, Response};
-use super::super::normal::Free;
-use super::super::synthetic::Shot;
-use super::request::{Request, Test};
+use super::super::normal_equations::FreeParameters;
+use super::super::sheet::LoadCase;
+use super::request::Request;
 use nalgebra::{SMatrix, SVector};
 use stead_model::robot::{Frames, Robot};
 
 /// Most numbers of an arm. The first six are those of the joints, K_theta in place of the compliance beside a compensator;
 /// then K_GC and s_0 K_GC.
-pub const NUMBERS: usize = 8;
+pub const MAX_PARAMETERS: usize = 8;
 /// Products of derivatives by the numbers of the arm.
-pub type Information = SMatrix<f64, NUMBERS, NUMBERS>;
+pub type InformationMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 /// Derivatives of the six compliances, in rows, by the numbers of the arm.
-pub type Derivatives = SMatrix<f64, 6, NUMBERS>;
+pub type Derivatives = SMatrix<f64, 6, MAX_PARAMETERS>;
 
 /// How the compliances of an arm hang on its numbers.
 #[derive(Debug, Clone, Copy)]
-pub struct Basis<'a> {
+pub struct Parameters<'a> {
     robot: &'a Robot,
     varying: Option<(usize, Law)>,
 }
 
-impl<'a> Basis<'a> {
+impl<'a> Parameters<'a> {
     /// Of an arm and the law of its varying joint.
     pub fn new(robot: &'a Robot, varying: Option<(usize, Law)>) -> Self {
         Self { robot, varying }
     }
 
     /// Which numbers there are and which of them are free where these compliances are.
-    pub fn free(&self, free: &Free) -> [bool; NUMBERS] {
+    pub fn free(&self, free: &FreeParameters) -> [bool; MAX_PARAMETERS] {
         let is_spring = matches!(self.varying, Some((_, Law::Spring(_))));
         let group = free.groups.iter().any(|free| *free);
         std::array::from_fn(|number| match self.varying {
@@ -46,7 +46,7 @@ impl<'a> Basis<'a> {
     }
 
     /// Derivatives of the compliance of a joint (from 0) at its angle (rad).
-    pub fn row(&self, joint: usize, angle: f64) -> SVector<f64, NUMBERS> {
+    pub fn row(&self, joint: usize, angle: f64) -> SVector<f64, MAX_PARAMETERS> {
         let mut row = SVector::zeros();
         match self.varying {
             Some((varying, Law::Spring(geometry))) if varying == joint => {
@@ -71,7 +71,7 @@ impl<'a> Basis<'a> {
     }
 
     /// What a configuration tells: the normal matrix of its readings, for equations of unit variance.
-    pub fn information(&self, request: &Request, (theta, force, moment): &Shot) -> Information {
+    pub fn information(&self, request: &Request, LoadCase { theta, force, moment }: &LoadCase) -> InformationMatrix {
         let frames = Frames::new(self.robot, theta);
         let at = |place| frames.base_from_flange.point(place);
         let load = at(&request.load_point);
@@ -82,11 +82,11 @@ impl<'a> Basis<'a> {
             let design = response.linear * noise.weights().0 * derivatives;
             design.tr_mul(&design)
         };
-        request.points.iter().map(point).fold(Information::zeros(), |sum, part| sum + part)
+        request.points.iter().map(point).fold(InformationMatrix::zeros(), |sum, part| sum + part)
     }
 
     /// Derivatives of the deflection of the tip in a test.
-    pub fn deflection(&self, request: &Request, test: &Test) -> SMatrix<f64, 3, NUMBERS> {
+    pub fn deflection(&self, request: &Request, test: &LoadCase) -> SMatrix<f64, 3, MAX_PARAMETERS> {
         let frames = Frames::new(self.robot, &test.theta);
         let tip = frames.base_from_flange.point(&request.tip);
         let response = Response::new(&frames, &tip, &tip, &test.force, &test.moment);
@@ -95,8 +95,8 @@ impl<'a> Basis<'a> {
 
     /// Q: mean over the tests of the products of the derivatives of the deflection. `trace(Q C)` is the mean square error of the
     /// deflection where C is the covariance of the numbers. m^2
-    pub fn quality(&self, request: &Request, tests: &[Test]) -> Information {
-        let sum = tests.iter().fold(Information::zeros(), |sum, test| {
+    pub fn weighting(&self, request: &Request, tests: &[LoadCase]) -> InformationMatrix {
+        let sum = tests.iter().fold(InformationMatrix::zeros(), |sum, test| {
             let by_numbers = self.deflection(request, test);
             sum + by_numbers.tr_mul(&by_numbers)
         });

@@ -1,6 +1,7 @@
 //! What is to be planned.
 
 use super::super::law::Law;
+use super::super::sheet::LoadCase;
 use nalgebra::Vector3;
 use stead_model::robot::Robot;
 
@@ -36,7 +37,7 @@ pub struct Request {
     /// The point whose deflection is to be known, in the flange frame. m
     pub tip: Vector3<f64>,
     /// Where it is to be known.
-    pub tests: Tests,
+    pub tests: TestCases,
     /// How many configurations to choose.
     pub configurations: usize,
     /// From how many.
@@ -48,7 +49,7 @@ pub struct Request {
     /// Random sets to compare with.
     pub random_sets: usize,
     /// A compliance whose expected standard deviation is above this share of it is hardly seen.
-    pub hardly: f64,
+    pub max_relative_deviation: f64,
 }
 
 /// Directions of the load, in the base frame, whose z axis points up.
@@ -68,38 +69,27 @@ pub enum Loads {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Volume {
     /// Lowest and highest x, y and z. m
-    pub ends: [[f64; 2]; 3],
+    pub ranges: [[f64; 2]; 3],
     /// Least distance from the z axis. m
-    pub least_radius: f64,
+    pub min_radius: f64,
 }
 
 impl Volume {
     /// Everywhere.
-    pub const OPEN: Self = Self { ends: [[f64::NEG_INFINITY, f64::INFINITY]; 3], least_radius: 0.0 };
+    pub const OPEN: Self = Self { ranges: [[f64::NEG_INFINITY, f64::INFINITY]; 3], min_radius: 0.0 };
 
     /// Whether a place is in it.
     pub fn contains(&self, place: &Vector3<f64>) -> bool {
-        let is_between = place.iter().zip(self.ends).all(|(value, [low, high])| (low..=high).contains(value));
-        is_between && libm::hypot(place.x, place.y) >= self.least_radius
+        let is_between = place.iter().zip(self.ranges).all(|(value, [low, high])| (low..=high).contains(value));
+        is_between && libm::hypot(place.x, place.y) >= self.min_radius
     }
-}
-
-/// A pose of the arm and a load on the tip, in the base frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Test {
-    /// Joint angles. rad
-    pub theta: [f64; 6],
-    /// Force on the tip. N
-    pub force: Vector3<f64>,
-    /// Moment on the tip. N m
-    pub moment: Vector3<f64>,
 }
 
 /// Where the deflection of the tip is to be known.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Tests {
+pub enum TestCases {
     /// Here.
-    Given(Vec<Test>),
+    Given(Vec<LoadCase>),
     /// At so many poses drawn as the candidates are, but at any angle of every joint and under loads in any direction.
     Drawn(usize),
 }

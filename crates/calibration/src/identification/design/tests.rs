@@ -1,14 +1,15 @@
 //! Plans against plain counting, against random sets, and against what `fit` reports in the end.
 
 use super::super::law::{Law, Quantity};
+use super::super::sheet::LoadCase;
 use super::super::synthetic::sheet;
 use super::super::tests::{GEOMETRY, NOISE, arm, cell, gauss, problem};
 use super::super::{Problem, identify};
-use super::basis::{Basis, Information, NUMBERS};
-use super::blind::Reason;
-use super::candidates::candidates;
-use super::exchange::{Criterion, choose, random_set, worths};
+use super::candidates::draw_candidates;
 use super::expected::{normal_of, sheet_of};
+use super::fedorov::{IOptimality, exchange, random_set, values};
+use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
+use super::unobservable::UnobservableReason;
 use super::*;
 use nalgebra::{DMatrix, Vector3};
 use rand::SeedableRng;
@@ -46,48 +47,52 @@ fn request(seed: u64) -> Request {
         volume: Volume::OPEN,
         max_deflection: 0.02,
         tip: cell(3).load_point,
-        tests: Tests::Drawn(100),
+        tests: TestCases::Drawn(100),
         configurations: 20,
         candidates: 400,
         seed,
         starts: 4,
         random_sets: 1000,
-        hardly: 0.2,
+        max_relative_deviation: 0.2,
         robot,
     }
 }
 
-fn planned(request: &Request) -> Plan {
-    plan(request, &|_, _| true).unwrap()
+fn planned(request: &Request) -> Design {
+    design_experiment(request, &|_, _| true).unwrap()
 }
 
 /// Candidates' informations, and the criterion over all numbers.
-fn prepared(request: &Request) -> (Vec<Information>, Criterion, Information) {
-    let basis = Basis::new(&request.robot, request.varying);
-    let informations: Vec<_> = candidates(request).shots.iter().map(|shot| basis.information(request, shot)).collect();
-    let tests = super::candidates::tests(request, 30);
-    let quality = basis.quality(request, &tests);
+fn prepared(request: &Request) -> (Vec<InformationMatrix>, IOptimality, InformationMatrix) {
+    let parameters = Parameters::new(&request.robot, request.varying);
+    let informations: Vec<_> = draw_candidates(request)
+        .load_cases
+        .iter()
+        .map(|load_case| parameters.information(request, load_case))
+        .collect();
+    let tests = super::candidates::test_cases(request, 30);
+    let weighting = parameters.weighting(request, &tests);
     let free = std::array::from_fn(|number| number < 6 || request.varying.is_some());
-    let criterion = Criterion::new(&quality, &free, &informations, request.configurations);
-    (informations, criterion, quality)
+    let criterion = IOptimality::new(&weighting, &free, &informations, request.configurations);
+    (informations, criterion, weighting)
 }
 
 #[test]
 fn the_criterion_is_the_trace_of_the_product_with_the_inverse() {
     for varying in [None, Some((1, Law::Spring(GEOMETRY)))] {
         let request = Request { varying, candidates: 60, ..request(1) };
-        let (informations, criterion, quality) = prepared(&request);
-        let size = if varying.is_some() { NUMBERS } else { 6 };
+        let (informations, criterion, weighting) = prepared(&request);
+        let size = if varying.is_some() { MAX_PARAMETERS } else { 6 };
         for draw in 0..20 {
             let set = random_set(9, draw, 20, informations.len());
-            let sum = set.iter().fold(Information::zeros(), |sum, index| sum + informations[*index]);
-            let [matrix, q] = [sum, quality].map(|m| DMatrix::from_fn(size, size, |i, j| m[(i, j)]));
+            let sum = set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + informations[*index]);
+            let [matrix, q] = [sum, weighting].map(|m| DMatrix::from_fn(size, size, |i, j| m[(i, j)]));
             let unit = DMatrix::from_diagonal(&matrix.diagonal().map(|value| 1.0 / libm::sqrt(value)));
             let inverse = &unit * (&unit * matrix * &unit).try_inverse().unwrap() * &unit;
             let expected = (q * inverse).trace();
-            assert!((criterion.of(&sum) / expected - 1.0).abs() < 1e-6, "{} {expected}", criterion.of(&sum));
+            assert!((criterion.value(&sum) / expected - 1.0).abs() < 1e-6, "{} {expected}", criterion.value(&sum));
         }
-        assert_eq!(criterion.of(&Information::zeros()), f64::INFINITY);
+        assert_eq!(criterion.value(&InformationMatrix::zeros()), f64::INFINITY);
     }
 }
 
@@ -95,8 +100,8 @@ fn the_criterion_is_the_trace_of_the_product_with_the_inverse() {
 fn information_is_that_of_the_normal_equations_of_fit() {
     let request = Request { varying: None, levels: vec![], candidates: 30, ..request(2) };
     let (informations, ..) = prepared(&request);
-    let (_, normal) = normal_of(&request, &sheet_of(&request, &candidates(&request).shots));
-    let sum = informations.iter().fold(Information::zeros(), |sum, part| sum + part);
+    let (_, normal) = normal_of(&request, &sheet_of(&request, &draw_candidates(&request).load_cases));
+    let sum = informations.iter().fold(InformationMatrix::zeros(), |sum, part| sum + part);
     for i in 0..6 {
         for j in 0..6 {
             let scale = libm::sqrt(normal.shared[(i, i)] * normal.shared[(j, j)]);
@@ -121,10 +126,10 @@ fn exchange_finds_the_best_of_all_sets() {
             sets = sets.iter().flat_map(longer).collect();
         }
         assert_eq!(sets.len(), 1001);
-        let best = worths(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
+        let best = values(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
         let starts: Vec<_> = (0..6).map(|draw| random_set(seed, draw, 4, 14)).collect();
-        let found = choose(&criterion, &informations, 4, &starts, &|_| true).unwrap();
-        assert!((found.worth / best - 1.0).abs() < 1e-9, "{} {best}", found.worth);
+        let found = exchange(&criterion, &informations, 4, &starts, &|_| true).unwrap();
+        assert!((found.value / best - 1.0).abs() < 1e-9, "{} {best}", found.value);
     }
 }
 
@@ -154,27 +159,28 @@ fn requests() -> Vec<Request> {
 fn plans_are_better_than_the_best_of_a_thousand_random_sets() {
     for request in requests() {
         let plan = planned(&request);
-        let Scores { planned, best_random, median_random, random_sets, .. } = plan.scores;
+        let ExpectedErrors { planned, best_random, median_random, random_sets, .. } = plan.errors;
         assert_eq!(random_sets, 1000);
-        assert!(planned < best_random && best_random < median_random, "{:?}", plan.scores);
+        assert!(planned < best_random && best_random < median_random, "{:?}", plan.errors);
         // A thousand others than those among which the exchange has a start.
         let others = Request { starts: 2, ..request.clone() };
-        let basis = Basis::new(&others.robot, others.varying);
-        let informations: Vec<_> = candidates(&others).shots.iter().map(|s| basis.information(&others, s)).collect();
-        let quality = basis.quality(&others, &plan.tests);
+        let parameters = Parameters::new(&others.robot, others.varying);
+        let informations: Vec<_> =
+            draw_candidates(&others).load_cases.iter().map(|s| parameters.information(&others, s)).collect();
+        let weighting = parameters.weighting(&others, &plan.tests);
         let free = std::array::from_fn(|number| number < 6 || matches!(others.varying, Some((_, Law::Spring(_)))));
-        let criterion = Criterion::new(&quality, &free, &informations, others.configurations);
+        let criterion = IOptimality::new(&weighting, &free, &informations, others.configurations);
         let sets: Vec<_> =
             (0..1000).map(|k| random_set(others.seed + 77, k, others.configurations, informations.len())).collect();
-        let least = worths(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
+        let least = values(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
         assert!(planned < libm::sqrt(least), "{planned} {}", libm::sqrt(least));
     }
 }
 
 /// A sheet from the true arm at the shots of a plan.
-fn measured(plan: &Plan, seed: u64, noise: f64) -> Problem {
+fn measured(plan: &Design, seed: u64, noise: f64) -> Problem {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let readings = sheet(&arm(), &cell(3), &plan.shots, || noise * gauss(&mut random), || 0.0);
+    let readings = sheet(&arm(), &cell(3), &plan.load_cases, || noise * gauss(&mut random), || 0.0);
     let start = Some(cell(3).tracker_from_base.rotation);
     Problem { robot: guess(), noise: Some(NOISE), start, ..problem(readings, &cell(3)) }
 }
@@ -186,13 +192,16 @@ fn fit_reports_what_the_plan_expects_and_many_sheets_spread_as_much() {
     let plan = planned(&request);
     let found: Vec<_> =
         (0..REPETITIONS).into_par_iter().map(|seed| identify(&measured(&plan, seed, NOISE)).unwrap()).collect();
-    assert_eq!(found[0].seen.len(), plan.bars.iter().filter(|bar| bar.deviation.is_some()).count());
+    assert_eq!(found[0].compliances.len(), plan.bars.iter().filter(|bar| bar.deviation.is_some()).count());
     let expected = plan.bars.iter().filter_map(|bar| bar.deviation);
     for (index, expected) in expected.enumerate() {
-        let reported = found[0].seen[index].deviation;
+        let reported = found[0].compliances[index].deviation;
         assert!((reported / expected - 1.0).abs() < 0.02, "seen {index}: {reported} {expected}");
-        let mean = found.iter().map(|f| f.seen[index].value).sum::<f64>() / REPETITIONS as f64;
-        let square = found.iter().map(|f| (f.seen[index].value - mean) * (f.seen[index].value - mean)).sum::<f64>();
+        let mean = found.iter().map(|f| f.compliances[index].value).sum::<f64>() / REPETITIONS as f64;
+        let square = found
+            .iter()
+            .map(|f| (f.compliances[index].value - mean) * (f.compliances[index].value - mean))
+            .sum::<f64>();
         let spread = libm::sqrt(square / (REPETITIONS - 1) as f64);
         // Three standard deviations of an estimated standard deviation.
         assert!((spread / expected - 1.0).abs() < 3.0 / libm::sqrt(2.0 * REPETITIONS as f64), "{spread} {expected}");
@@ -210,7 +219,7 @@ fn fit_reports_what_the_plan_expects_and_many_sheets_spread_as_much() {
         squares += found.iter().map(|found| (moved(&found.robot) - truth).norm_squared()).sum::<f64>();
     }
     let error = libm::sqrt(squares / (plan.tests.len() as u64 * REPETITIONS) as f64);
-    assert!((error / plan.scores.planned - 1.0).abs() < 0.1, "{error} {}", plan.scores.planned);
+    assert!((error / plan.errors.planned - 1.0).abs() < 0.1, "{error} {}", plan.errors.planned);
 }
 
 #[test]
@@ -239,53 +248,61 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         change(&mut request);
         planned(&request)
     };
-    let reasons = |plan: &Plan| plan.blind.iter().map(|b| (b.compliances[0].0, b.reason)).collect::<Vec<_>>();
+    let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0, b.reason)).collect::<Vec<_>>();
     let vertical = small(|request| request.loads = Loads::Vertical);
-    assert_eq!(reasons(&vertical), [(0, Reason::LoadsAlongAxis)]);
-    assert!(vertical.bars.iter().all(|bar| bar.joint != 0) && vertical.scores.planned < vertical.scores.best_random);
+    assert_eq!(reasons(&vertical), [(0, UnobservableReason::LoadsAlongAxis)]);
+    assert!(vertical.bars.iter().all(|bar| bar.joint != 0) && vertical.errors.planned < vertical.errors.best_random);
     let on_axis = small(|request| request.load_point = Vector3::new(0.0, 0.0, 0.2));
-    assert_eq!(reasons(&on_axis), [(5, Reason::LoadOnAxis)]);
+    assert_eq!(reasons(&on_axis), [(5, UnobservableReason::LoadOnAxis)]);
     let one_point = small(|request| request.points = vec![Vector3::new(0.0, 0.0, 0.3)]);
-    assert_eq!(reasons(&one_point), [(5, Reason::PointsOnAxis)]);
+    assert_eq!(reasons(&one_point), [(5, UnobservableReason::PointsOnAxis)]);
     let straight = small(|request| request.limits[4] = [0.0, 0.0]);
-    assert_eq!(reasons(&straight).iter().map(|(_, reason)| *reason).collect::<Vec<_>>(), [Reason::NotApart]);
-    let pair: Vec<usize> = straight.blind[0].compliances.iter().map(|(joint, _)| *joint).collect();
+    assert_eq!(
+        reasons(&straight).iter().map(|(_, reason)| *reason).collect::<Vec<_>>(),
+        [UnobservableReason::NotApart]
+    );
+    let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(joint, _)| *joint).collect();
     assert!(pair == [3, 5] || pair == [5, 3], "{pair:?}");
 
     let near = small(|request| request.load_point = Vector3::new(0.002, 0.0, 0.2));
-    assert!(near.blind.is_empty());
-    let hardly = near.hardly.iter().find(|hardly| hardly.joint == 5).unwrap();
-    assert!(hardly.share > 0.2 && hardly.lever < 0.003, "{hardly:?}");
+    assert!(near.unobservable.is_empty());
+    let weak = near.weakly_observed.iter().find(|weak| weak.joint == 5).unwrap();
+    assert!(weak.share > 0.2 && weak.lever < 0.003, "{weak:?}");
     let far = small(|_| ());
-    assert!(far.blind.is_empty() && far.hardly.is_empty(), "{:?} {:?}", far.blind, far.hardly);
+    assert!(
+        far.unobservable.is_empty() && far.weakly_observed.is_empty(),
+        "{:?} {:?}",
+        far.unobservable,
+        far.weakly_observed
+    );
 }
 
 #[test]
 fn candidates_keep_to_limits_levels_volume_and_deflection() {
     let mut request = Request { candidates: 300, ..request(8) };
-    request.volume = Volume { ends: [[0.2, 4.0], [-4.0, 4.0], [-0.6, 2.0]], least_radius: 0.7 };
+    request.volume = Volume { ranges: [[0.2, 4.0], [-4.0, 4.0], [-0.6, 2.0]], min_radius: 0.7 };
     request.max_deflection = 0.006;
-    let drawn = candidates(&request);
-    assert_eq!(drawn.shots.len(), 300);
-    let refused = drawn.refused;
-    assert!(refused.volume > 0 && refused.radius > 0 && refused.deflection > 0, "{refused:?}");
-    assert_eq!(drawn.draws, 300 + refused.volume + refused.radius + refused.deflection);
-    for (theta, force, _) in &drawn.shots {
+    let drawn = draw_candidates(&request);
+    assert_eq!(drawn.load_cases.len(), 300);
+    let rejected = drawn.rejected;
+    assert!(rejected.volume > 0 && rejected.radius > 0 && rejected.deflection > 0, "{rejected:?}");
+    assert_eq!(drawn.draws, 300 + rejected.volume + rejected.radius + rejected.deflection);
+    for LoadCase { theta, force, .. } in &drawn.load_cases {
         assert!(request.levels.contains(&theta[1]));
         assert!((0..6).all(|j| j == 1 || (request.limits[j][0]..=request.limits[j][1]).contains(&theta[j])));
         assert!((force.norm() - 2700.0).abs() < 0.1);
         let flange = request.robot.forward(theta);
         assert!(request.points.iter().all(|point| request.volume.contains(&flange.point(point))));
     }
-    let none = Request { volume: Volume { least_radius: 9.0, ..Volume::OPEN }, ..request };
-    assert!(matches!(plan(&none, &|_, _| true), Err(PlanError::TooFewCandidates { found: 0, .. })));
+    let none = Request { volume: Volume { min_radius: 9.0, ..Volume::OPEN }, ..request };
+    assert!(matches!(design_experiment(&none, &|_, _| true), Err(DesignError::TooFewCandidates { found: 0, .. })));
 }
 
 #[test]
 fn candidates_are_so_little_deflected_that_the_model_of_fit_is_linear_enough() {
     let request = Request { max_deflection: 0.01, candidates: 200, ..request(9) };
     let mut worst = 0.0_f64;
-    for (theta, force, moment) in candidates(&request).shots {
+    for LoadCase { theta, force, moment } in draw_candidates(&request).load_cases {
         let compliances = request.robot.compliances_at(&theta);
         let frames = Frames::new(&request.robot, &theta);
         let load = frames.base_from_flange.point(&request.load_point);
@@ -305,7 +322,7 @@ fn the_plan_is_the_same_on_any_number_of_threads() {
         pool.install(|| planned(&request))
     };
     assert_eq!(on(1), on(3));
-    assert_eq!(plan(&request, &|_, _| false), Err(PlanError::Stopped));
+    assert_eq!(design_experiment(&request, &|_, _| false), Err(DesignError::Stopped));
 }
 
 #[test]
@@ -313,16 +330,16 @@ fn counts_that_cannot_do_are_refused() {
     let refused = |change: fn(&mut Request)| {
         let mut request = Request { candidates: 50, ..request(1) };
         change(&mut request);
-        plan(&request, &|_, _| true).unwrap_err()
+        design_experiment(&request, &|_, _| true).unwrap_err()
     };
-    assert!(matches!(refused(|r| r.configurations = 2), PlanError::Law(_)));
+    assert!(matches!(refused(|r| r.configurations = 2), DesignError::Law(_)));
     assert!(matches!(
         refused(|r| (r.configurations, r.varying) = (1, None)),
-        PlanError::Setup(super::super::setup::SetupError::TooFew { equations: 9, unknowns: 15 })
+        DesignError::Setup(super::super::setup::SetupError::TooFew { equations: 9, unknowns: 15 })
     ));
     let one = |r: &mut Request| {
         r.points.truncate(1);
         (r.configurations, r.varying) = (1, None);
     };
-    assert!(matches!(refused(one), PlanError::TooFew { equations: 3, unknowns: 6 }));
+    assert!(matches!(refused(one), DesignError::TooFew { equations: 3, unknowns: 6 }));
 }

@@ -1,15 +1,16 @@
 //! What has been estimated, put together: intervals, the arm, rows, prediction error.
 
+use super::cross_validation::{compliances, leave_one_out};
 use super::distribution::{half_width, tail};
-use super::job::{IdentifyError, Problem, ROUNDING};
+use super::error::IdentifyError;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
 use super::model::{Layout, Noise, Observation, Parameter};
-use super::normal::Free;
+use super::normal_equations::FreeParameters;
 use super::outcome::{Estimate, Identified, RowResult};
-use super::outliers::Judgement;
+use super::outliers::{ROUNDING, RobustEstimate};
+use super::problem::Problem;
 use super::setup::{Setup, SetupFit};
 use super::sheet::Reading;
-use super::validate::{compliances, leave_one_out};
 use nalgebra::Vector6;
 use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 
@@ -17,7 +18,7 @@ use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 const NEGATIVE: f64 = 6.0;
 
 /// Everything that has been estimated, to be put together.
-pub(super) struct Found<'a> {
+pub(super) struct Assembly<'a> {
     /// What was asked.
     pub problem: &'a Problem,
     /// The compliances sought.
@@ -29,36 +30,36 @@ pub(super) struct Found<'a> {
     /// The equations of all readings.
     pub equations: &'a [Observation],
     /// Which compliances are free.
-    pub free: &'a Free,
+    pub free: &'a FreeParameters,
     /// The estimate without outliers.
-    pub judgement: Judgement,
+    pub robust: RobustEstimate,
     /// What the equations were divided by.
     pub noise: Noise,
 }
 
-impl Found<'_> {
+impl Assembly<'_> {
     /// All of it, with the law of the varying joint fitted. `held` are the parameters that are not free.
-    pub fn outcome(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
-        let (sheet, layout, judgement) = (&self.problem.sheet, self.layout, &self.judgement);
+    pub fn assemble(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
+        let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
         let is_noise_estimated = self.problem.noise.is_none();
         // Equations have unit variance where the noise is known; else the residuals tell their variance.
-        let variance = if is_noise_estimated { judgement.variance } else { 1.0 };
-        let width = half_width(is_noise_estimated.then_some(judgement.degrees));
-        let seen = self.seen(variance, width);
-        self.refuse_negative(&seen)?;
-        let arm = fit(&judgement.normal, self.free.joints, &judgement.solution, &layout.angles, law)?;
+        let variance = if is_noise_estimated { robust.variance } else { 1.0 };
+        let width = half_width(is_noise_estimated.then_some(robust.degrees));
+        let compliances = self.compliances(variance, width);
+        self.refuse_negative(&compliances)?;
+        let arm = fit(&robust.normal, self.free.joints, &robust.solution, &layout.angles, law)?;
         let estimates = self.arm(&arm, variance, width)?;
         let robot = self.robot(&arm)?;
         let rows = self.rows(&arm);
-        let mut prediction = leave_one_out(sheet, layout, self.equations, &judgement.kept, &arm);
+        let mut prediction = leave_one_out(sheet, layout, self.equations, &robust.kept, &arm);
         let difference = libm::sqrt(2.0) * self.noise.position;
         prediction.rms *= difference;
         prediction.worst = prediction.worst.map(|(index, rms)| (index, rms * difference));
         let inside = || rows.iter().filter(|row| !row.is_outlier);
         let squares: f64 = inside().map(|row| (row.measured - row.predicted).norm_squared()).sum();
         Ok(Identified {
-            seen,
+            compliances,
             varying: layout.varying,
             arm: estimates,
             covariance: &arm.covariance * variance,
@@ -67,9 +68,9 @@ impl Found<'_> {
             residual_rms: libm::sqrt(squares / (3 * inside().count()).max(1) as f64),
             noise: self.noise.position * libm::sqrt(variance),
             is_noise_estimated,
-            variance_ratio: judgement.variance / variance,
-            degrees: judgement.degrees,
-            are_outliers_searched: judgement.is_searched,
+            variance_ratio: robust.variance / variance,
+            degrees_of_freedom: robust.degrees,
+            are_outliers_searched: robust.is_searched,
             law_probability: self.law_probability(&arm),
             prediction,
             setup: self.setup.clone(),
@@ -78,8 +79,8 @@ impl Found<'_> {
         })
     }
 
-    fn seen(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
-        let solution = &self.judgement.solution;
+    fn compliances(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
+        let solution = &self.robust.solution;
         let covariance = |group: Option<usize>| solution.covariance(self.layout.varying, group);
         let whole = covariance(None);
         let estimate = |parameter: Parameter| {
@@ -94,8 +95,8 @@ impl Found<'_> {
     }
 
     /// Refuses what no noise explains: a joint that turns against its load.
-    fn refuse_negative(&self, seen: &[Estimate<Parameter>]) -> Result<(), IdentifyError> {
-        let worst = seen.iter().filter(|e| e.value < -NEGATIVE * e.deviation).min_by(|a, b| {
+    fn refuse_negative(&self, compliances: &[Estimate<Parameter>]) -> Result<(), IdentifyError> {
+        let worst = compliances.iter().filter(|e| e.value < -NEGATIVE * e.deviation).min_by(|a, b| {
             let [a, b] = [a, b].map(|e| e.value / e.deviation.max(f64::MIN_POSITIVE));
             a.total_cmp(&b)
         });
@@ -155,8 +156,8 @@ impl Found<'_> {
                 point: reading.point,
                 measured: linear(equation.deflection),
                 predicted: linear(equation.design * compliances),
-                studentised: self.judgement.studentised[index],
-                is_outlier: !self.judgement.kept[index],
+                studentised: self.robust.studentised[index],
+                is_outlier: !self.robust.kept[index],
             }
         };
         self.problem.sheet.readings.iter().enumerate().map(row).collect()
@@ -169,17 +170,17 @@ impl Found<'_> {
             Law::Spring(_) => 3,
         };
         let free = self.free.groups.iter().filter(|free| **free).count();
-        let (more, degrees) = (free.checked_sub(unknowns).filter(|more| *more > 0)?, self.judgement.degrees);
+        let (more, degrees) = (free.checked_sub(unknowns).filter(|more| *more > 0)?, self.robust.degrees);
         // The increase is a quadratic form in the difference of the two solutions.
-        let normal = &self.judgement.normal;
-        let joints = arm.joints - self.judgement.solution.joints;
+        let normal = &self.robust.normal;
+        let joints = arm.joints - self.robust.solution.joints;
         let mut cost = (normal.shared * joints).dot(&joints);
         for (index, group) in normal.groups.iter().enumerate() {
-            let difference = arm.groups[index].0 - self.judgement.solution.groups[index];
+            let difference = arm.groups[index].0 - self.robust.solution.groups[index];
             cost += (2.0 * group.coupling.dot(&joints) + group.diagonal * difference) * difference;
         }
         let floor = if self.problem.noise.is_some() { 1.0 } else { ROUNDING * ROUNDING };
-        Some(tail(cost / more as f64 / self.judgement.variance.max(floor), more, degrees.max(1)))
+        Some(tail(cost / more as f64 / self.robust.variance.max(floor), more, degrees.max(1)))
     }
 }
 

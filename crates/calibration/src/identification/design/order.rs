@@ -1,23 +1,23 @@
 //! The order in which to measure: short ways from one configuration to the next.
 
-use super::super::synthetic::Shot;
+use super::super::sheet::LoadCase;
 
 /// How far apart two configurations are: the joint that turns furthest decides. rad
-fn distance(a: &Shot, b: &Shot) -> f64 {
-    a.0.iter().zip(b.0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+fn distance(a: &LoadCase, b: &LoadCase) -> f64 {
+    a.theta.iter().zip(b.theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// Length of the way through configurations in their order. rad
-pub(super) fn travel(shots: &[Shot]) -> f64 {
-    shots.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
+pub(super) fn travel(load_cases: &[LoadCase]) -> f64 {
+    load_cases.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
 /// Each configuration followed by the nearest that is left, from the start that makes the way shortest; then pieces of the way
 /// turned round as long as that makes it shorter.
-pub(super) fn ordered(shots: &[Shot]) -> Vec<Shot> {
-    let mut best: Vec<Shot> = shots.to_vec();
-    for start in 0..shots.len() {
-        let mut left: Vec<Shot> = shots.to_vec();
+pub(super) fn ordered(load_cases: &[LoadCase]) -> Vec<LoadCase> {
+    let mut best: Vec<LoadCase> = load_cases.to_vec();
+    for start in 0..load_cases.len() {
+        let mut left: Vec<LoadCase> = load_cases.to_vec();
         let mut way = vec![left.remove(start)];
         while let Some(last) = way.last().copied() {
             let nearest =
@@ -33,7 +33,7 @@ pub(super) fn ordered(shots: &[Shot]) -> Vec<Shot> {
     best
 }
 
-fn turn_pieces(way: &mut [Shot]) {
+fn turn_pieces(way: &mut [LoadCase]) {
     let mut is_better = true;
     while is_better {
         is_better = false;
@@ -58,9 +58,9 @@ mod tests {
 
     #[test]
     fn a_line_is_walked_from_end_to_end() {
-        let shot = |angle: f64| ([angle; 6], Vector3::x(), Vector3::zeros());
-        let way = ordered(&[0.4, 0.1, 0.9, 0.2, 0.7].map(shot));
-        let mut angles: Vec<f64> = way.iter().map(|shot| shot.0[0]).collect();
+        let load_case = |angle: f64| LoadCase { theta: [angle; 6], force: Vector3::x(), moment: Vector3::zeros() };
+        let way = ordered(&[0.4, 0.1, 0.9, 0.2, 0.7].map(load_case));
+        let mut angles: Vec<f64> = way.iter().map(|load_case| load_case.theta[0]).collect();
         if angles[0] > angles[4] {
             angles.reverse();
         }

@@ -1,22 +1,22 @@
 //! What a set of configurations and loads does not show, and why.
 
 use super::super::model::{Layout, Parameter};
-use super::super::normal::Unseen;
-use super::super::synthetic::Shot;
-use super::expected::Bar;
+use super::super::normal_equations::Unidentifiable;
+use super::super::sheet::LoadCase;
+use super::expected::ExpectedCompliance;
 use super::request::Request;
 use stead_model::robot::Frames;
 
 /// A compliance, or a combination of several, that no reading shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Blind {
+pub struct Unobservable {
     /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up comes first.
     pub compliances: Vec<(usize, Option<f64>)>,
     /// Why.
-    pub reason: Reason,
+    pub reason: UnobservableReason,
 }
 
-impl Blind {
+impl Unobservable {
     /// Whether both are of the same compliances, in any order.
     pub fn is_same(&self, other: &Self) -> bool {
         let near = |(a, b): (Option<f64>, Option<f64>)| (a.unwrap_or_default() - b.unwrap_or_default()).abs() < NOTHING;
@@ -30,7 +30,7 @@ impl Blind {
 
 /// Why a compliance is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reason {
+pub enum UnobservableReason {
     /// Every load is along the axis of the joint.
     LoadsAlongAxis,
     /// Every load acts on the axis of the joint.
@@ -45,7 +45,7 @@ pub enum Reason {
 
 /// A compliance that is seen, but hardly.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hardly {
+pub struct WeaklyObserved {
     /// The joint, from 0.
     pub joint: usize,
     /// The angle, where the joint has several compliances. rad
@@ -60,22 +60,27 @@ pub struct Hardly {
 const NOTHING: f64 = 1e-7;
 
 /// Names what is unseen by normal equations, with reasons from all the loads.
-pub fn blind(request: &Request, shots: &[Shot], layout: &Layout, unseen: &[Unseen]) -> Vec<Blind> {
+pub fn unobservable(
+    request: &Request,
+    load_cases: &[LoadCase],
+    layout: &Layout,
+    unidentifiable: &[Unidentifiable],
+) -> Vec<Unobservable> {
     let name = |parameter: &Parameter| (layout.joint(*parameter), layout.angle(*parameter));
-    let blind = |unseen: &Unseen| {
-        let compliances: Vec<_> = unseen.parameters.iter().map(name).collect();
+    let unobservable = |unidentifiable: &Unidentifiable| {
+        let compliances: Vec<_> = unidentifiable.parameters.iter().map(name).collect();
         let reason = match compliances[..] {
-            [(joint, _)] => reason(request, shots, joint),
-            _ => Reason::NotApart,
+            [(joint, _)] => reason(request, load_cases, joint),
+            _ => UnobservableReason::NotApart,
         };
-        Blind { compliances, reason }
+        Unobservable { compliances, reason }
     };
-    unseen.iter().map(blind).collect()
+    unidentifiable.iter().map(unobservable).collect()
 }
 
-fn reason(request: &Request, shots: &[Shot], joint: usize) -> Reason {
+fn reason(request: &Request, load_cases: &[LoadCase], joint: usize) -> UnobservableReason {
     let [mut lever, mut aside, mut off_load, mut off_points] = [0.0_f64; 4];
-    for (theta, force, _) in shots {
+    for LoadCase { theta, force, .. } in load_cases {
         let frames = Frames::new(&request.robot, theta);
         let (axis, flange) = (frames.axes[joint], &frames.base_from_flange);
         let along = force / force.norm();
@@ -89,35 +94,35 @@ fn reason(request: &Request, shots: &[Shot], joint: usize) -> Reason {
         }
     }
     if lever > NOTHING && off_points <= NOTHING {
-        Reason::PointsOnAxis
+        UnobservableReason::PointsOnAxis
     } else if aside <= NOTHING {
-        Reason::LoadsAlongAxis
+        UnobservableReason::LoadsAlongAxis
     } else if off_load <= NOTHING {
-        Reason::LoadOnAxis
+        UnobservableReason::LoadOnAxis
     } else {
-        Reason::NoTorque
+        UnobservableReason::NoTorque
     }
 }
 
 /// The compliances whose expected standard deviation is above a share of them.
-pub fn hardly(request: &Request, shots: &[Shot], bars: &[Bar]) -> Vec<Hardly> {
-    let is_hardly = |bar: &&Bar| bar.share() > request.hardly;
-    let entry = |bar: &Bar| Hardly {
+pub fn weakly_observed(request: &Request, load_cases: &[LoadCase], bars: &[ExpectedCompliance]) -> Vec<WeaklyObserved> {
+    let is_weak = |bar: &&ExpectedCompliance| bar.share() > request.max_relative_deviation;
+    let entry = |bar: &ExpectedCompliance| WeaklyObserved {
         joint: bar.joint,
         angle: bar.angle,
         share: bar.share(),
-        lever: lever(request, shots, bar.joint),
+        lever: lever(request, load_cases, bar.joint),
     };
-    bars.iter().filter(is_hardly).map(entry).collect()
+    bars.iter().filter(is_weak).map(entry).collect()
 }
 
 /// Root of the mean square of the load's lever about the axis of a joint. m
-pub fn lever(request: &Request, shots: &[Shot], joint: usize) -> f64 {
-    let square = |(theta, force, _): &Shot| {
+pub fn lever(request: &Request, load_cases: &[LoadCase], joint: usize) -> f64 {
+    let square = |LoadCase { theta, force, .. }: &LoadCase| {
         let frames = Frames::new(&request.robot, theta);
         let load = frames.base_from_flange.point(&request.load_point);
         let torque = frames.twist(joint, &load).0.dot(force);
         torque * torque / force.norm_squared()
     };
-    libm::sqrt(shots.iter().map(square).sum::<f64>() / shots.len().max(1) as f64)
+    libm::sqrt(load_cases.iter().map(square).sum::<f64>() / load_cases.len().max(1) as f64)
 }

@@ -1,0 +1,144 @@
+//! The identification as a whole.
+
+use super::assemble::Assembly;
+use super::error::IdentifyError;
+use super::model::{Layout, Noise, Observation, Parameter, Response, observations};
+use super::normal_equations::{FreeParameters, NormalEquations};
+use super::outcome::Identified;
+use super::outliers::{OutlierSearch, ROUNDING};
+use super::problem::Problem;
+use super::setup::{Setup, check, estimate};
+use super::sheet::Sheet;
+use nalgebra::Vector6;
+use stead_model::robot::Pose;
+
+/// Deflections may be this many times what the starting arm lets expect.
+const FAR: f64 = 50.0;
+/// Setup and outliers hardly depend on each other: two rounds settle them.
+const ROUNDS: usize = 4;
+
+/// Identifies the compliances of an arm.
+///
+/// Outliers are left out of the deflections and then of the setup too, until both agree. Where the noise is not stated it is
+/// estimated from the residuals, with twice its variance in the difference of two readings.
+///
+/// # Errors
+/// [`IdentifyError`] when the sheet does not tell them.
+pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
+    let sheet = &problem.sheet;
+    let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
+    let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| problem.robot.forward(&c.theta)).collect();
+    let mut kept = vec![true; sheet.readings.len()];
+    let mut used = kept.clone();
+    let mut setup = estimate(sheet, &flanges, &kept, problem.start.as_ref())?;
+    check_lengths(problem, &setup)?;
+    let (start_joints, start_groups) = starting_values(problem, &layout);
+    let held = (&start_joints, &start_groups[..]);
+    let noise = Noise { position: problem.noise.unwrap_or(1.0), orientation: problem.orientation_noise.unwrap_or(1.0) };
+    let min_scale = if problem.noise.is_some() { 1.0 } else { ROUNDING };
+    let equations = |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise);
+    let mut observations = equations(&setup);
+    let (free, dropped) = free_parameters(problem, &layout, &observations)?;
+    if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
+        // Seen at no angle: then there is no law to be found either, and the joint keeps the one it has.
+        return identify(&Problem { varying: None, ..problem.clone() });
+    }
+    let estimate_robustly = |observations: &[Observation]| {
+        let search = OutlierSearch { sheet, layout: &layout, observations, free: &free, held, min_scale };
+        search
+            .robust_estimate()
+            .map_err(|kept| unidentifiable_without_outliers(sheet, &layout, observations, &free, &kept))
+    };
+    let mut robust = estimate_robustly(&observations)?;
+    for _ in 0..ROUNDS {
+        if robust.kept == kept {
+            break;
+        }
+        kept.clone_from(&robust.kept);
+        // A point whose deflections are all outliers has a place all the same.
+        let is_lost = |point: usize| !sheet.readings.iter().zip(&kept).any(|(r, kept)| *kept && r.point == point);
+        let lost: Vec<bool> = (0..sheet.points.len()).map(is_lost).collect();
+        used = sheet.readings.iter().zip(&kept).map(|(reading, kept)| *kept || lost[reading.point]).collect();
+        setup = estimate(sheet, &flanges, &used, Some(&setup.tracker_from_base.rotation))?;
+        observations = equations(&setup);
+        robust = estimate_robustly(&observations)?;
+    }
+    let fit = check(sheet, &flanges, &used, &setup)?;
+    let assembly =
+        Assembly { problem, layout: &layout, setup, fit, equations: &observations, free: &free, robust, noise };
+    assembly.assemble(dropped)
+}
+
+/// What the readings that are kept do not see, and which outliers would be needed for it.
+fn unidentifiable_without_outliers(
+    sheet: &Sheet,
+    layout: &Layout,
+    observations: &[Observation],
+    free: &FreeParameters,
+    kept: &[bool],
+) -> IdentifyError {
+    let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
+    let unidentifiable = NormalEquations::new(sheet, layout, observations, &weights).unidentifiable(free);
+    let outliers = sheet.readings.iter().zip(kept).filter(|(_, kept)| !**kept).map(|(reading, _)| reading.line);
+    IdentifyError::Unidentifiable { unidentifiable, layout: layout.clone(), outliers: outliers.collect() }
+}
+
+/// Refuses a deflection that is far larger than the starting arm lets expect.
+fn check_lengths(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> {
+    for configuration in &problem.sheet.configurations {
+        let compliances = problem.robot.compliances_at(&configuration.theta);
+        for reading in &problem.sheet.readings[configuration.readings.clone()] {
+            let response =
+                Response::of(&problem.robot, configuration, &problem.load_point, &setup.points[reading.point]);
+            let columns = response.linear.column_iter().zip(compliances);
+            let expected: f64 = columns.map(|(column, compliance)| column.norm() * compliance).sum();
+            let deflection = (reading.loaded - reading.unloaded).norm();
+            if deflection > FAR * expected.max(1e-4) {
+                return Err(IdentifyError::TooFar {
+                    line: reading.line,
+                    deflection_mm: deflection * 1e3,
+                    expected_mm: expected * 1e3,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The compliances of the starting arm: of the joints, and at the distinct angles.
+fn starting_values(problem: &Problem, layout: &Layout) -> (Vector6<f64>, Vec<f64>) {
+    let middle = problem.sheet.configurations.first().map_or([0.0; 6], |configuration| configuration.theta);
+    let joints = Vector6::from(problem.robot.compliances_at(&middle));
+    let at = |angle: &f64| layout.varying.map_or(0.0, |joint| problem.robot.joints()[joint].compliance_at(*angle));
+    (joints, layout.angles.iter().map(at).collect())
+}
+
+/// Which parameters are sought, and those that are not because nothing is seen of them.
+fn free_parameters(
+    problem: &Problem,
+    layout: &Layout,
+    equations: &[Observation],
+) -> Result<(FreeParameters, Vec<Parameter>), IdentifyError> {
+    let sheet = &problem.sheet;
+    let normal = NormalEquations::new(sheet, layout, equations, &vec![1.0; equations.len()]);
+    let (free, unidentifiable) = normal.identifiable();
+    let rows = sheet.readings.len() * sheet.rows_per_reading();
+    if !unidentifiable.is_empty() && !problem.reduce {
+        let unknowns = layout.parameters().len();
+        return Err(if rows < unknowns {
+            IdentifyError::TooFew { equations: rows, unknowns }
+        } else {
+            IdentifyError::Unidentifiable { unidentifiable, layout: layout.clone(), outliers: vec![] }
+        });
+    }
+    let dropped: Vec<Parameter> =
+        unidentifiable.iter().filter_map(|unidentifiable| unidentifiable.parameters.first().copied()).collect();
+    let unknowns = layout.parameters().len() - dropped.len();
+    if rows < unknowns || unknowns == 0 {
+        return Err(IdentifyError::TooFew { equations: rows, unknowns });
+    }
+    if rows == unknowns && problem.noise.is_none() {
+        return Err(IdentifyError::NoiseUnknown { equations: rows });
+    }
+    Ok((free, dropped))
+}

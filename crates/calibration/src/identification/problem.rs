@@ -1,0 +1,29 @@
+//! What an identification starts from.
+
+use super::law::Law;
+use super::sheet::Sheet;
+use nalgebra::{Matrix3, Vector3};
+use stead_model::robot::Robot;
+
+/// What is to be identified, from what.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// The arm to start from: geometry, limits, and compliances of about the right size.
+    pub robot: Robot,
+    /// The measurements.
+    pub sheet: Sheet,
+    /// Where the wrench acts, in the flange frame. m
+    pub load_point: Vector3<f64>,
+    /// Standard deviation of a coordinate of one reading, if known; always known in sheets with orientations. m
+    pub noise: Option<f64>,
+    /// Standard deviation of a component of one orientation; used in sheets with orientations. rad
+    pub orientation_noise: Option<f64>,
+    /// The joint (from 0) with one compliance for each distinct angle, and the law of those.
+    pub varying: Option<(usize, Law)>,
+    /// Angles of that joint that differ by no more than this count as one. rad
+    pub angle_tolerance: f64,
+    /// Rotation from the robot base to the tracker's frame to start from; without it, all round.
+    pub start: Option<Matrix3<f64>>,
+    /// Whether parameters that cannot be seen are held at the values of `robot`; else they are refused.
+    pub reduce: bool,
+}
