@@ -184,3 +184,31 @@ impl Report for Placements {
         text::placement_text(&self.run.problem, &self.outcome, &self.context)
     }
 }
+
+impl PlacementScore {
+    /// Both plans, in SI units.
+    pub fn score(&self) -> &Score {
+        &self.score
+    }
+}
+
+impl Explanations {
+    /// What each posture gives, in the order of their numbers.
+    pub fn postures(&self) -> &[Explanation; 8] {
+        &self.postures
+    }
+}
+
+impl Report for PlacementScore {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+        Ok(Vec::new())
+    }
+
+    fn document(&self) -> Value {
+        evaluation::score_json(&self.score, self.stability.as_ref())
+    }
+
+    fn table(&self) -> String {
+        evaluation::score_text(&self.score, self.stability.as_ref())
+    }
+}
