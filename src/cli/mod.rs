@@ -23,7 +23,7 @@ use serde_json::Value;
 use std::io::Write;
 use std::path::{Display, Path};
 use std::process::ExitCode;
-use stead_assessment::study::AssessError;
+use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
 use stead_placement::place::NothingFeasible;

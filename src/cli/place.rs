@@ -39,8 +39,8 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
 
     let [best, _, worst, _] = &outcome.cases;
     let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
-    let stability = match &run.chatter {
-        Some(chatter) => Some(on_threads(options.threads, || path_stability(&run.problem, chatter, plans))?.0?),
+    let stability = match &run.path_stability {
+        Some(analysis) => Some(on_threads(options.threads, || path_stability(&run.problem, analysis, plans))?.0?),
         None => None,
     };
     let (inputs, reference) = (run.inputs.clone(), run.reference.clone());

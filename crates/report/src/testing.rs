@@ -4,7 +4,7 @@
 use super::Context;
 use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
-use stead_model::cutting::{Course, Engagement, MillingTool, Rotation};
+use stead_model::cutting::{Engagement, ForceHistory, MillingTool, Rotation};
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::criterion::{State, state};
 use stead_placement::outcome::*;
@@ -230,7 +230,7 @@ pub fn assert_well_formed(svg: &str) {
 }
 
 /// The force of a cutter on both sides of a slot that is open over half its width.
-pub fn course() -> Course {
+pub fn force_history() -> ForceHistory {
     let tool = MillingTool {
         radius: 0.005,
         teeth: 3,
@@ -243,5 +243,5 @@ pub fn course() -> Course {
         feed_per_tooth: 8e-5,
         axial_depth: 5e-3,
     };
-    Course::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
+    ForceHistory::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
 }
