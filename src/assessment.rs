@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use stead_assessment::study::{self, Assessment};
+use stead_assessment::comparison::{self, Assessment};
 use stead_format as format;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
 use stead_report::json::Timing;
@@ -32,7 +32,7 @@ impl AssessmentRun {
     /// # Errors
     /// [`Error::Argument`] when only one of the two is known.
     pub fn selecting(mut self, accuracy: Option<f64>, force: Option<f64>) -> Result<Self, Error> {
-        let selection = &mut Arc::make_mut(&mut self.run).study.selection;
+        let selection = &mut Arc::make_mut(&mut self.run).comparison.selection;
         selection.accuracies = accuracy.map_or_else(|| std::mem::take(&mut selection.accuracies), |a| vec![a]);
         selection.forces = force.map_or_else(|| std::mem::take(&mut selection.forces), |f| vec![f]);
         if selection.accuracies.is_empty() != selection.forces.is_empty() {
@@ -55,18 +55,18 @@ impl AssessmentRun {
     /// [`Error::Assessment`] when no robot can mill the circle anywhere, or the monitor asks to stop.
     pub fn assess(&self, monitor: &Monitor) -> Result<RobotAssessment, Error> {
         let started = Instant::now();
-        let assessment = study::assess(&self.run.study, monitor)?;
+        let assessment = comparison::assess(&self.run.comparison, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
         let run = &self.run;
-        let printed = run.printed.clone().map(|printed| {
-            let agreement = printed.agreement(&assessment);
-            (printed, agreement)
+        let published = run.published.clone().map(|published| {
+            let agreement = published.agreement(&assessment);
+            (published, agreement)
         });
         let context = AssessmentContext {
             inputs: run.inputs.clone(),
             range_share: run.range_share,
-            printed,
-            course: run.course.clone(),
+            published,
+            force_history: run.force_history.clone(),
         };
         Ok(RobotAssessment { run: Arc::clone(run), assessment, context, timing })
     }
@@ -95,7 +95,7 @@ impl RobotAssessment {
 
 impl Report for RobotAssessment {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_assessment(folder, &self.run.study, &self.assessment, &self.context)
+        write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)
     }
 
     fn document(&self) -> Value {

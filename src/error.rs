@@ -1,6 +1,6 @@
 //! The one error of the facade.
 
-use stead_assessment::study::AssessError;
+use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
 use stead_placement::place::NothingFeasible;

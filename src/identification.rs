@@ -5,7 +5,7 @@ use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_calibration::identification::plan::{Plan, plan};
+use stead_calibration::identification::design::{Design, design_experiment};
 use stead_calibration::identification::{Identified, identify};
 use stead_format as format;
 use stead_report::identification::plan::{plan_json, plan_text, write_plan};
@@ -75,8 +75,8 @@ impl DesignRun {
     /// # Errors
     /// [`Error::Input`] where too little was asked for; [`Error::Failed`] where nothing was found.
     pub fn plan(&self, monitor: &Monitor) -> Result<MeasurementPlan, Error> {
-        let plan = plan(&self.run.request, monitor).map_err(|error| self.run.locate(error))?;
-        Ok(MeasurementPlan { run: Arc::clone(&self.run), plan })
+        let design = design_experiment(&self.run.request, monitor).map_err(|error| self.run.locate(error))?;
+        Ok(MeasurementPlan { run: Arc::clone(&self.run), design })
     }
 }
 
@@ -91,7 +91,7 @@ pub struct IdentifiedRobot {
 #[derive(Debug, Clone)]
 pub struct MeasurementPlan {
     run: Arc<format::PlanRun>,
-    plan: Plan,
+    design: Design,
 }
 
 impl IdentifiedRobot {
@@ -103,8 +103,8 @@ impl IdentifiedRobot {
 
 impl MeasurementPlan {
     /// The configurations and their expected errors, in SI units.
-    pub fn plan(&self) -> &Plan {
-        &self.plan
+    pub fn design(&self) -> &Design {
+        &self.design
     }
 }
 
@@ -124,15 +124,15 @@ impl Report for IdentifiedRobot {
 
 impl Report for MeasurementPlan {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_plan(folder, &self.run, &self.plan)
+        write_plan(folder, &self.run, &self.design)
     }
 
     fn document(&self) -> Value {
-        plan_json(&self.run, &self.plan)
+        plan_json(&self.run, &self.design)
     }
 
     fn table(&self) -> String {
-        plan_text(&self.run, &self.plan)
+        plan_text(&self.run, &self.design)
     }
 }
 

@@ -13,7 +13,7 @@ use stead_report::stability::{stability_json, stability_text, write_stability};
 use stead_report::{Folder, ReportError};
 use stead_simulation::coupled::Job;
 use stead_simulation::outcome::Simulation;
-use stead_simulation::survey::{self, Survey};
+use stead_simulation::stability_analysis::{self, StabilityAnalysis as Analysis};
 
 /// A simulation file with its robot, read and checked for a simulation in time.
 #[derive(Debug, Clone)]
@@ -86,7 +86,7 @@ impl StabilityRun {
     /// # Errors
     /// As [`StabilityRun::read`].
     pub fn read_with(file: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_survey(file.as_ref(), overrides)?) })
+        Ok(Self { run: Arc::new(format::read_stability(file.as_ref(), overrides)?) })
     }
 
     /// Modes of the arm, frequency response at the tip, critical depth and stability lobes.
@@ -95,8 +95,9 @@ impl StabilityRun {
     /// [`Error::Failed`] for an arm that says too little, or a cut without width.
     pub fn analyse(&self) -> Result<StabilityAnalysis, Error> {
         let run = &self.run;
-        let survey = survey::survey(&run.setup, &run.cutter, &run.cut, &run.plan).map_err(Error::failed)?;
-        Ok(StabilityAnalysis { run: Arc::clone(run), survey })
+        let analysis =
+            stability_analysis::analyse(&run.setup, &run.cutter, &run.cut, &run.analysis).map_err(Error::failed)?;
+        Ok(StabilityAnalysis { run: Arc::clone(run), analysis })
     }
 }
 
@@ -112,7 +113,7 @@ pub struct SimulatedPass {
 #[derive(Debug, Clone)]
 pub struct StabilityAnalysis {
     run: Arc<format::SimulationRun>,
-    survey: Survey,
+    analysis: Analysis,
 }
 
 impl SimulatedPass {
@@ -124,8 +125,8 @@ impl SimulatedPass {
 
 impl StabilityAnalysis {
     /// Modes, responses, depths and lobes, in SI units.
-    pub fn survey(&self) -> &Survey {
-        &self.survey
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
     }
 }
 
@@ -145,15 +146,15 @@ impl Report for SimulatedPass {
 
 impl Report for StabilityAnalysis {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_stability(folder, &self.run, &self.survey)
+        write_stability(folder, &self.run, &self.analysis)
     }
 
     fn document(&self) -> Value {
-        stability_json(&self.run, &self.survey)
+        stability_json(&self.run, &self.analysis)
     }
 
     fn table(&self) -> String {
-        stability_text(&self.run, &self.survey)
+        stability_text(&self.run, &self.analysis)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::json::{placement as placement_json, put_deviation};
 use super::number::{Unit, fixed};
-use super::stability::PathStability;
+use super::stability::path;
+use stead_study::PathStability;
 use super::text::aligned;
 use super::words;
 use serde_json::{Value, json};
@@ -34,7 +35,7 @@ pub fn score_json(score: &Score, stability: Option<&PathStability>) -> Value {
         "worst": plan(&score.worst),
     });
     if let (Some(stability), Some(object)) = (stability, document.as_object_mut()) {
-        object.insert("stability".to_owned(), stability.document(true));
+        object.insert("stability".to_owned(), path::document(stability, true));
     }
     document
 }
@@ -72,7 +73,7 @@ pub fn score_text(score: &Score, stability: Option<&PathStability>) -> String {
     let last = header.len() - 1;
     let header = header.into_iter().map(str::to_owned).collect();
     let rows = [header, row("best", &score.best), row("worst", &score.worst)];
-    let stability = stability.map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
+    let stability = stability.map(|found| format!("\n{}", path::text(found, ["best plan", "worst plan"])));
     format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
 }
 

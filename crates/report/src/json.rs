@@ -69,7 +69,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
-    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), found.document(with_points))));
+    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), super::stability::path::document(found, with_points))));
     document
 }
 

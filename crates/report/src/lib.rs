@@ -26,7 +26,7 @@ mod tests;
 
 pub use output::{Folder, ReportError};
 
-use stability::PathStability;
+use stead_study::PathStability;
 use std::path::PathBuf;
 use stead_format::input::{InputFile, Reference};
 use stead_placement::outcome::Outcome;
@@ -84,7 +84,7 @@ pub fn write_placement(
         ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
     ];
     if let Some(stability) = &context.stability {
-        files.extend(stability.files([&best.plan, &worst.plan])?);
+        files.extend(stability::path::files(stability, [&best.plan, &worst.plan])?);
     }
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

@@ -26,7 +26,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     if let Some(stability) = &context.stability {
         text.push('\n');
-        text.push_str(&stability.text(["best placement", "worst placement"]));
+        text.push_str(&super::stability::path::text(stability, ["best placement", "worst placement"]));
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));

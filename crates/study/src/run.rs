@@ -2,11 +2,11 @@
 
 use super::PathStability;
 use stead_format::Run;
-use stead_placement::control::Control;
-use stead_placement::outcome::Outcome;
+use stead_numerics::monitor::Monitor;
+use stead_placement::outcome::{Outcome, Plan};
 use stead_placement::place::{self, NothingFeasible, Score};
 use stead_placement::problem::Placement;
-use stead_simulation::survey::SurveyError;
+use stead_simulation::stability_analysis::StabilityError;
 
 /// Why a run ends without a result.
 #[derive(Debug, thiserror::Error)]
@@ -16,7 +16,7 @@ pub enum RunError {
     NothingFeasible(#[from] NothingFeasible),
     /// The stability of the cut cannot be computed.
     #[error(transparent)]
-    Stability(#[from] SurveyError),
+    Stability(#[from] StabilityError),
 }
 
 /// The best and the worst placement of a run.
@@ -41,8 +41,8 @@ pub struct Scored {
 ///
 /// # Errors
 /// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
-pub fn place(run: &Run, control: &dyn Control) -> Result<Placed, RunError> {
-    let outcome = place::place(&run.problem, &run.search, &run.transfer, control)?;
+pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
+    let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
     let [best, _, worst, _] = &outcome.cases;
     let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
     Ok(Placed { outcome, stability })
@@ -60,7 +60,7 @@ pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
 
 fn stability(
     run: &Run,
-    plans: [(&Placement, &stead_placement::outcome::Plan); 2],
-) -> Result<Option<PathStability>, SurveyError> {
-    run.chatter.as_ref().map(|chatter| PathStability::along(&run.problem, chatter, plans)).transpose()
+    plans: [(&Placement, &Plan); 2],
+) -> Result<Option<PathStability>, StabilityError> {
+    run.path_stability.as_ref().map(|analysis| PathStability::along(&run.problem, analysis, plans)).transpose()
 }

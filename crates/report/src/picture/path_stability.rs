@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
 use crate::number::fixed;
 use crate::output::ReportError;
-use crate::stability::PathStability;
+use stead_study::PathStability;
 use plotters::style::RGBColor;
 use stead_placement::outcome::Plan;
 
