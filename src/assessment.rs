@@ -9,7 +9,7 @@ use std::time::Instant;
 use stead_assessment::comparison::{self, Assessment};
 use stead_format as format;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use stead_report::json::Timing;
+use stead_report::document::Timing;
 use stead_report::{Folder, ReportError};
 
 /// An assessment file with the robots that it names, read and checked.

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, Sector, assess};
 use stead_format::{PointFile, read_points};
-use stead_report::{Folder, ReportError, circularity};
+use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
+use stead_report::{Folder, ReportError};
 
 /// Measured points of a circular profile.
 #[derive(Debug, Clone)]
@@ -50,15 +51,15 @@ impl Circularity {
 
 impl Report for Circularity {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        circularity::write(folder, &self.file, &self.roundness)
+        write_circularity(folder, &self.file, &self.roundness)
     }
 
     fn document(&self) -> Value {
-        circularity::document(&self.file, &self.roundness)
+        circularity_json(&self.file, &self.roundness)
     }
 
     fn table(&self) -> String {
-        circularity::text(&self.file, &self.roundness)
+        circularity_text(&self.file, &self.roundness)
     }
 }
 

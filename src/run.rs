@@ -11,9 +11,11 @@ use stead_placement::feasibility::{self, Explanation};
 use stead_placement::outcome::{Case, Outcome};
 use stead_placement::place::{NothingFeasible, Score};
 use stead_placement::problem::{Placement, Problem};
-use stead_report::json::{self, Timing};
-use stead_report::{Context, Folder, ReportError, evaluation, text};
-use stead_study::{self as study, PathStability, Placed, RunError, Scored};
+use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
+use stead_report::document::Timing;
+use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
+use stead_report::{Folder, ReportError};
+use stead_study::{self as study, Placed, RunError, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
 ///
@@ -85,9 +87,7 @@ impl Run {
         let started = Instant::now();
         let Placed { outcome, stability } = study::place(&self.run, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
-        let (inputs, reference) = (self.run.inputs.clone(), self.run.reference.clone());
-        let (search, transfer) = (self.run.search, self.run.transfer);
-        let context = Context { inputs, search, transfer, reference, stability };
+        let context = Context { stability, ..Context::new(&self.run, self.run.search) };
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
     }
 
@@ -97,7 +97,8 @@ impl Run {
     /// [`Error::NothingFeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
         let Scored { score, stability } = study::score(&self.run, placement)?;
-        Ok(PlacementScore { score, stability })
+        let context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        Ok(PlacementScore { score, context })
     }
 
     /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
@@ -149,9 +150,8 @@ impl Placements {
 /// A given placement with its best and its worst plan.
 #[derive(Debug, Clone)]
 pub struct PlacementScore {
-    run: Arc<format::Run>,
     score: Score,
-    stability: Option<PathStability>,
+    context: Context,
 }
 
 /// What each of the eight postures gives at one path point and one free angle.
@@ -165,7 +165,7 @@ pub struct Explanations {
 
 impl Report for Placements {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        let mut files = stead_report::write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
+        let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
         if let Some(certificate) = &self.certificate {
             files.extend(write_certificate(folder, &self.run.problem, certificate)?);
         }
@@ -173,7 +173,7 @@ impl Report for Placements {
     }
 
     fn document(&self) -> Value {
-        let mut document = json::place_json(&self.outcome, &self.context, &self.timing);
+        let mut document = place_json(&self.outcome, &self.context, &self.timing);
         if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
             entries.insert("certificate".to_owned(), certificate_json(certificate));
         }
@@ -181,7 +181,7 @@ impl Report for Placements {
     }
 
     fn table(&self) -> String {
-        text::placement_text(&self.run.problem, &self.outcome, &self.context)
+        placement_text(&self.run.problem, &self.outcome, &self.context)
     }
 }
 
@@ -205,10 +205,10 @@ impl Report for PlacementScore {
     }
 
     fn document(&self) -> Value {
-        evaluation::score_json(&self.score, self.stability.as_ref())
+        evaluation::score_json(&self.score, &self.context)
     }
 
     fn table(&self) -> String {
-        evaluation::score_text(&self.score, self.stability.as_ref())
+        evaluation::score_text(&self.score, &self.context)
     }
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use stead_assessment::comparison::assess;
 use stead_format::read_assessment;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use stead_report::json::Timing;
+use stead_report::document::Timing;
 
 pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let mut run = read_assessment(&options.config)?;
@@ -41,6 +41,7 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     });
     let context = AssessmentContext {
         inputs: run.inputs,
+        notes: run.notes,
         range_share: run.range_share,
         published,
         force_history: run.force_history,

@@ -6,8 +6,9 @@ use stead_format::read_run;
 use stead_placement::outcome::{CANCELLED, Plan, PlanPoint};
 use stead_placement::place::score;
 use stead_placement::problem::{Criterion, Placement, Problem};
+use stead_report::document;
+use stead_report::placement::{Context, evaluation};
 use stead_report::stability::PathStability;
-use stead_report::{evaluation, json};
 use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
@@ -24,15 +25,16 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         }
         _ => None,
     };
+    let context = Context { stability, ..Context::new(&run, run.search) };
     if options.json {
         let document = match &scored {
-            Ok(score) => evaluation::score_json(score, stability.as_ref()),
-            Err(nothing) => evaluation::infeasible_json(nothing),
+            Ok(score) => evaluation::score_json(score, &context),
+            Err(nothing) => evaluation::infeasible_json(nothing, &context),
         };
-        print(&json::bytes(&document));
+        print(&document::bytes(&document));
     } else if let Ok(score) = &scored {
         mention_cancellation(&run.problem, score.best.mean);
-        print(evaluation::score_text(score, stability.as_ref()).as_bytes());
+        print(evaluation::score_text(score, &context).as_bytes());
     }
     scored?;
     Ok(())

@@ -1,8 +1,8 @@
 //! CSV files of the force and the moment of a milling tool.
 
-use super::number::Unit;
 use super::output::ReportError;
-use super::tables::{table, vector};
+use crate::csv_file::{table, vector};
+use crate::units::Unit;
 use stead_model::cutting::{ForceHistory, Sample};
 
 /// Mean force and moment over a turn as the tool moves into the work: one row per degree to which a tooth is in it, from 0 to

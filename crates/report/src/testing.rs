@@ -1,7 +1,7 @@
 //! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
 //! planned by a shortest path over the grid, with an invented search.
 
-use super::Context;
+use crate::placement::Context;
 use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
 use stead_model::cutting::{Engagement, ForceHistory, MillingTool, Rotation};
@@ -63,6 +63,7 @@ pub fn outcome() -> &'static Outcome {
 pub fn context() -> Context {
     let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
     Context {
+        notes: Vec::new(),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),

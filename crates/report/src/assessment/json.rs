@@ -1,8 +1,8 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
-use super::super::json::{Timing, inputs};
-use super::super::number::Unit;
 use super::{AssessmentContext, elbow, load};
+use crate::document::{Document, Timing};
+use crate::units::Unit;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
@@ -11,19 +11,21 @@ use stead_assessment::published::Agreement;
 
 /// What `stead assess --json` prints.
 pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing: &Timing) -> Value {
-    let mut document = common(assessment, context);
-    document.insert("threads".to_owned(), json!(timing.threads));
-    document.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
-    Value::Object(document)
+    let mut entries = common(assessment, context);
+    entries.insert("threads".to_owned(), json!(timing.threads));
+    entries.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
+    document(context, entries)
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs.
 pub fn summary_json(comparison: &Comparison, assessment: &Assessment, context: &AssessmentContext) -> Value {
-    let mut document = common(assessment, context);
-    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
-    document.insert("inputs".to_owned(), inputs(&context.inputs));
-    document.insert("benchmark".to_owned(), benchmark(comparison, context.range_share));
-    Value::Object(document)
+    let mut entries = common(assessment, context);
+    entries.insert("benchmark".to_owned(), benchmark(comparison, context.range_share));
+    document(context, entries)
+}
+
+fn document(context: &AssessmentContext, entries: Map<String, Value>) -> Value {
+    Document::new(&context.inputs).notes(&context.notes).with(Value::Object(entries))
 }
 
 fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {

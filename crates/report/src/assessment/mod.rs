@@ -8,7 +8,7 @@ pub use json::{assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
-use super::{cutting, json as documents, picture};
+use super::{cutting, document as documents, picture};
 use std::path::PathBuf;
 use stead_assessment::comparison::{Assessment, Comparison, Load};
 use stead_assessment::map::Elbow;
@@ -21,6 +21,8 @@ use stead_model::cutting::ForceHistory;
 pub struct AssessmentContext {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the result rests on: assumptions made and values left at their defaults.
+    pub notes: Vec<String>,
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.

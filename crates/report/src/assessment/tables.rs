@@ -2,10 +2,10 @@
 //! circles in the coordinates of the plane. Columns `printed_*` are published values: `-` for a dash, empty where nothing
 //! is published.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{elbow, load};
+use crate::csv_file::table;
+use crate::units::Unit;
 use stead_assessment::comparison::{Assessment, Configuration, MapPoint, RobotResult, Zones};
 use stead_assessment::published::{PublishedTables, Quantity};
 

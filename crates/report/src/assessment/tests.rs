@@ -1,5 +1,5 @@
 use super::*;
-use crate::json::Timing;
+use crate::document::Timing;
 use serde_json::Value;
 use std::path::Path;
 use stead_assessment::comparison::assess;
@@ -27,6 +27,7 @@ fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
         run.comparison,
         AssessmentContext {
             inputs: run.inputs,
+            notes: run.notes,
             range_share: run.range_share,
             published,
             force_history: run.force_history,
@@ -93,8 +94,13 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
     std::fs::write(folder.path().join("study.toml"), text).unwrap();
     let run = read_assessment(&folder.path().join("study.toml")).unwrap();
     let assessment = assess(&run.comparison, &|_, _| true).unwrap();
-    let context =
-        AssessmentContext { inputs: run.inputs, range_share: run.range_share, published: None, force_history: None };
+    let context = AssessmentContext {
+        inputs: run.inputs,
+        notes: run.notes,
+        range_share: run.range_share,
+        published: None,
+        force_history: None,
+    };
     let document = assess_json(&assessment, &context, &Timing { wall: 0.0, threads: 1 });
     assert_eq!(document["robots"][0]["configurations"].as_array().unwrap().len(), 2);
     assert_eq!(document["robots"][1]["configurations"].as_array().unwrap().len(), 4);

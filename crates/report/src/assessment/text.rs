@@ -1,8 +1,8 @@
 //! The short tables for people.
 
-use super::super::number::{figures, fixed};
-use super::super::text::aligned;
 use super::{AssessmentContext, elbow, load};
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_assessment::benchmark::MAX_DEFLECTION;
 use stead_assessment::comparison::{Assessment, Configuration, RobotResult, obstacle_words};
 use stead_assessment::published::{PublishedTables, Quantity};

@@ -6,8 +6,8 @@ use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
 use super::lettering::{lines, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView, Window};
-use crate::number::figures;
 use crate::output::ReportError;
+use crate::units::figures;
 use plotters::style::{BLACK, RGBColor};
 use stead_assessment::comparison::{Comparison, Configuration, ElbowNames, Load, RobotResult, Zones, obstacle_words};
 use stead_assessment::map::{Elbow, Map};

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, Place, picture};
 use super::colour::{COMPONENTS, INK, SHADE};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use nalgebra::Vector3;
 use plotters::style::{BLACK, RGBColor};
 use stead_model::cutting::{ForceHistory, Sample};

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, picture};
 use super::colour::{BLUE, GREEN, INK, PALE, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use nalgebra::Complex;
 use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
 

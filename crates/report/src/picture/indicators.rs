@@ -3,9 +3,9 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
 use super::colour::{INDICATORS, INK};
-use crate::number::figures;
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::figures;
+use crate::units::fixed;
 use plotters::style::RGBColor;
 use stead_assessment::comparison::{Assessment, Load, RobotResult};
 

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, picture};
 use super::colour::{BLUE, GREEN, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use std::f64::consts::PI;
 use stead_simulation::milling::Cut;
 use stead_simulation::stability::Lobe;

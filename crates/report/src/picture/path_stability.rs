@@ -3,11 +3,11 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
-use stead_study::PathStability;
+use crate::units::fixed;
 use plotters::style::RGBColor;
 use stead_placement::outcome::Plan;
+use stead_study::PathStability;
 
 const LEFT: i32 = 95;
 const RIGHT: i32 = 970;

@@ -1,9 +1,9 @@
 //! The JSON documents of a simulated pass.
 
-use super::super::json::inputs;
-use super::super::number::Unit;
 use super::super::stability::{HERTZ, RATE, RPM, SHARE, kind_word};
 use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
@@ -14,9 +14,7 @@ use stead_simulation::roughness::Roughness;
 pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
     let (end, reason) = end_words(&found.run.end);
     let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "inputs": inputs(&run.inputs),
+    Document::new(&run.inputs).with(json!({
         "robot": run.setup.robot.name(),
         "variant": run.setup.variant.word(),
         "damping_scale": run.setup.damping_scale,
@@ -52,7 +50,7 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
             "force_y": published.forces.as_ref().map(|forces| statistics(&forces[1])),
             "profile": published.roughness.as_ref().map(roughness),
         })),
-    })
+    }))
 }
 
 /// What `stead simulate --json` prints: the summary, and how long the run took.

@@ -1,9 +1,9 @@
 //! The text for people.
 
-use super::super::number::{figures, fixed};
 use super::super::stability::kind_word;
-use super::super::text::aligned;
 use super::{Making, end_words};
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_format::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::outcome::{Simulation, Statistics};

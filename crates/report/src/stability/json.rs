@@ -1,8 +1,8 @@
 //! The JSON document of a stability analysis.
 
-use super::super::json;
-use super::super::number::Unit;
 use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
@@ -10,11 +10,9 @@ use stead_simulation::stability_analysis::{CutStability, StabilityAnalysis};
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
 pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Value {
-    let mut document = verdict(&analysis.cut_stability);
+    let mut entries = verdict(&analysis.cut_stability);
     let rate = analysis.cut_stability.verdict.growth_rate();
     let rest = [
-        ("version", json!(env!("CARGO_PKG_VERSION"))),
-        ("inputs", json::inputs(&run.inputs)),
         ("robot", json!(run.setup.robot.name())),
         ("variant", json!(run.setup.variant.word())),
         ("damping_scale", json!(run.setup.damping_scale)),
@@ -27,8 +25,8 @@ pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Valu
         ("modes", modes(&analysis.modes)),
         ("lobes", lobes(analysis)),
     ];
-    document.extend(rest.map(|(key, value)| (key.to_owned(), value)));
-    Value::Object(document)
+    entries.extend(rest.map(|(key, value)| (key.to_owned(), value)));
+    Document::new(&run.inputs).with(Value::Object(entries))
 }
 
 /// Critical depths and verdict.

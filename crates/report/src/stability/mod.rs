@@ -12,9 +12,9 @@ pub use json::stability_json;
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
-use super::number::Unit;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
 use stead_simulation::stability::Kind;
@@ -47,7 +47,7 @@ pub fn write_stability(
         ("modes.csv", modes(analysis)?),
         ("frequency-response.csv", responses(analysis)?),
         ("lobes.csv", lobes(analysis)?),
-        ("summary.json", super::json::bytes(&stability_json(run, analysis))),
+        ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
         ("frequency-response.svg", picture::frequency_response(analysis)?.into_bytes()),
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth)?.into_bytes()),
     ];

@@ -1,11 +1,11 @@
 //! Critical depths along the plans of a placement.
 
-use super::super::number::fixed;
 use super::super::output::ReportError;
 use super::super::picture;
-use super::super::tables::table;
 use super::json::verdict;
 use super::{DEPTH_MM, RATE, RPM, kind_word};
+use crate::csv_file::table;
+use crate::units::fixed;
 use serde_json::{Value, json};
 use stead_placement::outcome::Plan;
 use stead_simulation::path_stability::smallest;

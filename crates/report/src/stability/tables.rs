@@ -1,9 +1,9 @@
 //! The CSV tables of a stability analysis.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{DEPTH_MM, HERTZ, RESPONSE, RPM, SHARE};
+use crate::csv_file::table;
+use crate::units::Unit;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Amplitudes of the tip, from m to mm, for a joint that swings by 1 rad.

@@ -1,9 +1,9 @@
 //! The text for people.
 
-use super::super::number::{figures, fixed};
-use super::super::text::aligned;
 use super::RPM;
 use super::tables::joint_name;
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Kind;
