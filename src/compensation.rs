@@ -5,7 +5,7 @@ use crate::result::{Report, result};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_calibration::compensation::{self, CompensatedPath as Path_};
+use stead_calibration::compensation::{self, CompensatedPath as Outcome};
 use stead_format as format;
 use stead_report::compensation::{compensation_json, compensation_text, write_compensation};
 use stead_report::{Folder, ReportError};

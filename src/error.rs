@@ -44,3 +44,12 @@ impl Error {
         Self::Failed(error.to_string())
     }
 }
+
+impl From<stead_study::RunError> for Error {
+    fn from(error: stead_study::RunError) -> Self {
+        match error {
+            stead_study::RunError::NothingFeasible(nothing) => Self::NothingFeasible(Box::new(nothing)),
+            stead_study::RunError::Stability(error) => Self::failed(error),
+        }
+    }
+}

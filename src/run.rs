@@ -1,7 +1,7 @@
 //! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
 
-use crate::Error;
 use crate::result::{Report, result};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -111,7 +111,8 @@ impl Run {
             return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
         }
         let postures = feasibility::explain(self.problem(), placement, point, beta);
-        Ok(Explanations { placement: *placement, point, beta, postures })
+        let context = Context::new(&self.run, self.run.search);
+        Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
 }
 
@@ -161,6 +162,7 @@ pub struct Explanations {
     point: usize,
     beta: f64,
     postures: [Explanation; 8],
+    context: Context,
 }
 
 impl Report for Placements {
@@ -212,3 +214,19 @@ impl Report for PlacementScore {
         evaluation::score_text(&self.score, &self.context)
     }
 }
+
+impl Report for Explanations {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+        Ok(Vec::new())
+    }
+
+    fn document(&self) -> Value {
+        evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
+    }
+
+    fn table(&self) -> String {
+        evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
+    }
+}
+
+result!(Placements, PlacementScore, Explanations);
