@@ -3,7 +3,7 @@
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
-use stead_placement::place::NothingFeasible;
+use stead_placement::place::Infeasible;
 use stead_report::ReportError;
 
 /// Why a file could not be read, a job gave no result, or a result could not be written.
@@ -21,7 +21,7 @@ pub enum Error {
     Output(#[from] ReportError),
     /// No placement, or not the given one, satisfies the constraints.
     #[error(transparent)]
-    NothingFeasible(Box<NothingFeasible>),
+    Infeasible(Box<Infeasible>),
     /// No robot can mill the benchmark, or the assessment was stopped.
     #[error(transparent)]
     Assessment(#[from] AssessError),
@@ -48,7 +48,7 @@ impl Error {
 impl From<stead_study::RunError> for Error {
     fn from(error: stead_study::RunError) -> Self {
         match error {
-            stead_study::RunError::NothingFeasible(nothing) => Self::NothingFeasible(Box::new(nothing)),
+            stead_study::RunError::Infeasible(nothing) => Self::Infeasible(Box::new(nothing)),
             stead_study::RunError::Stability(error) => Self::failed(error),
         }
     }

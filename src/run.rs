@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_placement::feasibility::{self, Explanation};
-use stead_placement::outcome::{Case, Outcome};
-use stead_placement::place::{NothingFeasible, Score};
+use stead_placement::outcome::{Cases, Outcome};
+use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
 use stead_report::document::Timing;
@@ -70,7 +70,7 @@ impl Run {
     /// the run file asks for one. A stop that the monitor asks for leaves the best found so far.
     ///
     /// # Errors
-    /// [`Error::NothingFeasible`] when no placement met satisfies the constraints.
+    /// [`Error::Infeasible`] when no placement met satisfies the constraints.
     pub fn place(&self, monitor: &Monitor) -> Result<Placements, Error> {
         let mut placements = self.search(monitor)?;
         if self.run.certificate.is_some() {
@@ -94,7 +94,7 @@ impl Run {
     /// Plans a given placement, best and worst.
     ///
     /// # Errors
-    /// [`Error::NothingFeasible`] with the constraint that fails at which points.
+    /// [`Error::Infeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
         let Scored { score, stability } = study::score(&self.run, placement)?;
         let context = Context { stability, ..Context::new(&self.run, self.run.search) };
@@ -133,7 +133,7 @@ impl Placements {
     }
 
     /// The four cases: best placement with best and worst plan, worst placement with best and worst plan.
-    pub fn cases(&self) -> &[Case; 4] {
+    pub fn cases(&self) -> &Cases {
         &self.outcome.cases
     }
 

@@ -3,8 +3,8 @@
 use super::PathStability;
 use stead_format::Run;
 use stead_numerics::monitor::Monitor;
-use stead_placement::outcome::{Outcome, Plan};
-use stead_placement::place::{self, NothingFeasible, Score};
+use stead_placement::outcome::{Cases, Outcome, Plan};
+use stead_placement::place::{self, Infeasible, Score};
 use stead_placement::problem::Placement;
 use stead_simulation::stability_analysis::StabilityError;
 
@@ -13,7 +13,7 @@ use stead_simulation::stability_analysis::StabilityError;
 pub enum RunError {
     /// No placement, or not the given one, satisfies the constraints.
     #[error(transparent)]
-    NothingFeasible(#[from] NothingFeasible),
+    Infeasible(#[from] Infeasible),
     /// The stability of the cut cannot be computed.
     #[error(transparent)]
     Stability(#[from] StabilityError),
@@ -43,7 +43,7 @@ pub struct Scored {
 /// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
 pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
     let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
-    let [best, _, worst, _] = &outcome.cases;
+    let Cases { best, worst, .. } = &outcome.cases;
     let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
     Ok(Placed { outcome, stability })
 }
