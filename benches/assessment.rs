@@ -40,7 +40,8 @@ fn one_map_finer_by(bencher: Bencher, fineness: usize) {
     let class = Elbow::Up.forward_class(robot);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
     let silent = Monitor::silent();
-    let map = || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &silent, &|| {}));
+    let map =
+        || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &silent, &|| {}));
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
 }

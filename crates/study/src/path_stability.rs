@@ -19,10 +19,15 @@ impl PathStability {
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little of its masses, or a cut without width.
-    pub fn along(problem: &Problem, analysis: &PathStabilityAnalysis, plans: [(&Placement, &Plan); 2]) -> Result<Self, StabilityError> {
+    pub fn along(
+        problem: &Problem,
+        analysis: &PathStabilityAnalysis,
+        plans: [(&Placement, &Plan); 2],
+    ) -> Result<Self, StabilityError> {
         let along = |(placement, plan): (&Placement, &Plan)| {
             let feeds = problem.feeds(placement);
-            let configuration = |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
+            let configuration =
+                |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
             let configurations: Vec<_> = plan.points.iter().map(configuration).collect();
             analysis.along(&problem.robot, &problem.spindle, &configurations)
         };

@@ -58,9 +58,6 @@ pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
     Ok(Scored { score, stability })
 }
 
-fn stability(
-    run: &Run,
-    plans: [(&Placement, &Plan); 2],
-) -> Result<Option<PathStability>, StabilityError> {
+fn stability(run: &Run, plans: [(&Placement, &Plan); 2]) -> Result<Option<PathStability>, StabilityError> {
     run.path_stability.as_ref().map(|analysis| PathStability::along(&run.problem, analysis, plans)).transpose()
 }

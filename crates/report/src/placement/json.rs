@@ -57,7 +57,12 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
-    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), crate::stability::path::document(found, with_points))));
+    document.extend(
+        context
+            .stability
+            .as_ref()
+            .map(|found| ("stability".to_owned(), crate::stability::path::document(found, with_points))),
+    );
     document
 }
 

@@ -13,13 +13,13 @@ pub use text::placement_text;
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
 use crate::picture;
-use stead_study::PathStability;
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::{InputFile, Reference};
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
+use stead_study::PathStability;
 
 /// What the reports state besides the problem and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,8 +73,8 @@ pub fn write_placement(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
-    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan)?;
-    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan)?;
+    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan);
+    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan);
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
@@ -87,10 +87,10 @@ pub fn write_placement(
         ("transfers.csv", tables::transfers(&outcome.cases)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         ("summary.json", bytes(&summary)),
-        ("convergence.svg", picture::convergence(outcome)?.into_bytes()),
+        ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("deflection-map-best.svg", map_best.into_bytes()),
         ("deflection-map-worst.svg", map_worst.into_bytes()),
-        ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
+        ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
     if let Some(stability) = &context.stability {
         files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan])?);

@@ -5,6 +5,7 @@ use crate::document::Timing;
 use crate::output::Folder;
 use crate::picture;
 use crate::testing::{assert_well_formed, context, outcome, problem};
+use stead_placement::outcome::{Case, Cases};
 
 fn rows(bytes: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes);
@@ -189,9 +190,9 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
     let Cases { best, best_worst_plan, .. } = &outcome().cases;
     let make = || {
         [
-            picture::convergence(outcome()).unwrap(),
-            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan).unwrap(),
-            picture::cell(problem(), outcome()).unwrap(),
+            picture::convergence(outcome()),
+            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan),
+            picture::cell(problem(), outcome()),
         ]
     };
     let pictures = make();

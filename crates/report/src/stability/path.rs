@@ -16,13 +16,11 @@ use stead_study::PathStability;
 ///
 /// # Errors
 /// [`ReportError::Format`] when a file cannot be made.
-pub fn files(
-    stability: &PathStability,
-    plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
+pub fn files(stability: &PathStability, plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
     Ok([
         ("stability-best.csv", along(plans[0], &stability.plans[0])?),
         ("stability-worst.csv", along(plans[1], &stability.plans[1])?),
-        ("stability.svg", picture::path_stability(stability, plans)?.into_bytes()),
+        ("stability.svg", picture::path_stability(stability, plans).into_bytes()),
     ])
 }
 
@@ -46,7 +44,7 @@ pub fn document(stability: &PathStability, points: bool) -> Value {
         "variant": stability.analysis.variant.word(),
         "damping_scale": stability.analysis.damping_scale,
         "spindle_rpm": RPM.number(stability.analysis.cut.spindle_speed),
-        "axial_depth_mm": DEPTH_MM.number(stability.analysis.cut.axial_depth),
+        "axial_depth_mm": DEPTH_MM.number(stability.analysis.cut.section.axial_depth),
         "max_depth_mm": DEPTH_MM.number(stability.analysis.max_depth),
         "best": plan(&stability.plans[0]),
         "worst": plan(&stability.plans[1]),
@@ -66,7 +64,7 @@ pub fn text(stability: &PathStability, names: [&str; 2]) -> String {
             0 => "is stable at every point".to_owned(),
             _ => format!("chatters at {bad} of {count} points"),
         };
-        let depth = fixed(stability.analysis.cut.axial_depth * 1e3, 3);
+        let depth = fixed(stability.analysis.cut.section.axial_depth * 1e3, 3);
         text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
     }
     text
