@@ -4,10 +4,11 @@ use super::progress::Watcher;
 use super::{Failure, on_threads, say};
 use std::time::{Duration, Instant};
 use stead_format::Run;
-use stead_placement::certify::{self, Bound, Unfit, Watch};
+use stead_placement::certify::{self, Bound, Watch};
 use stead_placement::control::Control;
 use stead_placement::outcome::{CANCELLED, Case, Goal, Outcome};
 use stead_placement::settings::CertificateSettings;
+use stead_placement::symmetry::Unsupported;
 use stead_report::certificate::{Certificate, Proof, ending};
 
 /// What goes into every bound.
@@ -77,7 +78,7 @@ impl Job<'_> {
         goal: Goal,
         case: &Case,
         value: f64,
-        search: impl FnOnce(&mut dyn Watch) -> Result<Bound, Unfit> + Send,
+        search: impl FnOnce(&mut dyn Watch) -> Result<Bound, Unsupported> + Send,
     ) -> Result<Result<Proof, String>, Failure> {
         if self.watcher.should_stop() {
             return Ok(Err("interrupted before it began".to_owned()));

@@ -6,7 +6,9 @@ use super::control::Control;
 use super::genetic::{Individual, rank};
 use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::{Generation, Goal};
+use super::problem::Placement;
 use super::redundancy::{self, Extremum, Planner, Worth};
+use super::symmetry::about_axis_1;
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
 
@@ -53,7 +55,8 @@ fn apart<'s>(
 ) -> Vec<(&'s Individual, Individual)> {
     let mut kept: Vec<([f64; 3], (&Individual, Individual))> = Vec::new();
     for (start, end) in sorted {
-        let place = table.cylindrical(&end.pose);
+        let [x, y, z, yaw] = end.pose;
+        let place = about_axis_1(table.problem(), &Placement { x, y, z, yaw });
         let is_same = |(known, other): &([f64; 3], (&Individual, Individual))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]

@@ -27,6 +27,7 @@ pub mod problem;
 pub mod redundancy;
 pub mod refine;
 pub mod settings;
+pub mod symmetry;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

@@ -5,12 +5,13 @@ use super::control::{Control, Progress};
 use super::criterion::{normal_part_by_parameters, state};
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::genetic::{self, Found, Individual};
-use super::lookup::{LookupTable, Unsuited};
+use super::lookup::LookupTable;
 use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
 use super::refine::{Solution, planned, refine};
 use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -84,7 +85,7 @@ pub fn place(
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     if found.iter().any(|f| f.misled && !f.interrupted) && !control.should_stop() {
-        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }

@@ -7,10 +7,11 @@ use super::number::Unit;
 use super::{Context, words};
 use serde_json::{Map, Value, json};
 use stead_format::input::InputFile;
-use stead_placement::lookup::{Axis, Unsuited};
+use stead_placement::lookup::Axis;
 use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
 use stead_placement::problem::{Interval, Placement, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
+use stead_placement::symmetry::Unsupported;
 
 /// How long a computation took.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +78,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
 const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
 
 /// The table that the search looked through, or why there is none.
-fn tabled(tabled: &Result<Tabled, Unsuited>) -> Value {
+fn tabled(tabled: &Result<Tabled, Unsupported>) -> Value {
     match tabled {
         Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),
         Ok(Tabled { shape, accuracy }) => {

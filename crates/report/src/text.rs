@@ -3,9 +3,9 @@
 use super::number::{figures, fixed};
 use super::{Context, words};
 use stead_format::input::Reference;
-use stead_placement::lookup::Unsuited;
 use stead_placement::outcome::{Outcome, ratio};
 use stead_placement::problem::Problem;
+use stead_placement::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
@@ -39,8 +39,8 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
                 &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
             );
         }
-        Some(Err(unsuited @ Unsuited::Misleading)) => {
-            line(&mut text, &format!("searched again without a table: {unsuited}"));
+        Some(Err(rejected @ Unsupported::Rejected)) => {
+            line(&mut text, &format!("searched again without a table: {rejected}"));
         }
         Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
         None => {}

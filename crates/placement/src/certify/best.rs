@@ -2,12 +2,14 @@
 
 use super::active_cells::ActiveCells;
 use super::branch_and_bound::{Bound, BranchAndBound, End, Open, State, Watch, halves, widest};
+use super::cell::whole;
+use super::certifiable;
 use super::coarse_bounds::CoarseBounds;
-use super::lower_bound::Model;
-use super::model::{Unfit, certifiable, prepared};
+use super::model::Model;
 use super::region::Region;
 use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -19,10 +21,15 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn best(
+    problem: &Problem,
+    value: f64,
+    gap: f64,
+    with_rate: bool,
+    watch: &mut dyn Watch,
+) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
-    let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (model, whole) = prepared(problem, &compliances, with_rate);
+    let (model, whole) = (Model::new(problem, with_rate), whole(problem));
     // Of no placement anything is known until the tables are made.
     let unknown = State { bound: 0.0, open: 1, nodes: 0 };
     let Some(coarse) = CoarseBounds::new(&model, || watch.goes_on(&unknown)) else {

@@ -13,7 +13,7 @@ pub struct State {
     pub bound: f64,
     /// Boxes still open.
     pub open: usize,
-    /// Boxes model so far.
+    /// Boxes bounded so far.
     pub nodes: usize,
 }
 
@@ -33,7 +33,7 @@ pub struct Bound {
     pub bound: f64,
     /// Whether the rate of beta was kept.
     pub with_rate: bool,
-    /// Boxes model.
+    /// Boxes bounded.
     pub nodes: usize,
     /// Why the search ended.
     pub end: End,
@@ -150,7 +150,7 @@ impl BranchAndBound {
 
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
     ///
-    /// `nodes` is the number of boxes model before; `parts` gives those of a box, `None` where it is not to be cut further.
+    /// `nodes` is the number of boxes bounded before; `parts` gives those of a box, `None` where it is not to be cut further.
     /// Where bounds are the same, the younger box comes first: what cannot be told apart is found by going down, not by cutting
     /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
     /// The result does not depend on the number of threads.

@@ -1,14 +1,14 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
 use super::compliance_table::{Extent, Steps};
-use super::lower_bound::Model;
 use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
+use super::model::Model;
 use super::region::{Point, Region};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
-/// CoarseBounds tables, one for each kind of force, in ever coarser levels.
+/// Coarse tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
 pub(super) struct CoarseBounds {
     pub levels: Vec<Level>,

@@ -76,7 +76,7 @@ impl Point {
         let turn_of_azimuth = 1.0 - radius * cos_azimuth / r;
         let slope_r = [cos_azimuth, -radius * sin_azimuth];
         let slope_chi = [sin_azimuth / r, radius * cos_azimuth / r];
-        // Second derivatives, each model over the box by its middle value and how far that can move.
+        // Second derivatives, each bounded over the box by its middle value and how far that can move.
         let swing = (moved / least).min(2.0);
         let sine_most = (sin_azimuth.abs() + swing).min(1.0);
         let cosine_most = (cos_azimuth.abs() + swing).min(1.0);

@@ -1,6 +1,6 @@
 //! An upper bound of what placements of a box are worth, limits between neighbouring points dropped.
 //!
-//! What is model is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
+//! What is bounded is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
 //! the best posture class of each segment. For one box of placements and one posture class of a segment
 //! - every point has a cell of heading that is surely allowed all over the box: the sum of what these cost bounds the class, and
 //!   the best of such classes the segment;
@@ -13,7 +13,7 @@
 
 use super::compliance_table::Node;
 use super::cost::{CORNERS, PointCost};
-use super::lower_bound::Model;
+use super::model::Model;
 use super::region::Region;
 use super::sliding_min::plus;
 use std::f64::consts::TAU;

@@ -3,13 +3,15 @@
 //! Dropping limits lowers what a placement is worth, so this is no upper bound of values with the rate of beta or joint steps.
 
 use super::branch_and_bound::{Bound, BranchAndBound, Open, Watch, halves, widest};
+use super::cell::whole;
+use super::certifiable;
 use super::compliance_table::{ComplianceTable, Steps};
-use super::lower_bound::Model;
-use super::model::{Unfit, certifiable, prepared};
+use super::model::Model;
 use super::region::Region;
 use super::upper_bound::{BoxBounds, Inherited};
 use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::symmetry::Unsupported;
 use std::sync::Arc;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first bounds.
@@ -30,17 +32,21 @@ type Looked = Open<Option<Arc<Inherited>>>;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
-    let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (model, whole) = prepared(problem, &compliances, false);
-    let (extent, _) = model.table.grid();
-    let model = Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model };
+    let model = without_rate(problem);
     let search = BranchAndBound { goal: Goal::Worst, value, gap, with_rate: false, points: model.points.len() };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
-    let start = first(&model, whole).into_iter().map(unknown).collect();
+    let start = first(&model, whole(problem)).into_iter().map(unknown).collect();
     Ok(search.explore(start, 0, watch, |open| parts(&model, open, ceiling)))
+}
+
+/// What is bounded from above: without the rate of beta, and with tables of one level more.
+fn without_rate(problem: &Problem) -> Model {
+    let model = Model::new(problem, false);
+    let (extent, _) = model.table.grid();
+    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
 }
 
 /// The boxes to begin with, together all of the cell.

@@ -61,14 +61,6 @@ impl LookupTable<'_> {
         (best, worth, evaluations)
     }
 
-    /// What an upright tool's problem knows of a pose: radius and height of the workpiece origin (m), and the yaw against its
-    /// azimuth (rad).
-    pub fn cylindrical(&self, pose: &[f64; 4]) -> [f64; 3] {
-        let root = self.problem.robot.geometry().root_in_base;
-        let (x, y) = (pose[0] - root.x, pose[1] - root.y);
-        [libm::hypot(x, y), pose[2], pose[3] - libm::atan2(y, x)]
-    }
-
     /// A pose moved along one direction, inside the cell.
     fn moved(&self, pose: &[f64; 4], direction: usize, step: f64) -> [f64; 4] {
         let root = self.problem.robot.geometry().root_in_base;

@@ -29,59 +29,13 @@ pub use shape::{Axis, Shape};
 
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
+use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
 use interpolate::WorkpiecePoint;
-use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::{Compliance, turns::Range};
-
-/// Why a problem cannot be searched through a table.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Unsuited {
-    /// Axis 1 is not vertical, so that states depend on the azimuth.
-    #[error("axis 1 of the robot is not vertical")]
-    BaseNotVertical,
-    /// A tool axis that is not vertical, or that is upside down against the first one.
-    #[error(
-        "the tool is not upright in the same sense at every point: at point {point} it is not as at the first, vertical one"
-    )]
-    Tilted {
-        /// The first such path point.
-        point: usize,
-    },
-    /// A moment acts on the tool.
-    #[error("a moment acts on the tool at point {point}")]
-    Moment {
-        /// The first such path point.
-        point: usize,
-    },
-    /// The compliance of joint 1 changes with its angle, or that of a wrist joint with the flip.
-    #[error("the compliance of joint {joint} changes with its angle")]
-    Law {
-        /// The joint, from 1.
-        joint: usize,
-    },
-    /// Scores count how well the compliances are known.
-    #[error("scores count the uncertainty of the compliances")]
-    Uncertain,
-    /// The planner does not find what the table promises: found out only after a search through it.
-    #[error("what it promised was not to be had within the steps and turns of the joints")]
-    Misleading,
-    /// The cell is so large that the table does not fit in memory.
-    #[error(
-        "a table for this cell would take {:.1} GB, and at most {:.1} GB are allowed", *bytes as f64 / 1e9, *most as f64 / 1e9
-    )]
-    TooLarge {
-        /// What it would take.
-        bytes: u64,
-        /// What it may take.
-        most: u64,
-    },
-}
+use nalgebra::Matrix3;
+use stead_model::robot::turns::Range;
 
 /// Largest size of a table. Bytes
 pub const MAX_BYTES: u64 = 1 << 30;
-
-/// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
-const UPRIGHT: f64 = 1e-9;
 
 /// What an arm with an upright tool does everywhere in a cell.
 #[derive(Debug, Clone)]
@@ -127,34 +81,25 @@ impl<'a> LookupTable<'a> {
     /// Whether a problem can be searched through a table, and through one of what shape.
     ///
     /// # Errors
-    /// [`Unsuited`], with the reason.
-    pub fn shape_for(problem: &Problem) -> Result<Shape, Unsuited> {
-        sense(problem)?;
-        let joints = problem.robot.joints();
-        let is_law = |j: usize| !matches!(joints[j].compliance, Compliance::Constant(_));
-        if let Some(joint) = [0, 3, 4, 5].into_iter().find(|j| is_law(*j)) {
-            return Err(Unsuited::Law { joint: joint + 1 });
-        }
-        if let Some(point) = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0) {
-            return Err(Unsuited::Moment { point });
-        }
-        if problem.criterion.confidence > 0.0 && problem.robot.uncertainty().is_some() {
-            return Err(Unsuited::Uncertain);
-        }
+    /// [`Unsupported`], with the reason.
+    pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
+        Upright::of(problem)?;
+        require_constant(problem, &[0, 3, 4, 5])?;
+        require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
-        let shape = Shape::new(problem, !is_flat, !Range::of(&joints[0]).has_turns());
+        let shape = Shape::new(problem, !is_flat, !Range::of(&problem.robot.joints()[0]).has_turns());
         let bytes = shape.bytes();
-        if bytes > MAX_BYTES { Err(Unsuited::TooLarge { bytes, most: MAX_BYTES }) } else { Ok(shape) }
+        if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(shape) }
     }
 
     /// Samples the table of a problem.
     ///
     /// # Errors
-    /// [`Unsuited`], with the reason.
-    pub fn new(problem: &'a Problem) -> Result<Self, Unsuited> {
+    /// [`Unsupported`], with the reason.
+    pub fn new(problem: &'a Problem) -> Result<Self, Unsupported> {
         let shape = Self::shape_for(problem)?;
-        let sense = sense(problem)?;
+        let sense = Upright::of(problem)?.sense;
         let (data, alive) = sample::sample(problem, &shape, sense);
         // Exactly upright, so that a level path is level to the last bit.
         let r = problem.robot.geometry().base_from_root.transpose();
@@ -180,21 +125,6 @@ impl<'a> LookupTable<'a> {
     pub fn problem(&self) -> &'a Problem {
         self.problem
     }
-}
-
-/// +1 where the tool axis (from the workpiece to the robot) is along axis 1 at every point, -1 where it is against it.
-fn sense(problem: &Problem) -> Result<f64, Unsuited> {
-    let up = problem.robot.geometry().base_from_root.transpose() * Vector3::z();
-    let is_vertical = |v: &Vector3<f64>| libm::hypot(v.x, v.y) < UPRIGHT;
-    if !is_vertical(&up) {
-        return Err(Unsuited::BaseNotVertical);
-    }
-    let points = problem.task.points();
-    let upside = points[0].axis.z.signum();
-    if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis) || p.axis.z.signum() != upside) {
-        return Err(Unsuited::Tilted { point });
-    }
-    Ok(upside * up.z.signum())
 }
 
 #[cfg(test)]

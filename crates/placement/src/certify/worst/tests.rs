@@ -13,12 +13,6 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use stead_model::robot::PostureClass;
 
-fn model(problem: &Problem) -> Model {
-    let (model, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
-    let (extent, _) = model.table.grid();
-    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
-}
-
 /// A placement of a region; the azimuth is that of the middle of the paper's cell.
 fn placed(problem: &Problem, [radius, height, turn]: [f64; 3]) -> Placement {
     let root = problem.robot.geometry().root_in_base;
@@ -43,7 +37,7 @@ fn corner(region: &Region, k: usize) -> [f64; 3] {
 /// more; what is known of the cell may be tampered with.
 fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
     let problem = five_segments();
-    let model = model(&problem);
+    let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let (mut looked, mut wrong) = (0, 0);
     while looked < 300 {
@@ -96,7 +90,7 @@ fn tampered_cells_are_noticed() {
 #[test]
 fn boxes_are_worth_no_more_than_is_said() {
     let problem = five_segments();
-    let model = model(&problem);
+    let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let (mut tight, mut nothing) = (0, 0);
     for k in 0..9 {
