@@ -1,4 +1,5 @@
-//! What every job computes with: numbers that carry derivatives, and the widest vectors of the processor.
+//! What every job computes with: numbers that carry derivatives, the widest vectors of the processor, and warnings.
 
+pub mod message;
 pub mod scalar;
 pub mod simd;
