@@ -1,25 +1,26 @@
-//! A table for upright tools, so that a look at a placement costs a tenth of planning it.
+//! A lookup table of the scores of upright tools: candidates are scored by interpolating it, at a tenth of the cost of planning
+//! them; only survivors are planned exactly.
 //!
-//! With the tool axis along axis 1, a state depends on four things alone: the tool centre point's radius r and height z in
-//! the root frame, the heading of the spindle against the point's azimuth, and the posture class. What the arm does there is
-//! sampled once per robot and spindle, by the ordinary geometry (`sample`), and interpolated for every placement (`interpolate`);
-//! the best way through the scores is found by the planner's rules, but for joint steps and turns (`objective`); `coordinate_search` climbs
-//! on it. Joint 1 needs no table. With n the wall normal and f the force, both as (radial, tangential, up), and the in-plane
-//! compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
+//! With the tool axis along axis 1 ([`super::symmetry`]), a state depends on four things alone: the tool centre point's radius r
+//! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
+//! compliance there is sampled once per robot and spindle, by the ordinary geometry (`sample`, over the grid of `shape`). A placement
+//! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
+//! joint steps and turns (`objective`); `coordinate_search` descends on that. With n the wall normal and f the force, both as (radial,
+//! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
 //!
 //! ```text
 //! n . K^-1 f = m n.f + d1 (n_r f_r - n_t f_t) + d2 (n_r f_t + n_t f_r)     joints 2 to 6 in the plane
 //!            + f_z (c_rz n_r + c_tz n_t)                                   and out of it
-//!            + r^2 k_1 n_t f_t                                             joint 1, of compliance k_1
+//!            + r^2 k_1 n_t f_t                                             joint 1, of compliance k_1: not in the table
 //! ```
 //!
-//! A table is an aid to the search. What it finds is looked at again by the ordinary planner before it goes on, and
-//! [`LookupTable::accuracy`] tells how far the two are apart.
+//! [`LookupTable::accuracy`] measures the error of the interpolation.
 
 mod accuracy;
 pub mod coordinate_search;
 mod interpolate;
 mod objective;
+mod polar;
 mod sample;
 mod shape;
 
@@ -30,14 +31,14 @@ pub use shape::{Axis, Shape};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
-use interpolate::WorkpiecePoint;
 use nalgebra::Matrix3;
+use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
 
 /// Largest size of a table. Bytes
 pub const MAX_BYTES: u64 = 1 << 30;
 
-/// What an arm with an upright tool does everywhere in a cell.
+/// The compliance of an arm with an upright tool, and the room left to its limits, everywhere in a cell.
 #[derive(Debug, Clone)]
 pub struct LookupTable<'a> {
     problem: &'a Problem,
@@ -54,7 +55,7 @@ pub struct LookupTable<'a> {
     first_compliance: f64,
 }
 
-/// A grid of beta to look along, with what the rate of beta allows between neighbouring points.
+/// A grid of beta, with the steps that the rate of beta allows between neighbouring points.
 #[derive(Debug, Clone)]
 pub struct BetaGrid {
     /// Number of grid values.
@@ -78,7 +79,7 @@ impl BetaGrid {
 }
 
 impl<'a> LookupTable<'a> {
-    /// Whether a problem can be searched through a table, and through one of what shape.
+    /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
     ///
     /// # Errors
     /// [`Unsupported`], with the reason.
@@ -109,7 +110,7 @@ impl<'a> LookupTable<'a> {
             shape,
             data,
             alive,
-            points: interpolate::points(problem),
+            points: polar::points(problem),
             root_from_base,
             sense,
             first_compliance: problem.robot.compliances_at(&[0.0; 6])[0],

@@ -48,7 +48,7 @@ fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
         for class in PostureClass::ALL {
             let mut scores = vec![f32::INFINITY; count];
             if let Some(polar) = table.polar_point(&table.place(&pose), point)
-                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.rows, &mut scores)
+                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.scratch, &mut scores)
             {
                 scores.fill(f32::INFINITY);
             }
