@@ -1,4 +1,4 @@
-//! The best placement: a lower bound of what placements are worth.
+//! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
 use super::branch_and_bound::{Bound, BranchAndBound, End, Open, State, Watch, halves, widest};
@@ -13,7 +13,7 @@ use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Bounds from below what placements of a problem are worth, until no placement can be better than `value` (mean score, m)
+/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean score, m)
 /// by more than `gap` (relative).
 ///
 /// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without

@@ -23,7 +23,7 @@ pub trait Watch {
     fn goes_on(&mut self, state: &State) -> bool;
 }
 
-/// A bound of what placements of the cell are worth: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
+/// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bound {
     /// The mean score that was compared with. m
