@@ -1,17 +1,18 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, End, Open, State, Watch, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, End, Open, halves, widest};
 use super::cell::whole;
 use super::certifiable;
 use super::coarse_bounds::CoarseBounds;
 use super::model::Model;
 use super::region::Region;
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean score, m)
 /// by more than `gap` (relative).
@@ -21,21 +22,18 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(
-    problem: &Problem,
-    value: f64,
-    gap: f64,
-    with_rate: bool,
-    watch: &mut dyn Watch,
-) -> Result<Bound, Unsupported> {
+pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
     let (model, whole) = (Model::new(problem, with_rate), whole(problem));
+    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len() };
     // Of no placement anything is known until the tables are made.
-    let unknown = State { bound: 0.0, open: 1, nodes: 0 };
-    let Some(coarse) = CoarseBounds::new(&model, || watch.goes_on(&unknown)) else {
-        return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped, open: vec![(whole, 0.0)] });
+    let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
+        Ok(coarse) => coarse,
+        Err(stop) => {
+            let open = vec![(whole, 0.0)];
+            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
+        }
     };
-    let search = BranchAndBound { goal: Goal::Best, value, gap, with_rate, points: model.points.len() };
     let ceiling = search.ceiling();
     let mut nodes = 0;
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
@@ -44,7 +42,7 @@ pub fn best(
         .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
         .collect();
     drop(coarse);
-    Ok(search.explore(start, nodes, watch, |open| parts(&model, open, ceiling)))
+    Ok(search.explore(start, nodes, monitor, |open| parts(&model, open, ceiling)))
 }
 
 /// The boxes that the coarse tables leave open.

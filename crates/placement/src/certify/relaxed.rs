@@ -1,6 +1,6 @@
 //! The objective of a placement without the limits between neighbouring points, by the ordinary evaluator.
 
-use crate::criterion::state;
+use crate::evaluate::reference::state;
 use crate::problem::{Placement, Problem};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};

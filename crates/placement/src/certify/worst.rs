@@ -2,17 +2,18 @@
 //!
 //! Dropping limits lowers the objective of a placement, so this is no upper bound of values with the rate of beta or joint steps.
 
-use super::branch_and_bound::{Bound, BranchAndBound, Open, Watch, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
 use super::cell::whole;
 use super::certifiable;
 use super::compliance_table::{ComplianceTable, Steps};
 use super::model::Model;
 use super::region::Region;
 use super::upper_bound::{BoxBounds, Inherited};
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use crate::symmetry::Unsupported;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first bounds.
 const STEPS: Steps = Steps { length: 0.05, headings: 64 };
@@ -32,14 +33,14 @@ type WorstBox = Open<Option<Arc<Inherited>>>;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> Result<Bound, Unsupported> {
+pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
     let model = without_rate(problem);
-    let search = BranchAndBound { goal: Goal::Worst, value, gap, with_rate: false, points: model.points.len() };
+    let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len() };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
     let start = first(&model, whole(problem)).into_iter().map(unknown).collect();
-    Ok(search.explore(start, 0, watch, |open| parts(&model, open, ceiling)))
+    Ok(search.explore(start, 0, monitor, |open| parts(&model, open, ceiling)))
 }
 
 /// What is bounded from above: without the rate of beta, and with tables of one level more.
