@@ -15,6 +15,7 @@
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
 pub mod certify;
+pub mod constraints;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;

@@ -1,7 +1,7 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, End, Open, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
 use super::cell::whole;
 use super::certifiable;
 use super::coarse_bounds::CoarseBounds;
@@ -31,7 +31,7 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &
         Ok(coarse) => coarse,
         Err(stop) => {
             let open = vec![(whole, 0.0)];
-            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
+            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
         }
     };
     let ceiling = search.ceiling();

@@ -21,6 +21,7 @@ mod arm;
 mod best;
 mod branch_and_bound;
 mod cell;
+mod certificate;
 mod coarse_bounds;
 mod compliance_table;
 mod continuation;
@@ -42,7 +43,10 @@ mod worst;
 mod tests;
 
 pub use best::best;
-pub use branch_and_bound::{Bound, End};
+pub use branch_and_bound::{Bound, Status};
+pub use certificate::{
+    BOUND_DECIMALS, Certificate, MAX_GAP_PERCENT, NoProof, OpenBox, Proof, Relaxation, certify, no_certificate,
+};
 pub use region::Region;
 pub use relaxed::relaxed_value;
 pub use worst::worst;

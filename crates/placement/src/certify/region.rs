@@ -4,9 +4,10 @@
 //! radius and height of the workpiece origin, and the yaw less its azimuth.
 
 use super::number::VARIABLES;
+use serde::Serialize;
 
 /// A box of placements.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Region {
     /// Radius (m), height (m), yaw less azimuth (rad) of its middle.
     pub middle: [f64; 3],

@@ -8,6 +8,7 @@ mod arms;
 mod boxes;
 mod cell;
 mod cells;
+mod certificate;
 mod minorants;
 mod planner;
 
