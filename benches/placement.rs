@@ -69,7 +69,8 @@ fn planner(bencher: Bencher, instructions: usize) {
     assert!(segment.iter().all(|item| alive(item) == alive(&segment[0])), "a class ends within the segment");
     let classes: Vec<PostureClass> =
         PostureClass::ALL.into_iter().filter(|class| segment[0].1.is_alive(*class)).collect();
-    let scores = |states: &States| classes.iter().flat_map(|class| states.scores(*class)).copied().collect::<Vec<_>>();
+    let scores =
+        |states: &StateGrid| classes.iter().flat_map(|class| states.scores(*class)).copied().collect::<Vec<_>>();
     let kept: Vec<Vec<f64>> = segment.iter().map(|(_, states)| scores(states)).collect();
     let edges: usize = segment[1..]
         .iter()

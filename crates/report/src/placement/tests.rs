@@ -5,6 +5,7 @@ use crate::document::Timing;
 use crate::output::Folder;
 use crate::picture;
 use crate::testing::{assert_well_formed, context, outcome, problem};
+use stead_placement::outcome::{Case, Cases};
 
 fn rows(bytes: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes);
