@@ -28,6 +28,7 @@ pub use accuracy::Accuracy;
 pub use objective::Workspace;
 pub use shape::{Axis, Shape};
 
+use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
@@ -120,6 +121,14 @@ impl<'a> LookupTable<'a> {
     /// What is sampled where.
     pub fn shape(&self) -> &Shape {
         &self.shape
+    }
+
+    /// The constraints that an objective by the table leaves out: only the planner evaluates them.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
     }
 
     /// The problem it is for.
