@@ -1,12 +1,13 @@
 //! What comes of a compensation: corrected points with what remains, or the points that cannot be corrected and why.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 use std::fmt;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
 
 /// Where the loaded tool rests, seen from the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Deflection {
     /// From the target to the tool centre point, in the base frame. m
     pub linear: Vector3<f64>,
@@ -17,7 +18,7 @@ pub struct Deflection {
 }
 
 /// One corrected point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CompensatedPoint {
     /// Number of its segment, from 1.
     pub segment: usize,
@@ -38,14 +39,14 @@ pub struct CompensatedPoint {
 }
 
 /// A corrected path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompensatedPath {
     /// The points, in order; at least one.
     pub points: Vec<CompensatedPoint>,
 }
 
 /// Mean and largest value over the points of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeanAndMax {
     /// Mean. m
     pub mean: f64,
@@ -82,7 +83,7 @@ pub fn reduction([before, after]: [MeanAndMax; 2]) -> Option<f64> {
 }
 
 /// Why a point cannot be corrected.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, thiserror::Error)]
 pub enum PointError {
     /// The correction leads out of reach.
     #[error("the correction leads out of reach: {0}")]
@@ -142,7 +143,7 @@ impl PointError {
 }
 
 /// A path that cannot be corrected all along.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NotCompensated {
     /// The points that cannot, from 0 and ascending, each with the reason; at least one.
     pub failed: Vec<(usize, PointError)>,

@@ -6,7 +6,7 @@ use super::error::IdentifyError;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
 use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal_equations::FreeParameters;
-use super::outcome::{Estimate, Identified, RowResult};
+use super::outcome::{Estimate, Held, HeldReason, Identified, RowResult};
 use super::outliers::{ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::{Setup, SetupFit};
@@ -38,8 +38,9 @@ pub(super) struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    /// All of it, with the law of the varying joint fitted. `held` are the parameters that are not free.
-    pub fn assemble(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
+    /// All of it, with the law of the varying joint fitted; warnings are left to be added. `dropped` are the unidentifiable
+    /// parameters that are not free.
+    pub fn assemble(self, dropped: Vec<Parameter>) -> Result<Identified, IdentifyError> {
         let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
         let is_noise_estimated = self.problem.noise.is_none();
@@ -64,7 +65,7 @@ impl Assembly<'_> {
             arm: estimates,
             covariance: &arm.covariance * variance,
             robot,
-            held,
+            held: self.held(dropped),
             residual_rms: libm::sqrt(squares / (3 * inside().count()).max(1) as f64),
             noise: self.noise.position * libm::sqrt(variance),
             is_noise_estimated,
@@ -76,7 +77,15 @@ impl Assembly<'_> {
             setup: self.setup.clone(),
             setup_fit: self.fit.clone(),
             rows,
+            warnings: vec![],
         })
+    }
+
+    fn held(&self, dropped: Vec<Parameter>) -> Vec<Held> {
+        let asked = (0..6).filter(|joint| self.problem.hold[*joint]).map(Parameter::Joint);
+        let asked = asked.map(|parameter| Held { parameter, reason: HeldReason::Asked });
+        let dropped = dropped.into_iter();
+        asked.chain(dropped.map(|parameter| Held { parameter, reason: HeldReason::Unidentifiable })).collect()
     }
 
     fn compliances(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
@@ -154,8 +163,8 @@ impl Assembly<'_> {
                 line: reading.line,
                 configuration: reading.configuration,
                 point: reading.point,
-                measured: linear(equation.deflection),
-                predicted: linear(equation.design * compliances),
+                measured: linear(equation.deflection + equation.by_held),
+                predicted: linear(equation.design * compliances + equation.by_held),
                 studentised: self.robust.studentised[index],
                 is_outlier: !self.robust.kept[index],
             }

@@ -9,9 +9,11 @@
 use super::normal_equations::{NormalEquations, Solution};
 use super::spring::{Geometry, scaled_inverse, spring_start};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+use serde::Serialize;
+use std::fmt;
 
 /// How the compliance of the varying joint depends on its angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Law {
     /// Not at all.
     Constant,
@@ -20,7 +22,7 @@ pub enum Law {
 }
 
 /// A number of the arm that has been estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct ArmParameter {
     /// Which joint, from 0.
     pub joint: usize,
@@ -28,8 +30,19 @@ pub struct ArmParameter {
     pub quantity: Quantity,
 }
 
+impl fmt::Display for ArmParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = self.joint + 1;
+        match self.quantity {
+            Quantity::Compliance => write!(f, "the compliance of joint {number}"),
+            Quantity::SpringStiffness => write!(f, "the stiffness of the spring beside joint {number}"),
+            Quantity::FreeLength => write!(f, "the free length of the spring beside joint {number}"),
+        }
+    }
+}
+
 /// What a number of the arm is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Quantity {
     /// Compliance of the joint, without its compensator. rad/(N m)
     Compliance,

@@ -32,9 +32,10 @@ pub mod spring;
 pub mod synthetic;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
-pub use error::IdentifyError;
+pub use error::{IdentifyError, SheetFault};
 pub use identify::identify;
-pub use outcome::{Estimate, Identified, RowResult};
+pub use outcome::{Estimate, Held, HeldReason, Identified, RowResult};
 pub use problem::Problem;
 pub use sheet::{Configuration, LoadCase, Reading, Sheet};

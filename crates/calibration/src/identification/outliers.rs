@@ -56,10 +56,6 @@ const ROUNDS: usize = 30;
 const MIN_WEIGHT: f64 = 1e-6;
 
 impl OutlierSearch<'_> {
-    fn parameters(&self) -> usize {
-        self.free.joints.iter().chain(&self.free.groups).filter(|free| **free).count()
-    }
-
     fn solve(&self, weights: &[f64]) -> Option<(NormalEquations, Solution)> {
         let normal = NormalEquations::new(self.sheet, self.layout, self.observations, weights);
         let solution = normal.solve(self.free, self.held)?;
@@ -84,7 +80,7 @@ impl OutlierSearch<'_> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();
         let mut kept = vec![true; readings];
-        let is_searched = equations >= 2 * self.parameters() + 2 * self.sheet.rows_per_reading();
+        let is_searched = equations >= 2 * self.free.count() + 2 * self.sheet.rows_per_reading();
         if is_searched {
             kept = self.robust_start(equations).ok_or_else(|| kept.clone())?;
         }
@@ -101,7 +97,7 @@ impl OutlierSearch<'_> {
     fn robust_start(&self, equations: usize) -> Option<Vec<bool>> {
         // 95 % and median of the length of a vector of standard normal numbers.
         let (reach, median) = if self.sheet.is_full_pose() { (3.548, 2.313) } else { (2.795, 1.538) };
-        let correction = libm::sqrt(equations as f64 / (equations - self.parameters()) as f64);
+        let correction = libm::sqrt(equations as f64 / (equations - self.free.count()) as f64);
         let mut weights = vec![1.0; self.observations.len()];
         let mut kept = vec![true; weights.len()];
         for round in 0..2 * ROUNDS {
@@ -145,7 +141,7 @@ impl OutlierSearch<'_> {
         let (normal, solution) = self.solve(&weights)?;
         let rows = self.sheet.rows_per_reading();
         let count = kept.iter().filter(|kept| **kept).count();
-        let degrees = (count * rows).saturating_sub(self.parameters());
+        let degrees = (count * rows).saturating_sub(self.free.count());
         let residuals: Vec<Vector6<f64>> = (0..kept.len()).map(|index| self.residual(&solution, index)).collect();
         let squares: f64 = residuals.iter().zip(kept).filter(|(_, kept)| **kept).map(|(r, _)| r.norm_squared()).sum();
         let variance = if degrees > 0 { squares / degrees as f64 } else { 0.0 };

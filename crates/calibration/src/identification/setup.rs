@@ -8,10 +8,11 @@
 use super::rotation::rotation_from_vector;
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use serde::Serialize;
 use stead_model::robot::Pose;
 
 /// Where things are in the measuring cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setup {
     /// The robot base in the tracker's frame.
     pub tracker_from_base: Pose<f64>,
@@ -66,7 +67,7 @@ pub enum SetupError {
 }
 
 /// How well base transform and reference points fit the unloaded readings, and how well those tell them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetupFit {
     /// The reading farthest from where kinematics puts its point: line of the sheet from 1, distance in m.
     pub worst: (usize, f64),
