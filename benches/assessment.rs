@@ -5,40 +5,40 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
+use stead_assessment::comparison::{Comparison, assess};
 use stead_assessment::map::{Elbow, Map};
-use stead_assessment::study::{Study, assess};
 use stead_format::read_assessment;
 
 fn main() {
     divan::main();
 }
 
-fn published() -> Study {
+fn published() -> Comparison {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/klimchik-2017.toml");
-    read_assessment(&file).map(|run| run.study).expect("the shipped study is good")
+    read_assessment(&file).map(|run| run.comparison).expect("the shipped study is good")
 }
 
 /// All maps of the paper with everything that is read off them: five robots, both elbows, both loads, 25 mm grid, on all
 /// processors.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
-    let study = published();
-    let maps = assess(&study, &|_, _| true).expect("the shipped study is good");
+    let comparison = published();
+    let maps = assess(&comparison, &|_, _| true).expect("the shipped study is good");
     let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
-    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&study), &|_, _| true));
+    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&comparison), &|_, _| true));
 }
 
 /// One map of the KR 500 on one processor, with so many times finer a grid.
 #[divan::bench(args = [1, 2, 4], sample_count = 5, sample_size = 1)]
 fn one_map_finer_by(bencher: Bencher, fineness: usize) {
-    let study = published();
-    let robot = &study.robots[4];
-    let mut grid = study.grid;
+    let comparison = published();
+    let robot = &comparison.robots[4];
+    let mut grid = comparison.grid;
     grid.step /= fineness as f64;
     grid.counts = grid.counts.map(|count| (count - 1) * fineness + 1);
     let class = Elbow::Up.forward_class(robot);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
-    let map = || pool.install(|| Map::new(black_box(&study.benchmark), robot, class, grid, [1.0, 2.0], &|| true));
+    let map = || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &|| true));
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
 }

@@ -7,8 +7,8 @@ use nalgebra::{SMatrix, SVector, Vector3};
 use std::path::Path;
 use stead_format::{Overrides, SimulationRun, read_simulation};
 use stead_simulation::arm::{AnyArm, Arm, Compensation, Variant};
-use stead_simulation::integrator::{Newmark, Settings, State, System, Tangent};
-use stead_simulation::survey::{depths, linear_at, survey};
+use stead_simulation::integrator::{MotionState, Newmark, Settings, System, Tangent};
+use stead_simulation::stability_analysis::{analyse, cut_stability, linear_at};
 
 fn main() {
     divan::main();
@@ -28,7 +28,7 @@ struct Shaken<const N: usize> {
 }
 
 impl<const N: usize> System<N> for Shaken<N> {
-    fn unbalanced(&mut self, time: f64, state: &State<N>) -> SVector<f64, N> {
+    fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N> {
         let posed = self.arm.chain.at(&state.q);
         let force = Vector3::new(0.0, 50.0 * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
@@ -36,7 +36,7 @@ impl<const N: usize> System<N> for Shaken<N> {
         self.arm.unbalanced(&posed, motion, reference, &mut self.compensation) - posed.tip_torques(&force)
     }
 
-    fn tangent(&mut self, _: f64, state: &State<N>) -> Tangent<N> {
+    fn tangent(&mut self, _: f64, state: &MotionState<N>) -> Tangent<N> {
         Tangent {
             mass: self.arm.chain.at(&state.q).mass_matrix(&self.arm.chain),
             damping: SMatrix::from_diagonal(&self.arm.drive.damping),
@@ -47,7 +47,7 @@ impl<const N: usize> System<N> for Shaken<N> {
 
 fn steps<const N: usize>(bencher: Bencher<'_, '_>, arm: Arm<N>, motors: &[f64; 6]) {
     let reference = Arm::<N>::spread(motors);
-    let mut state = State { q: arm.at_rest(&reference), speed: SVector::zeros(), acceleration: SVector::zeros() };
+    let mut state = MotionState { q: arm.at_rest(&reference), speed: SVector::zeros(), acceleration: SVector::zeros() };
     let compensation = Compensation::about(&arm, &state.q);
     let mut system = Shaken { arm, reference, compensation };
     let mut newmark = Newmark::new(Settings::default());
@@ -77,14 +77,14 @@ fn a_thousand_steps(bencher: Bencher<'_, '_>, variant: Variant) {
 fn depths_at_one_speed(bencher: Bencher<'_, '_>, variant: Variant) {
     let run = shipped(variant);
     let linear = linear_at(&run.setup, 0.0).expect("the shipped robot has masses");
-    let frame = stead_simulation::survey::CutFrame::new(Vector3::x(), Vector3::z(), run.cut.milling);
+    let frame = stead_simulation::stability_analysis::CutFrame::new(Vector3::x(), Vector3::z(), run.cut.milling);
     let plant = linear.plant(&frame).expect("the mass matrix is positive definite");
-    bencher.bench_local(|| depths(&plant, &run.cutter, black_box(&run.cut), run.plan.deepest));
+    bencher.bench_local(|| cut_stability(&plant, &run.cutter, black_box(&run.cut), run.analysis.max_depth));
 }
 
 /// All that `stead stability` finds, on all processors.
 #[divan::bench(sample_count = 3)]
 fn a_survey(bencher: Bencher<'_, '_>) {
     let run = shipped(Variant::Springs);
-    bencher.bench_local(|| survey(&run.setup, &run.cutter, black_box(&run.cut), &run.plan));
+    bencher.bench_local(|| analyse(&run.setup, &run.cutter, black_box(&run.cut), &run.analysis));
 }

@@ -11,7 +11,7 @@ use std::time::Instant;
 use stead_format::{Overrides, SimulationRun, read_simulation};
 use stead_simulation::arm::Variant;
 use stead_simulation::coupled::{Job, Run};
-use stead_simulation::milling::Milling;
+use stead_simulation::milling::MaterialRemoval;
 use stead_simulation::surface::Node;
 
 fn main() {
@@ -52,7 +52,7 @@ fn milling_of_a_thousand_turns(bencher: Bencher) {
     let radius = run.cutter.radius();
     let step = 0.05e-3 / 90.0;
     bencher.bench_local(|| {
-        let mut milling = Milling::new(&run.cutter, &run.cut).expect("the shipped cut can be done");
+        let mut milling = MaterialRemoval::new(&run.cutter, &run.cut).expect("the shipped cut can be done");
         for index in 0..90_000 {
             let place = [step * f64::from(index), radius];
             black_box(milling.force(f64::from(index), place));

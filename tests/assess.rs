@@ -8,9 +8,9 @@ const COMPATIBLE: &str = "configs/klimchik-2017-table-compatible.toml";
 /// A bench with the published study in it, on a map so coarse that it takes a moment.
 fn bench() -> Bench {
     let bench = fine_bench();
-    for study in [STUDY, COMPATIBLE] {
-        bench.replace(study, "step_mm = 25.0", "step_mm = 100.0");
-        bench.replace(study, "points = 72", "points = 24");
+    for comparison in [STUDY, COMPATIBLE] {
+        bench.replace(comparison, "step_mm = 25.0", "step_mm = 100.0");
+        bench.replace(comparison, "points = 72", "points = 24");
     }
     bench
 }
@@ -26,8 +26,8 @@ fn fine_bench() -> Bench {
     bench
 }
 
-fn run(bench: &Bench, study: &str, more: &[&str]) -> Ended {
-    bench.stead(&[&["assess", study], more].concat())
+fn run(bench: &Bench, comparison: &str, more: &[&str]) -> Ended {
+    bench.stead(&[&["assess", comparison], more].concat())
 }
 
 #[test]
@@ -52,10 +52,10 @@ fn table_compatible_is_within_eleven_percent_of_the_printed_tables() {
     assert_eq!((&down["elbow"], &down["load"]), (&"down".into(), &"test".into()));
     let zone = &down["zones"][3];
     assert_eq!(zone["size_mm"].as_f64(), Some(1000.0));
-    for (found, printed) in
+    for (found, published) in
         [(&down["min_mm"], 0.41), (&down["max_mm"], 1.42), (&down["middle_mm"], 0.76), (&zone["optimal_mm"], 1.0)]
     {
-        assert!((found.as_f64().unwrap() / printed - 1.0).abs() < 0.05, "{found} {printed}");
+        assert!((found.as_f64().unwrap() / published - 1.0).abs() < 0.05, "{found} {published}");
     }
 }
 

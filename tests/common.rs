@@ -116,9 +116,12 @@ impl From<std::process::Output> for Ended {
 }
 
 impl Ended {
-    /// The one JSON document that is all of standard output.
+    /// The one JSON document that is all of standard output. It states what every document of stead states.
     pub fn json(&self) -> serde_json::Value {
-        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in {} and {}", self.stdout, self.stderr))
+        let document: serde_json::Value =
+            serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in {} and {}", self.stdout, self.stderr));
+        assert_states_its_origin(&document);
+        document
     }
 
     /// Asserts that standard error has each of some parts.
@@ -126,5 +129,19 @@ impl Ended {
         for part in parts {
             assert!(self.stderr.contains(part), "{part} is not in {}", self.stderr);
         }
+    }
+}
+
+/// Asserts that a JSON document has the layout's number, the version, the inputs with their digests, and notes and warnings.
+pub fn assert_states_its_origin(document: &serde_json::Value) {
+    assert_eq!(document["format"], 1, "{document}");
+    assert_eq!(document["version"], env!("CARGO_PKG_VERSION"));
+    let inputs = document["inputs"].as_array().unwrap();
+    assert!(
+        !inputs.is_empty() && inputs.iter().all(|input| input["sha256"].as_str().unwrap().len() == 64),
+        "{inputs:?}"
+    );
+    for key in ["notes", "warnings"] {
+        assert!(document[key].as_array().unwrap().iter().all(|message| message.is_string()), "{key}");
     }
 }

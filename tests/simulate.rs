@@ -32,8 +32,8 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     let document = ended.json();
     for axis in ["force_x", "force_y"] {
-        let [least, most, mean, rms] = ["min_n", "max_n", "mean_n", "rms_n"].map(|key| number(&document[axis][key]));
-        assert!(least < mean && mean < most && rms >= mean.abs(), "{axis}");
+        let [min, max, mean, rms] = ["min_n", "max_n", "mean_n", "rms_n"].map(|key| number(&document[axis][key]));
+        assert!(min < mean && mean < max && rms >= mean.abs(), "{axis}");
     }
     // Towards the wall, as the published tables print it.
     assert!(number(&document["force_y"]["min_n"]) < -80.0 && number(&document["force_x"]["max_n"]) > 30.0);

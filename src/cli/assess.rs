@@ -4,14 +4,14 @@ use super::arguments::AssessOptions;
 use super::progress::Steps;
 use super::{Failure, on_threads, out_folder, say};
 use std::time::Instant;
-use stead_assessment::study::assess;
+use stead_assessment::comparison::assess;
 use stead_format::read_assessment;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
-use stead_report::json::Timing;
+use stead_report::document::Timing;
 
 pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let mut run = read_assessment(&options.config)?;
-    let selection = &mut run.study.selection;
+    let selection = &mut run.comparison.selection;
     if let Some(accuracy_mm) = options.accuracy_mm {
         selection.accuracies = vec![accuracy_mm / 1e3];
     }
@@ -29,17 +29,24 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
 
     let steps = Steps::start("circularity maps");
     let started = Instant::now();
-    let (assessment, threads) = on_threads(options.threads, || assess(&run.study, &|done, of| steps.show(done, of)))?;
+    let (assessment, threads) =
+        on_threads(options.threads, || assess(&run.comparison, &|done, of| steps.show(done, of)))?;
     let wall = started.elapsed().as_secs_f64();
     steps.finish();
     let assessment = assessment.inspect_err(|_| out.give_up())?;
 
-    let printed = run.printed.map(|printed| {
-        let agreement = printed.agreement(&assessment);
-        (printed, agreement)
+    let published = run.published.map(|published| {
+        let agreement = published.agreement(&assessment);
+        (published, agreement)
     });
-    let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course };
-    let written = write_assessment(&out.folder, &run.study, &assessment, &context);
+    let context = AssessmentContext {
+        inputs: run.inputs,
+        notes: run.notes,
+        range_share: run.range_share,
+        published,
+        force_history: run.force_history,
+    };
+    let written = write_assessment(&out.folder, &run.comparison, &assessment, &context);
     let document = || assess_json(&assessment, &context, &Timing { wall, threads });
     let where_to = |folder| format!("; results in {folder}");
     out.show(written, options.json, document, where_to, |where_to| {

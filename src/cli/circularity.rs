@@ -7,9 +7,10 @@ use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Roundness, RoundnessError, assess};
 use stead_format::input::InputError;
 use stead_format::{PointFile, read_points};
-use stead_report::number::figures;
+use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
+use stead_report::document;
 use stead_report::output::Folder;
-use stead_report::{circularity, json};
+use stead_report::units::figures;
 
 pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let file = read_points(&options.points)?;
@@ -17,13 +18,13 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     mention_flatness(&found);
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
-        files_written(circularity::write(&folder, &file, &found))?;
+        files_written(write_circularity(&folder, &file, &found))?;
     }
     if options.json {
-        print(&json::bytes(&circularity::document(&file, &found)));
+        print(&document::bytes(&circularity_json(&file, &found)));
     } else {
         let where_to = options.out.as_ref().map(|out| format!("\nresults in {}\n", out.display()));
-        print((circularity::text(&file, &found) + &where_to.unwrap_or_default()).as_bytes());
+        print((circularity_text(&file, &found) + &where_to.unwrap_or_default()).as_bytes());
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use super::{Failure, out_folder, print, say};
 use stead_calibration::compensation::compensate;
 use stead_format::read_compensation;
 use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
-use stead_report::json;
+use stead_report::document;
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = read_compensation(&options.config, options.reality.as_deref())?;
@@ -13,7 +13,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     let outcome = compensate(&run.job).inspect_err(|failure| {
         if options.json {
-            print(&json::bytes(&not_compensated_json(failure)));
+            print(&document::bytes(&not_compensated_json(&run, failure)));
         }
         out.give_up();
     })?;

@@ -5,7 +5,8 @@ use super::score::mention_cell;
 use super::{Failure, print, say};
 use stead_format::read_run;
 use stead_placement::feasibility::explain;
-use stead_report::{evaluation, json};
+use stead_report::document;
+use stead_report::placement::{Context, evaluation};
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
@@ -23,8 +24,9 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let beta = options.beta_deg.to_radians();
     let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let postures = explain(&run.problem, &pose, options.point, beta);
+    let context = Context::new(&run, run.search);
     if options.json {
-        print(&json::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures)));
+        print(&document::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures, &context)));
     } else {
         print(evaluation::explain_text(&placement, options.point, beta, &postures).as_bytes());
     }

@@ -23,11 +23,11 @@ use serde_json::Value;
 use std::io::Write;
 use std::path::{Display, Path};
 use std::process::ExitCode;
-use stead_assessment::study::AssessError;
+use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
 use stead_placement::place::NothingFeasible;
-use stead_report::json;
+use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
 /// Why a command ends without its result.
@@ -142,7 +142,7 @@ impl OutFolder {
         if !is_json {
             return self.tell(written, where_to, text);
         }
-        print(&json::bytes(&document()));
+        print(&document::bytes(&document()));
         files_written(written)
     }
 

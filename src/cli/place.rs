@@ -11,8 +11,8 @@ use stead_format::read_run_to_certify;
 use stead_placement::control::Control;
 use stead_placement::place::place;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
-use stead_report::json::{self, Timing};
-use stead_report::{Context, evaluation, text, write_placement};
+use stead_report::document::{self, Timing};
+use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let run = read_run_to_certify(&options.config, options.certify)?;
@@ -29,7 +29,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     watcher.finish();
     let outcome = outcome.inspect_err(|nothing| {
         if options.json {
-            print(&json::bytes(&evaluation::infeasible_json(nothing)));
+            print(&document::bytes(&evaluation::infeasible_json(nothing, &Context::new(&run, search))));
         }
         out.give_up();
         if watcher.should_stop() {
@@ -39,14 +39,13 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
 
     let [best, _, worst, _] = &outcome.cases;
     let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
-    let stability = match &run.chatter {
-        Some(chatter) => Some(on_threads(options.threads, || path_stability(&run.problem, chatter, plans))?.0?),
+    let stability = match &run.path_stability {
+        Some(analysis) => Some(on_threads(options.threads, || path_stability(&run.problem, analysis, plans))?.0?),
         None => None,
     };
-    let (inputs, reference) = (run.inputs.clone(), run.reference.clone());
-    let context = Context { inputs, search, transfer: run.transfer, reference, stability };
+    let context = Context { stability, ..Context::new(&run, search) };
     let written = write_placement(&out.folder, &run.problem, &outcome, &context);
-    let mut document = json::place_json(&outcome, &context, &Timing { wall, threads });
+    let mut document = place_json(&outcome, &context, &Timing { wall, threads });
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     let mut shown = match options.json {
         true => files_written(written),
@@ -54,7 +53,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             written,
             |folder| format!("; results in {folder}"),
             |where_to| {
-                let table = text::placement_text(&run.problem, &outcome, &context);
+                let table = placement_text(&run.problem, &outcome, &context);
                 format!("{table}in {wall:.1} s on {threads} threads{where_to}\n")
             },
         ),
@@ -75,7 +74,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         }
     }
     if options.json {
-        print(&json::bytes(&document));
+        print(&document::bytes(&document));
     }
     shown
 }

@@ -8,7 +8,7 @@ use stead_placement::certify;
 use stead_placement::control::{Control, Progress};
 use stead_placement::outcome::Goal;
 use stead_report::certificate::{Ended, MOST_GAP_PERCENT};
-use stead_report::number::figures;
+use stead_report::units::figures;
 
 /// Watches a placement job: draws its progress if standard error is a terminal, and stops it at Ctrl-C.
 pub(super) struct Watcher {

@@ -6,9 +6,10 @@ use stead_format::read_run;
 use stead_placement::outcome::{CANCELLED, Plan, PlanPoint};
 use stead_placement::place::score;
 use stead_placement::problem::{Criterion, Placement, Problem};
+use stead_report::document;
+use stead_report::placement::{Context, evaluation};
 use stead_report::stability::PathStability;
-use stead_report::{evaluation, json};
-use stead_simulation::chatter::{Chatter, Station};
+use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
@@ -16,23 +17,24 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     mention_cell(&run.problem, &placement);
     let scored = score(&run.problem, &placement);
-    let stability = match (&run.chatter, &scored) {
-        (Some(chatter), Ok(score)) => {
+    let stability = match (&run.path_stability, &scored) {
+        (Some(analysis), Ok(score)) => {
             let plans = [(&score.placement, &score.best), (&score.placement, &score.worst)];
-            let (found, _) = on_threads(None, || path_stability(&run.problem, chatter, plans))?;
+            let (found, _) = on_threads(None, || path_stability(&run.problem, analysis, plans))?;
             Some(found?)
         }
         _ => None,
     };
+    let context = Context { stability, ..Context::new(&run, run.search) };
     if options.json {
         let document = match &scored {
-            Ok(score) => evaluation::score_json(score, stability.as_ref()),
-            Err(nothing) => evaluation::infeasible_json(nothing),
+            Ok(score) => evaluation::score_json(score, &context),
+            Err(nothing) => evaluation::infeasible_json(nothing, &context),
         };
-        print(&json::bytes(&document));
+        print(&document::bytes(&document));
     } else if let Ok(score) = &scored {
         mention_cancellation(&run.problem, score.best.mean);
-        print(evaluation::score_text(score, stability.as_ref()).as_bytes());
+        print(evaluation::score_text(score, &context).as_bytes());
     }
     scored?;
     Ok(())
@@ -41,18 +43,18 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
 /// Critical depths along two plans.
 pub(super) fn path_stability(
     problem: &Problem,
-    chatter: &Chatter,
+    analysis: &PathStabilityAnalysis,
     plans: [(&Placement, &Plan); 2],
 ) -> Result<PathStability, Failure> {
     let along = |(placement, plan): (&Placement, &Plan)| {
         let feeds = problem.feeds(placement);
-        let station = |point: &PlanPoint| Station { joints: point.joints, feed: feeds[point.point] };
-        let stations: Vec<Station> = plan.points.iter().map(station).collect();
-        let found = chatter.along(&problem.robot, &problem.spindle, &stations);
+        let configuration = |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
+        let configurations: Vec<PathConfiguration> = plan.points.iter().map(configuration).collect();
+        let found = analysis.along(&problem.robot, &problem.spindle, &configurations);
         found.map_err(|error| Failure::Job(error.to_string()))
     };
     let [best, worst] = plans;
-    Ok(PathStability { chatter: chatter.clone(), plans: [along(best)?, along(worst)?] })
+    Ok(PathStability { analysis: analysis.clone(), plans: [along(best)?, along(worst)?] })
 }
 
 /// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.

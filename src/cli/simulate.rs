@@ -15,10 +15,11 @@ pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let start = Instant::now();
     let pass = if options.fast { job.run_fast() } else { job.run() };
     let making = Making { is_fast: options.fast, wall: start.elapsed().as_secs_f64() };
-    let found = pass.map_err(Into::into).and_then(|pass| Simulation::of(&job, &run.look, pass)).map_err(|error| {
-        out.give_up();
-        Failure::Job(error.to_string())
-    })?;
+    let found =
+        pass.map_err(Into::into).and_then(|pass| Simulation::of(&job, &run.evaluation, pass)).map_err(|error| {
+            out.give_up();
+            Failure::Job(error.to_string())
+        })?;
     let written = write_simulation(&out.folder, &run, &found, &making);
     let document = || timed_json(&run, &found, &making);
     let where_to = |folder| format!("\nresults in {folder}\n");

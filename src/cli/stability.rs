@@ -2,14 +2,14 @@
 
 use super::arguments::StabilityOptions;
 use super::{Failure, on_threads, out_folder_named};
-use stead_format::{Overrides, read_survey};
+use stead_format::{Overrides, read_stability};
 use stead_report::stability::{stability_json, stability_text, write_stability};
-use stead_simulation::survey::survey;
+use stead_simulation::stability_analysis::analyse;
 
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
-    let run = read_survey(&options.config, &Overrides::from(&options.model))?;
+    let run = read_stability(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder_named(options.out.as_deref(), &options.config, "-stability")?;
-    let (found, _) = on_threads(options.threads, || survey(&run.setup, &run.cutter, &run.cut, &run.plan))?;
+    let (found, _) = on_threads(options.threads, || analyse(&run.setup, &run.cutter, &run.cut, &run.analysis))?;
     let found = found.map_err(|error| {
         out.give_up();
         Failure::Job(error.to_string())

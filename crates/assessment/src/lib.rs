@@ -9,14 +9,14 @@
 //! - [`map`]: that at every place of a plane.
 //! - [`zone`]: the best and the middle square zones of a map.
 //! - [`ranking`]: which robot reaches which accuracy at which force.
-//! - [`study`]: all of it for several robots.
-//! - [`printed`]: published tables to set beside ours.
+//! - [`comparison`]: all of it for several robots.
+//! - [`published`]: published tables to set beside ours.
 
 pub mod benchmark;
 pub mod circle;
+pub mod comparison;
 pub mod map;
-pub mod printed;
+pub mod published;
 pub mod ranking;
 pub mod roundness;
-pub mod study;
 pub mod zone;

@@ -1,6 +1,6 @@
 //! Circularity over a plane of the cell (Klimchik 2017, Fig. 15 to 19).
 
-use super::benchmark::{Benchmark, Obstacle, Profile, Trial};
+use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stead_model::robot::{PostureClass, Robot};
@@ -91,11 +91,11 @@ impl<const N: usize> Map<N> {
         loads: [f64; N],
         row_done: &(dyn Fn() -> bool + Sync),
     ) -> Self {
-        let trial = Trial::new(benchmark, robot);
+        let deflected = DeflectedCircle::new(benchmark, robot);
         let goes_on = AtomicBool::new(true);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
-            let mill = |index: usize| trial.circularity(grid.place(index), class, loads, profile);
+            let mill = |index: usize| deflected.circularity(grid.place(index), class, loads, profile);
             if !goes_on.load(Ordering::Relaxed) {
                 return vec![Err(Obstacle::Reach); grid.counts[0]];
             }

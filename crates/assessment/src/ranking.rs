@@ -24,7 +24,7 @@ pub struct Competitor {
     /// Its name.
     pub name: String,
     /// Circularity at its best place under the reference force, `None` where it can mill the circle nowhere. m
-    pub least: Option<f64>,
+    pub min: Option<f64>,
     /// Payload, where known. kg
     pub payload: Option<f64>,
 }
@@ -52,10 +52,10 @@ pub struct Accuracy {
 }
 
 impl Selection {
-    /// Circularity of a robot under a force, without compensation; `reference` is the force behind [`Competitor::least`].
+    /// Circularity of a robot under a force, without compensation; `reference` is the force behind [`Competitor::min`].
     pub fn circularity(&self, robot: &Competitor, reference: f64, force: f64) -> Option<f64> {
         let too_much = robot.payload.is_some_and(|payload| force > payload * self.gravity * (1.0 + 1e-12));
-        robot.least.filter(|_| !too_much).map(|least| least * force / reference)
+        robot.min.filter(|_| !too_much).map(|min| min * force / reference)
     }
 
     /// Every robot at every force, robot by robot (Table 8).
@@ -88,8 +88,7 @@ impl Selection {
 
 /// The names of the robots that can mill the circle at all, the most accurate first; equal ones in the order given.
 pub fn order(robots: &[Competitor]) -> Vec<String> {
-    let mut able: Vec<(&str, f64)> =
-        robots.iter().filter_map(|r| r.least.map(|least| (r.name.as_str(), least))).collect();
+    let mut able: Vec<(&str, f64)> = robots.iter().filter_map(|r| r.min.map(|min| (r.name.as_str(), min))).collect();
     able.sort_by(|a, b| a.1.total_cmp(&b.1));
     able.into_iter().map(|(name, _)| name.to_owned()).collect()
 }
@@ -107,7 +106,7 @@ mod tests {
         ("KR 500", 0.41, 500.0),
     ];
 
-    fn printed() -> (Selection, Vec<Competitor>) {
+    fn published() -> (Selection, Vec<Competitor>) {
         let selection = Selection {
             accuracies: vec![0.05e-3, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3],
             forces: vec![100.0, 200.0, 500.0, 1000.0, 2000.0, 3000.0],
@@ -116,7 +115,7 @@ mod tests {
         };
         let robots = PRINTED.map(|(name, least_mm, payload)| Competitor {
             name: name.to_owned(),
-            least: Some(least_mm / 1e3),
+            min: Some(least_mm / 1e3),
             payload: Some(payload),
         });
         (selection, robots.to_vec())
@@ -133,11 +132,11 @@ mod tests {
 
     #[test]
     fn table_8_follows_from_table_5_cell_by_cell() {
-        let (selection, robots) = printed();
+        let (selection, robots) = published();
         let found = selection.accuracies(&robots, 1440.0);
         assert_eq!(found.len(), 30);
-        let printed = TABLE_8.iter().flatten();
-        for (cell, expected) in found.iter().zip(printed) {
+        let published = TABLE_8.iter().flatten();
+        for (cell, expected) in found.iter().zip(published) {
             let rounded = cell.circularity.map(|value| (value * 1e5).round() / 100.0);
             assert_eq!(rounded, *expected, "{cell:?}");
         }
@@ -159,7 +158,7 @@ mod tests {
 
     #[test]
     fn table_9_follows_from_table_5_cell_by_cell() {
-        let (selection, robots) = printed();
+        let (selection, robots) = published();
         let found = selection.capable(&robots, 1440.0);
         assert_eq!(found.len(), 30);
         for (cell, expected) in found.iter().zip(TABLE_9.iter().flatten()) {
@@ -170,9 +169,9 @@ mod tests {
 
     #[test]
     fn robots_are_ordered_by_their_best_place() {
-        let (_, mut robots) = printed();
+        let (_, mut robots) = published();
         assert_eq!(order(&robots), ["KR 500", "KR 270", "KR 360", "KR 100", "KR 120"]);
-        robots[4].least = None;
+        robots[4].min = None;
         assert_eq!(order(&robots)[0], "KR 270");
     }
 }

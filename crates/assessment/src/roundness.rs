@@ -1,6 +1,6 @@
 //! Roundness of measured points: in the plane or in space, with sectors left out.
 
-use super::circle::plane::Plane;
+use super::circle::plane::FittedPlane;
 use super::circle::{CircleError, Circles, Fit, least_squares};
 use std::f64::consts::TAU;
 
@@ -39,7 +39,7 @@ pub struct Assessed {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Roundness {
     /// The plane fitted to the points not left out, where they have a z.
-    pub plane: Option<Plane>,
+    pub plane: Option<FittedPlane>,
     /// All points, in their order.
     pub points: Vec<Assessed>,
     /// The reference circles of the points not left out.
@@ -65,7 +65,7 @@ pub enum RoundnessError {
 /// The four circles of measured points without those in some sectors.
 ///
 /// The angle of a point is that about the least-squares centre of all points, from the x axis of the points, or from that of
-/// the plane fitted to all of them (see [`Plane::x_axis`]) where they have a z. After that the plane is fitted again, to the
+/// the plane fitted to all of them (see [`FittedPlane::x_axis`]) where they have a z. After that the plane is fitted again, to the
 /// points that are left.
 ///
 /// # Errors
@@ -111,12 +111,12 @@ impl Measured {
     }
 
     /// The plane of some of the points, and all of them in it.
-    fn in_plane(&self, of: &[bool]) -> Result<(Option<Plane>, Vec<[f64; 3]>), CircleError> {
+    fn in_plane(&self, of: &[bool]) -> Result<(Option<FittedPlane>, Vec<[f64; 3]>), CircleError> {
         match self {
             Self::Planar(points) => Ok((None, points.iter().map(|[x, y]| [*x, *y, 0.0]).collect())),
             Self::Spatial(points) => {
                 let some: Vec<[f64; 3]> = points.iter().zip(of).filter(|(_, of)| **of).map(|(p, _)| *p).collect();
-                let plane = Plane::fit(&some)?;
+                let plane = FittedPlane::fit(&some)?;
                 Ok((Some(plane), points.iter().map(|p| plane.coordinates(*p)).collect()))
             }
         }

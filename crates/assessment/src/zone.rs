@@ -33,8 +33,7 @@ pub fn optimal(grid: &Grid, values: &[f64], intervals: usize) -> Option<Zone> {
     for column in 0..=columns - side {
         let down = window_maxima(across.iter().map(|row| row[column]), side);
         for (row, largest) in down.into_iter().enumerate() {
-            let better =
-                best.is_none_or(|([_, best_row], least)| largest < least || (largest == least && row < best_row));
+            let better = best.is_none_or(|([_, best_row], min)| largest < min || (largest == min && row < best_row));
             if largest.is_finite() && better {
                 best = Some(([column, row], largest));
             }
@@ -53,7 +52,7 @@ pub fn about(grid: &Grid, values: &[f64], [column, row]: [usize; 2], intervals: 
     }
     let rows = (corner[1]..=corner[1] + intervals).map(|row| row * grid.counts[0] + corner[0]);
     let largest =
-        rows.flat_map(|first| &values[first..=first + intervals]).fold(f64::NEG_INFINITY, |most, v| most.max(*v));
+        rows.flat_map(|first| &values[first..=first + intervals]).fold(f64::NEG_INFINITY, |max, v| max.max(*v));
     largest.is_finite().then(|| zone(grid, corner, intervals, largest))
 }
 
@@ -122,7 +121,7 @@ mod tests {
 
     /// All squares one after the other, all their nodes one after the other.
     fn nested_scan(grid: &Grid, values: &[f64], intervals: usize) -> Option<f64> {
-        let mut least: Option<f64> = None;
+        let mut min: Option<f64> = None;
         for row in 0..grid.counts[1].saturating_sub(intervals) {
             for column in 0..grid.counts[0].saturating_sub(intervals) {
                 let mut largest = f64::NEG_INFINITY;
@@ -132,11 +131,11 @@ mod tests {
                     }
                 }
                 if largest.is_finite() {
-                    least = Some(least.map_or(largest, |least| least.min(largest)));
+                    min = Some(min.map_or(largest, |min| min.min(largest)));
                 }
             }
         }
-        least
+        min
     }
 
     fn grids() -> impl Strategy<Value = (Grid, Vec<f64>)> {
@@ -166,10 +165,10 @@ mod tests {
                 prop_assert!(values.iter().all(|value| value.is_infinite()));
                 return Ok(());
             };
-            let most = (0..14).filter(|intervals| nested_scan(&grid, &values, *intervals).is_some()).max();
+            let max = (0..14).filter(|intervals| nested_scan(&grid, &values, *intervals).is_some()).max();
             // An odd number of steps has its middle node on the upper side, so that the zone about it is that square.
-            prop_assert!(about(&grid, &values, [column, row], most.unwrap()).is_some());
-            prop_assert!((0..14).filter(|intervals| about(&grid, &values, [column, row], *intervals).is_some()).max() == most);
+            prop_assert!(about(&grid, &values, [column, row], max.unwrap()).is_some());
+            prop_assert!((0..14).filter(|intervals| about(&grid, &values, [column, row], *intervals).is_some()).max() == max);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::reader::{Field, Table};
 use crate::input::InputError;
-use stead_model::cutting::{CuttingModel, Milling, Rotation, Side};
+use stead_model::cutting::{CuttingModel, MillingDirection, Rotation, Side};
 
 /// The words for the senses of rotation of a cutter.
 pub(super) const ROTATIONS: [(&str, Rotation); 2] =
@@ -28,7 +28,7 @@ pub(super) fn cutting_from(table: &Table<'_>) -> Result<CuttingModel, InputError
             "concave_corners",
         ])?;
     let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |value| value >= 0.0);
-    let millings = [("conventional", Milling::Conventional), ("climb", Milling::Climb)];
+    let millings = [("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)];
     let sides = [("left", Some(Side::Left)), ("right", Some(Side::Right)), ("none", None)];
     let diameter_mm = diameter.positive()?;
     let slot = format!("a number above 0 and not above cutter_diameter_mm = {diameter_mm}");
@@ -83,7 +83,7 @@ concave_corners = 'right'
             diameter: 0.016,
             teeth: 4,
             rotation: Rotation::Counterclockwise,
-            milling: Milling::Climb,
+            milling: MillingDirection::Climb,
             radial_depth: 0.002,
             axial_depth: 0.005,
             feed_per_tooth: 0.05e-3,

@@ -1,8 +1,8 @@
 //! Run files.
 
 use super::certificate::{certificate_from, check_size};
-use super::chatter::chatter_from;
 use super::cutting::cutting_from;
+use super::path_stability::path_stability_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::{moving_robot_from, robot_from};
 use super::source::{Source, input_file};
@@ -18,7 +18,7 @@ use stead_model::task::{Task, ToolPath};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
-use stead_simulation::chatter::Chatter;
+use stead_simulation::path_stability::PathStabilityAnalysis;
 
 /// A run file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Run {
     /// Published figures to print beside ours.
     pub reference: Option<Reference>,
     /// What is to be cut along the path, where its stability is asked for.
-    pub chatter: Option<Chatter>,
+    pub path_stability: Option<PathStabilityAnalysis>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
 }
@@ -107,9 +107,9 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
 
     let robot_file = robot.named_file()?;
     let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
-    let chatter = stability.optional(|field| chatter_from(&field.table()?))?;
-    let robot = match &chatter {
-        Some(chatter) => moving_robot_from(&robot_source, chatter.variant >= Variant::Orthogonal)?,
+    let path_stability = stability.optional(|field| path_stability_from(&field.table()?))?;
+    let robot = match &path_stability {
+        Some(path_stability) => moving_robot_from(&robot_source, path_stability.variant >= Variant::Orthogonal)?,
         None => robot_from(&robot_source)?,
     };
     if let Some(table) = &scoring {
@@ -134,7 +134,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
-    Ok(Run { problem, search, transfer, certificate, inputs, reference, chatter, notes })
+    Ok(Run { problem, search, transfer, certificate, inputs, reference, path_stability, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the `[cutting]` table.

@@ -1,11 +1,11 @@
 //! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv` and `polar.svg`.
 
-use super::json::bytes;
-use super::number::fixed;
 use super::output::{Folder, ReportError};
 use super::picture;
-use super::tables::table;
-use super::text::aligned;
+use crate::columns::aligned;
+use crate::csv_file::table;
+use crate::document::{Document, bytes};
+use crate::units::fixed;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use stead_assessment::circle::Fit;
@@ -19,9 +19,9 @@ const DECIMALS: usize = 12;
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write(folder: &Folder, file: &PointFile, found: &Roundness) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_circularity(folder: &Folder, file: &PointFile, found: &Roundness) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
-        ("circularity.json", bytes(&document(file, found))),
+        ("circularity.json", bytes(&circularity_json(file, found))),
         ("deviations.csv", deviations(file, found)?),
         ("polar.svg", picture::polar(&file.input.name, found)?.into_bytes()),
     ];
@@ -40,19 +40,17 @@ fn circles(found: &Roundness) -> [(&'static str, &'static str, &Fit); 4] {
 }
 
 /// What `stead circularity --json` prints, and the content of `circularity.json`. Centres are in the frame of the file.
-pub fn document(file: &PointFile, found: &Roundness) -> Value {
-    let mut document = json!({
+pub fn circularity_json(file: &PointFile, found: &Roundness) -> Value {
+    let mut entries = json!({
         "input": { "name": file.input.name, "sha256": file.input.sha256 },
         "points": found.points.len(),
         "excluded": found.points.len() - found.kept().count(),
         "plane": plane(found),
     });
-    if let Value::Object(map) = &mut document {
-        for (name, _, fit) in circles(found) {
-            map.insert(name.to_owned(), circle(found, fit));
-        }
+    for (name, _, fit) in circles(found) {
+        entries[name] = circle(found, fit);
     }
-    document
+    Document::new(std::slice::from_ref(&file.input)).with(entries)
 }
 
 fn circle(found: &Roundness, fit: &Fit) -> Value {
@@ -87,7 +85,7 @@ fn number(value: f64) -> f64 {
 }
 
 /// The table for people.
-pub fn text(file: &PointFile, found: &Roundness) -> String {
+pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
     let (all, kept) = (found.points.len(), found.kept().count());
     let mut text = format!("{}: {all} points, {} left out\n", file.input.name, all - kept);
     if let (Some(plane), Some(flatness)) = (&found.plane, found.flatness()) {

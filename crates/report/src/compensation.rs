@@ -1,11 +1,11 @@
 //! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, and a table for people.
 
-use super::json;
-use super::number::{Unit, fixed};
 use super::output::{Folder, ReportError};
 use super::picture;
-use super::tables::{table, vector};
-use super::text::aligned;
+use crate::columns::aligned;
+use crate::csv_file::{table, vector};
+use crate::document::{Document, bytes, placement};
+use crate::units::{Unit, fixed};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -34,7 +34,7 @@ pub fn write_compensation(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
         ("corrected-path.csv", corrected_path(outcome)?),
-        ("summary.json", json::bytes(&compensation_json(run, outcome))),
+        ("summary.json", bytes(&compensation_json(run, outcome))),
         ("compensation.svg", picture::compensation(outcome)?.into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
@@ -103,24 +103,15 @@ fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
 /// What `stead compensate --json` prints, and the content of `summary.json`.
 pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Value {
     let settings = &run.job.settings;
-    let placement = &run.placement;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "inputs": json::inputs(&run.inputs),
+    document(run).with(json!({
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
         "model": model(settings.model),
         "alpha": settings.alpha,
         "tolerance_mm": settings.tolerance * 1e3,
         "max_iterations": settings.max_iterations,
-        "placement": {
-            "x_mm": Unit::PLACE_MM.number(placement.x),
-            "y_mm": Unit::PLACE_MM.number(placement.y),
-            "z_mm": Unit::PLACE_MM.number(placement.z),
-            "q4": Unit::PLAIN.number(placement.q4()),
-            "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
-        },
+        "placement": placement(&run.placement),
         "points": outcome.points.len(),
         "iterations": outcome.iterations(),
         "before": figures(&deflections[0]),
@@ -135,14 +126,18 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
             "max_mm": PLACE_MM.number(outcome.figures(|point| point.correction.linear.norm()).max),
             "max_deg": ANGLE_DEG.number(outcome.figures(|point| point.correction.angular.norm()).max),
         },
-    })
+    }))
+}
+
+fn document(run: &CompensateRun) -> Document {
+    Document::new(&run.inputs).notes(&run.notes)
 }
 
 /// What `stead compensate --json` prints where points cannot be compensated.
-pub fn not_compensated_json(failure: &NotCompensated) -> Value {
+pub fn not_compensated_json(run: &CompensateRun, failure: &NotCompensated) -> Value {
     let failed: Vec<Value> =
         failure.failed.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect();
-    json!({ "points": failure.of, "failed": failed })
+    document(run).with(json!({ "points": failure.of, "failed": failed }))
 }
 
 fn figures(figures: &MeanAndMax) -> Value {

@@ -1,9 +1,9 @@
 //! CSV files of the force and the moment of a milling tool.
 
-use super::number::Unit;
 use super::output::ReportError;
-use super::tables::{table, vector};
-use stead_model::cutting::{Course, Sample};
+use crate::csv_file::{table, vector};
+use crate::units::Unit;
+use stead_model::cutting::{ForceHistory, Sample};
 
 /// Mean force and moment over a turn as the tool moves into the work: one row per degree to which a tooth is in it, from 0 to
 /// 180 (Klimchik 2017, Fig. 4). Along the feed, to the left of it, and along the tool axis from the work to the spindle; the
@@ -11,16 +11,16 @@ use stead_model::cutting::{Course, Sample};
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn entering(course: &Course) -> Result<Vec<u8>, ReportError> {
-    rows("the table of mean cutting forces", "engaged_deg", &course.entering)
+pub fn entering(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
+    rows("the table of mean cutting forces", "engaged_deg", &force_history.entering)
 }
 
 /// Force and moment of all teeth over one turn, one row per angle of the first tooth, in the same directions.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn turn(course: &Course) -> Result<Vec<u8>, ReportError> {
-    rows("the table of cutting forces over a turn", "tooth_deg", &course.turn)
+pub fn turn(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
+    rows("the table of cutting forces over a turn", "tooth_deg", &force_history.turn)
 }
 
 fn rows(what: &'static str, angle: &'static str, samples: &[Sample]) -> Result<Vec<u8>, ReportError> {
@@ -48,7 +48,7 @@ fn rows(what: &'static str, angle: &'static str, samples: &[Sample]) -> Result<V
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::course;
+    use super::super::testing::force_history;
     use super::*;
 
     fn lines(bytes: Vec<u8>) -> Vec<String> {
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn each_row_has_both_vectors_with_their_magnitudes() {
-        let lines = lines(entering(&course()).unwrap());
+        let lines = lines(entering(&force_history()).unwrap());
         assert_eq!(lines.len(), 1 + 181);
         assert_eq!(
             lines[0],
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_turn_has_a_row_per_half_degree() {
-        let lines = lines(turn(&course()).unwrap());
+        let lines = lines(turn(&force_history()).unwrap());
         assert_eq!(lines.len(), 1 + 721);
         assert!(lines[0].starts_with("tooth_deg,") && lines[721].starts_with("360.0000,"), "{}", lines[721]);
     }

@@ -5,86 +5,21 @@
 pub mod assessment;
 pub mod certificate;
 pub mod circularity;
+mod columns;
 pub mod compensation;
+mod csv_file;
 pub mod cutting;
-pub mod evaluation;
+pub mod document;
 pub mod identification;
-pub mod json;
-pub mod number;
+pub mod names;
 pub mod output;
 pub mod picture;
+pub mod placement;
 pub mod simulation;
 pub mod stability;
-pub mod tables;
-pub mod text;
-pub mod words;
+pub mod units;
 
 #[cfg(test)]
 mod testing;
-#[cfg(test)]
-mod tests;
 
 pub use output::{Folder, ReportError};
-
-use stability::PathStability;
-use std::path::PathBuf;
-use stead_format::input::{InputFile, Reference};
-use stead_placement::outcome::Outcome;
-use stead_placement::problem::Problem;
-use stead_placement::settings::{SearchSettings, TransferSettings};
-
-/// What the reports state besides the problem and its result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Context {
-    /// The files the result depends on.
-    pub inputs: Vec<InputFile>,
-    /// How hard the search was, and its seed.
-    pub search: SearchSettings,
-    /// The assumptions behind the times of the moves.
-    pub transfer: TransferSettings,
-    /// Figures to compare with, where there are any.
-    pub reference: Option<Reference>,
-    /// How deep may be cut along the path, where that was asked for.
-    pub stability: Option<PathStability>,
-}
-
-/// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
-/// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
-/// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`. Returns the paths in that order.
-///
-/// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_placement(
-    folder: &Folder,
-    problem: &Problem,
-    outcome: &Outcome,
-    context: &Context,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let [best, best_worst, worst, worst_worst] = &outcome.cases;
-    let summary = json::summary_json(problem, outcome, context);
-    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst)?;
-    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst)?;
-    let mut files = vec![
-        ("best.csv", tables::plan(&best.plan)?),
-        ("best-worst-plan.csv", tables::plan(&best_worst.plan)?),
-        ("worst.csv", tables::plan(&worst.plan)?),
-        ("worst-worst-plan.csv", tables::plan(&worst_worst.plan)?),
-        ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
-        ("convergence.csv", tables::convergence(&outcome.convergence)?),
-        ("deflection-map-best.csv", tables::deflection_map(problem, &outcome.map_best)?),
-        ("deflection-map-worst.csv", tables::deflection_map(problem, &outcome.map_worst)?),
-        ("transfers.csv", tables::transfers(&outcome.cases)?),
-        ("refinements.csv", tables::refinements(&outcome.refinements)?),
-        ("summary.json", json::bytes(&summary)),
-        ("convergence.svg", picture::convergence(outcome)?.into_bytes()),
-        ("deflection-map-best.svg", map_best.into_bytes()),
-        ("deflection-map-worst.svg", map_worst.into_bytes()),
-        ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
-    ];
-    if let Some(stability) = &context.stability {
-        files.extend(stability.files([&best.plan, &worst.plan])?);
-    }
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
-}

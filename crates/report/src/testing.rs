@@ -1,10 +1,10 @@
 //! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
 //! planned by a shortest path over the grid, with an invented search.
 
-use super::Context;
+use crate::placement::Context;
 use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
-use stead_model::cutting::{Course, Engagement, MillingTool, Rotation};
+use stead_model::cutting::{Engagement, ForceHistory, MillingTool, Rotation};
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::criterion::{State, state};
 use stead_placement::outcome::*;
@@ -63,6 +63,7 @@ pub fn outcome() -> &'static Outcome {
 pub fn context() -> Context {
     let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
     Context {
+        notes: Vec::new(),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),
@@ -230,7 +231,7 @@ pub fn assert_well_formed(svg: &str) {
 }
 
 /// The force of a cutter on both sides of a slot that is open over half its width.
-pub fn course() -> Course {
+pub fn force_history() -> ForceHistory {
     let tool = MillingTool {
         radius: 0.005,
         teeth: 3,
@@ -243,5 +244,5 @@ pub fn course() -> Course {
         feed_per_tooth: 8e-5,
         axial_depth: 5e-3,
     };
-    Course::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
+    ForceHistory::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
 }

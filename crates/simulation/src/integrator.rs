@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Angles, speeds and accelerations of a system. rad, rad/s, rad/s^2
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State<const N: usize> {
+pub struct MotionState<const N: usize> {
     /// Angles. rad
     pub q: SVector<f64, N>,
     /// Speeds. rad/s
@@ -33,13 +33,13 @@ pub struct Tangent<const N: usize> {
 /// What is integrated.
 pub trait System<const N: usize> {
     /// Forces that are out of balance at a time (s) in a state: zero on a solution. N m
-    fn unbalanced(&mut self, time: f64, state: &State<N>) -> SVector<f64, N>;
+    fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N>;
 
     /// An approximation of how they change, at least as to inertia.
-    fn tangent(&mut self, time: f64, state: &State<N>) -> Tangent<N>;
+    fn tangent(&mut self, time: f64, state: &MotionState<N>) -> Tangent<N>;
 
     /// Called with each state that is kept, at the end of each step or part of one.
-    fn accept(&mut self, _time: f64, _state: &State<N>) {}
+    fn accept(&mut self, _time: f64, _state: &MotionState<N>) {}
 }
 
 /// How exactly to integrate.
@@ -100,7 +100,7 @@ pub struct Newmark<const N: usize> {
 }
 
 /// Corrections are taken to contract no faster than this, since what pushes may change from step to step.
-const LEAST_CONTRACTION: f64 = 0.01;
+const MIN_CONTRACTION: f64 = 0.01;
 /// A matrix with which corrections contract more slowly than this is made anew.
 const SLOW: f64 = 0.1;
 /// Angles that differ by less than this relative amount are the same but for rounding.
@@ -109,14 +109,18 @@ const ROUNDING: f64 = 1e-15;
 impl<const N: usize> Newmark<N> {
     /// The method, without a matrix yet.
     pub fn new(settings: Settings) -> Self {
-        Self { settings, inverse: None, contraction: LEAST_CONTRACTION }
+        Self { settings, inverse: None, contraction: MIN_CONTRACTION }
     }
 
     /// Accelerations that bring a system at given angles and speeds into balance: the start of an integration.
     ///
     /// # Errors
     /// [`StepError`] when the mass matrix is not positive definite, or the accelerations do not converge.
-    pub fn started<S: System<N>>(system: &mut S, time: f64, state: &State<N>) -> Result<State<N>, StepError> {
+    pub fn started<S: System<N>>(
+        system: &mut S,
+        time: f64,
+        state: &MotionState<N>,
+    ) -> Result<MotionState<N>, StepError> {
         let mut state = *state;
         let mass = system.tangent(time, &state).mass.cholesky().ok_or(StepError::Singular { time })?;
         for _ in 0..20 {
@@ -138,7 +142,7 @@ impl<const N: usize> Newmark<N> {
         system: &mut S,
         time: f64,
         step: f64,
-        state: &mut State<N>,
+        state: &mut MotionState<N>,
     ) -> Result<Effort, StepError> {
         let parts = 1_u64 << self.settings.most_halvings;
         let (mut done, mut width) = (0, parts);
@@ -169,9 +173,9 @@ impl<const N: usize> Newmark<N> {
         system: &mut S,
         time: f64,
         step: f64,
-        state: &State<N>,
+        state: &MotionState<N>,
         evaluations: &mut usize,
-    ) -> Result<State<N>, StepError> {
+    ) -> Result<MotionState<N>, StepError> {
         if self.inverse.as_ref().is_some_and(|(made_for, _)| *made_for == step)
             && let Some(next) = self.solved(system, time, step, state, evaluations)
             && self.contraction <= SLOW
@@ -187,14 +191,14 @@ impl<const N: usize> Newmark<N> {
         system: &mut S,
         time: f64,
         step: f64,
-        state: &State<N>,
+        state: &MotionState<N>,
     ) -> Result<(), StepError> {
         let Tangent { mass, damping, stiffness } = system.tangent(time, state);
         let Settings { beta, gamma, .. } = self.settings;
         let matrix = mass + damping * (gamma * step) + stiffness * (beta * step * step);
         let factor = matrix.cholesky().ok_or(StepError::Singular { time })?;
         self.inverse = Some((step, factor.inverse()));
-        self.contraction = LEAST_CONTRACTION;
+        self.contraction = MIN_CONTRACTION;
         Ok(())
     }
 
@@ -204,12 +208,12 @@ impl<const N: usize> Newmark<N> {
         system: &mut S,
         time: f64,
         step: f64,
-        state: &State<N>,
+        state: &MotionState<N>,
         evaluations: &mut usize,
-    ) -> Option<State<N>> {
+    ) -> Option<MotionState<N>> {
         let Settings { beta, gamma, tolerance, most_corrections, .. } = self.settings;
         let (_, inverse) = self.inverse.as_ref()?;
-        let mut next = State {
+        let mut next = MotionState {
             q: state.q + state.speed * step + state.acceleration * (0.5 * step * step),
             speed: state.speed + state.acceleration * step,
             acceleration: state.acceleration,
@@ -227,7 +231,7 @@ impl<const N: usize> Newmark<N> {
             }
             let rounding = ROUNDING * (1.0 + next.q.amax());
             if before.is_finite() && before > rounding {
-                self.contraction = (size / before).max(LEAST_CONTRACTION);
+                self.contraction = (size / before).max(MIN_CONTRACTION);
                 if self.contraction >= 1.0 && size > rounding {
                     return None;
                 }

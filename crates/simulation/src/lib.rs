@@ -1,14 +1,15 @@
-//! How the arm moves while it mills, and whether that stays calm.
+//! Dynamics of a robot that mills: passes in the time domain, modal analysis, and stability of the cut.
 //!
-//! [`multibody`] is a serial chain of revolute joints with bodies, [`drive`] what springs, dampers and compensators do
-//! about its joints, [`arm`] the chain and drives of a robot with its spindle in one of four [`Variant`](arm::Variant)s,
-//! [`motion`] the way that the joints are commanded, [`setup`] an arm with its motion, [`integrator`] Newmark's method,
-//! [`modes`] what swings how fast. [`milling`] is the cutter and its force, [`surface`] the work as earlier teeth left it,
-//! [`roughness`] the wall that stays, [`coupled`] all of them on a pass, [`outcome`] what that tells. [`stability`] tells whether small motions die out, [`survey`] that of an arm in a cut, and
-//! [`chatter`] the same along a tool path.
+//! - [`multibody`]: a serial chain of revolute joints with rigid bodies; [`drive`]: springs, dampers, backlash and gravity
+//!   compensation about its joints; [`arm`]: both for a robot with its spindle, in one of four [`Variant`](arm::Variant)s.
+//! - [`motion`]: the commanded joint angles of a straight pass; [`setup`]: an arm with its motion.
+//! - [`integrator`]: Newmark's method; [`modes`]: natural frequencies, mode shapes, frequency response.
+//! - [`milling`]: the force of the teeth; [`surface`]: the workpiece as earlier teeth left it; [`roughness`]: the wall that remains.
+//! - [`coupled`]: arm and milling together over a pass; [`outcome`]: the figures of such a run.
+//! - [`stability`]: semi-discretisation and the zero-order solution; [`stability_analysis`]: both for an arm in a cut;
+//!   [`path_stability`]: for every point of a tool path.
 
 pub mod arm;
-pub mod chatter;
 pub mod coupled;
 pub mod drive;
 pub mod integrator;
@@ -17,8 +18,9 @@ pub mod modes;
 pub mod motion;
 pub mod multibody;
 pub mod outcome;
+pub mod path_stability;
 pub mod roughness;
 pub mod setup;
 pub mod stability;
+pub mod stability_analysis;
 pub mod surface;
-pub mod survey;

@@ -1,4 +1,4 @@
-//! What swings how fast: natural frequencies, damping and shapes of an arm, and how its tip answers to a swinging force.
+//! Modal analysis: natural frequencies, damping ratios and mode shapes of an arm, and the frequency response of its tip.
 //!
 //! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state matrix
 //! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode with damping ratio `zeta`; its natural
@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 /// An arm at rest, for small motions about it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Linear<const N: usize> {
+pub struct LinearArm<const N: usize> {
     /// kg m^2
     pub mass: SMatrix<f64, N, N>,
     /// N m s/rad
@@ -44,7 +44,7 @@ impl Mode {
     }
 }
 
-impl<const N: usize> Linear<N> {
+impl<const N: usize> LinearArm<N> {
     /// The arm at rest at angles `q` (rad), with its damping times `damping_scale`.
     pub fn of(arm: &Arm<N>, q: &SVector<f64, N>, damping_scale: f64) -> Self {
         let posed = arm.chain.at(q);
@@ -124,14 +124,14 @@ impl<const N: usize> Linear<N> {
         })
     }
 
-    /// How the tip answers (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
+    /// Response of the tip (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
     /// are directions of the force; none in a resonance without damping.
     pub fn response(&self, frequency: f64) -> Option<Matrix3<Complex<f64>>> {
         let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));
         let jacobian = DMatrix::from_fn(N, 3, |row, column| Complex::from(self.tip[(column, row)]));
         let angles = matrix.lu().solve(&jacobian)?;
-        let answer = jacobian.transpose() * angles;
-        Some(Matrix3::from_fn(|row, column| answer[(row, column)]))
+        let response = jacobian.transpose() * angles;
+        Some(Matrix3::from_fn(|row, column| response[(row, column)]))
     }
 }
 

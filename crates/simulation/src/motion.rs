@@ -30,21 +30,21 @@ impl Ramp {
         } else {
             // The second half is the first turned around.
             let left = whole - time;
-            let way = feed * (time - whole / 2.0) + jerk * left * left * left / 6.0;
-            (way, feed - jerk * left * left / 2.0)
+            let distance = feed * (time - whole / 2.0) + jerk * left * left * left / 6.0;
+            (distance, feed - jerk * left * left / 2.0)
         }
     }
 
     /// When a way (m) is completed. s
-    pub fn time_of(&self, way: f64) -> f64 {
+    pub fn time_of(&self, distance: f64) -> f64 {
         let at_feed = self.feed * self.time / 2.0;
-        if way >= at_feed {
-            return way / self.feed + self.time / 2.0;
+        if distance >= at_feed {
+            return distance / self.feed + self.time / 2.0;
         }
         let (mut low, mut high) = (0.0, self.time);
         for _ in 0..100 {
             let middle = (low + high) / 2.0;
-            if self.at(middle).0 < way { low = middle } else { high = middle }
+            if self.at(middle).0 < distance { low = middle } else { high = middle }
         }
         high
     }
@@ -65,28 +65,28 @@ pub struct Pass {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// The wrist is out of reach.
-    #[error("after {way_mm} mm of the pass {reason}")]
+    #[error("after {distance_mm} mm of the pass {reason}")]
     Unreachable {
         /// Where. mm
-        way_mm: f64,
+        distance_mm: f64,
         /// Why.
         reason: Unreachable,
     },
     /// A joint would leave its limits.
-    #[error("after {way_mm} mm of the pass joint {joint} would stand at {angle_deg} deg, beyond its limits")]
+    #[error("after {distance_mm} mm of the pass joint {joint} would stand at {angle_deg} deg, beyond its limits")]
     Limit {
         /// Where. mm
-        way_mm: f64,
+        distance_mm: f64,
         /// Number of the joint, from 1.
         joint: usize,
         /// What it would have to stand at. deg
         angle_deg: f64,
     },
     /// The arm comes so near to a singularity that its joints cannot follow.
-    #[error("after {way_mm} mm of the pass the arm is in a singularity")]
+    #[error("after {distance_mm} mm of the pass the arm is in a singularity")]
     Singular {
         /// Where. mm
-        way_mm: f64,
+        distance_mm: f64,
     },
 }
 
@@ -127,24 +127,24 @@ impl Motion {
         let mut knots = Vec::with_capacity(count as usize + 1);
         let mut before = pass.start;
         for k in 0..=count as usize {
-            let way = spacing * k as f64;
-            let way_mm = way * 1e3;
-            let target = Pose { translation: flange.translation + pass.direction * way, ..flange };
+            let distance = spacing * k as f64;
+            let distance_mm = distance * 1e3;
+            let target = Pose { translation: flange.translation + pass.direction * distance, ..flange };
             let wrapped =
-                robot.inverse(&target, posture).map_err(|reason| MotionError::Unreachable { way_mm, reason })?;
+                robot.inverse(&target, posture).map_err(|reason| MotionError::Unreachable { distance_mm, reason })?;
             let angles: [f64; 6] = std::array::from_fn(|j| wrapped[j] + TAU * ((before[j] - wrapped[j]) / TAU).round());
             for (j, joint) in robot.joints().iter().enumerate() {
                 if angles[j] < joint.min - ANGLE_ROUNDING || angles[j] > joint.max + ANGLE_ROUNDING {
-                    return Err(MotionError::Limit { way_mm, joint: j + 1, angle_deg: angles[j].to_degrees() });
+                    return Err(MotionError::Limit { distance_mm, joint: j + 1, angle_deg: angles[j].to_degrees() });
                 }
             }
             let jacobian = Frames::new(robot, &angles).jacobian(&target.translation);
             let mut velocity = Vector6::zeros();
             velocity.fixed_rows_mut::<3>(0).copy_from(&pass.direction);
-            let slopes = jacobian.lu().solve(&velocity).ok_or(MotionError::Singular { way_mm })?;
+            let slopes = jacobian.lu().solve(&velocity).ok_or(MotionError::Singular { distance_mm })?;
             let jumped = k > 0 && (0..6).any(|j| (angles[j] - before[j]).abs() > STEEPEST * spacing);
             if jumped || slopes.amax() > STEEPEST {
-                return Err(MotionError::Singular { way_mm });
+                return Err(MotionError::Singular { distance_mm });
             }
             knots.push(Knot { angles, slopes: slopes.into() });
             before = angles;
@@ -180,21 +180,21 @@ impl Motion {
 
     /// Where the tool centre point should be (m, base frame) at a time (s), and how far on its way that is (m).
     pub fn tool(&self, time: f64) -> (Vector3<f64>, f64) {
-        let way = self.ramp.at(time).0;
-        (self.start.translation + self.direction * way, way)
+        let distance = self.ramp.at(time).0;
+        (self.start.translation + self.direction * distance, distance)
     }
 
     /// Angles (rad) and speeds (rad/s) of the motors at a time (s); beyond the end of the pass as the last cubic goes on.
     pub fn motors(&self, time: f64) -> ([f64; 6], [f64; 6]) {
-        let (way, feed) = self.ramp.at(time);
-        self.motors_after(way, feed)
+        let (distance, feed) = self.ramp.at(time);
+        self.motors_at(distance, feed)
     }
 
     /// Angles (rad) and speeds (rad/s) of the motors after a way (m) at a feed (m/s).
-    pub fn motors_after(&self, way: f64, feed: f64) -> ([f64; 6], [f64; 6]) {
-        let index = ((way / self.spacing).floor().max(0.0) as usize).min(self.knots.len() - 2);
+    pub fn motors_at(&self, distance: f64, feed: f64) -> ([f64; 6], [f64; 6]) {
+        let index = ((distance / self.spacing).floor().max(0.0) as usize).min(self.knots.len() - 2);
         let (a, b) = (&self.knots[index], &self.knots[index + 1]);
-        let (h, u) = (self.spacing, way / self.spacing - index as f64);
+        let (h, u) = (self.spacing, distance / self.spacing - index as f64);
         let (mut angles, mut speeds) = ([0.0; 6], [0.0; 6]);
         for j in 0..6 {
             // Hermite's cubic, written about its left end.

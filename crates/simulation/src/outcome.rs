@@ -4,11 +4,11 @@ use super::coupled::{End, Job, JobError, Run};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
-use super::survey::{CutFrame, SurveyError, linear_at};
+use super::stability_analysis::{CutFrame, StabilityError, linear_at};
 
 /// How to look at a pass.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Look {
+pub struct EvaluationSettings {
     /// Times between which forces are summed up; from a quarter to nine tenths of the work where nothing is said. s
     pub window: Option<[f64; 2]>,
     /// Height of the wall's profile above the tip of the tool. m
@@ -34,9 +34,9 @@ pub struct Published {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Smallest.
-    pub least: f64,
+    pub min: f64,
     /// Largest.
-    pub most: f64,
+    pub max: f64,
     /// Mean.
     pub mean: f64,
     /// Root mean square.
@@ -54,7 +54,7 @@ pub struct Simulation {
     pub forces: Option<[Statistics; 2]>,
     /// How much the force differs from that a turn before, in the second half of the window: root mean square, as a share of that
     /// of the force; none if the run ended before.
-    pub unrest: Option<f64>,
+    pub period_variation: Option<f64>,
     /// Small motions in the middle of the work.
     pub verdict: Verdict,
     /// All modes at the start of the pass.
@@ -75,11 +75,11 @@ pub enum SimulationError {
     Job(#[from] JobError),
     /// Nothing can be said of small motions.
     #[error("{0}")]
-    Survey(#[from] SurveyError),
+    StabilityAnalysis(#[from] StabilityError),
 }
 
 /// Forces that differ by more than this from turn to turn are not those of a calm cut.
-pub const UNREST: f64 = 0.2;
+pub const MAX_PERIOD_VARIATION: f64 = 0.2;
 /// Distance of the points of a wall. m
 const SPACING: f64 = 10e-6;
 
@@ -88,22 +88,26 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError`] where nothing can be said of small motions.
-    pub fn of(job: &Job<'_>, look: &Look, run: Run) -> Result<Self, SimulationError> {
-        let way = |share: f64| {
-            let way = job.cutter.radius() + job.gap + share * job.cut.length;
-            way.min(job.setup.motion.length())
+    pub fn of(job: &Job<'_>, settings: &EvaluationSettings, run: Run) -> Result<Self, SimulationError> {
+        let distance = |share: f64| {
+            let distance = job.cutter.radius() + job.gap + share * job.cut.length;
+            distance.min(job.setup.motion.length())
         };
-        let at = |share: f64| job.setup.motion.ramp().time_of(way(share));
-        let window = look.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
-        let linear = linear_at(job.setup, way(0.5))?;
+        let at = |share: f64| job.setup.motion.ramp().time_of(distance(share));
+        let window = settings.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
+        let linear = linear_at(job.setup, distance(0.5))?;
         let plant = linear.plant(&CutFrame::along(&job.setup.motion, job.cut.milling))?;
-        let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(SurveyError::from)?;
-        let wall = wall(job, look, &run);
-        let filtered = wall.filtered(look.cutoff);
+        let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(StabilityError::from)?;
+        let wall = wall(job, settings, &run);
+        let filtered = wall.filtered(settings.cutoff);
         let roughness = wall.roughness().zip(filtered.roughness()).map(|(raw, filtered)| [raw, filtered]);
         Ok(Self {
             forces: statistics(&run, window),
-            unrest: unrest(&run, [(window[0] + window[1]) / 2.0, window[1]], job.cut.steps_per_turn),
+            period_variation: period_variation(
+                &run,
+                [(window[0] + window[1]) / 2.0, window[1]],
+                job.cut.steps_per_turn,
+            ),
             window,
             verdict: method.verdict(job.cut.axial_depth),
             modes: linear_at(job.setup, 0.0)?.modes()?,
@@ -116,7 +120,8 @@ impl Simulation {
 
     /// Whether the cut stayed calm: it came to its end, with forces that hardly change from turn to turn.
     pub fn is_stable(&self) -> bool {
-        self.run.end == End::Complete && self.unrest.is_none_or(|unrest| unrest < UNREST)
+        self.run.end == End::Complete
+            && self.period_variation.is_none_or(|period_variation| period_variation < MAX_PERIOD_VARIATION)
     }
 }
 
@@ -133,20 +138,20 @@ pub fn statistics(run: &Run, window: [f64; 2]) -> Option<[Statistics; 2]> {
     let count = samples.len() as f64;
     Some([0, 1].map(|axis| {
         let (mut sum, mut squares) = (0.0, 0.0);
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for sample in samples {
             let force = if axis == 0 { sample.force[0] } else { -sample.force[1] };
             sum += force;
             squares += force * force;
-            least = least.min(force);
-            most = most.max(force);
+            min = min.min(force);
+            max = max.max(force);
         }
-        Statistics { least, most, mean: sum / count, root_mean_square: (squares / count).sqrt() }
+        Statistics { min, max, mean: sum / count, root_mean_square: (squares / count).sqrt() }
     }))
 }
 
 /// How much forces differ from those a turn (in steps) before, between two times (s), as a share of themselves.
-pub fn unrest(run: &Run, window: [f64; 2], turn: usize) -> Option<f64> {
+pub fn period_variation(run: &Run, window: [f64; 2], turn: usize) -> Option<f64> {
     let range = steps(run, window)?;
     let (mut changes, mut squares) = (0.0, 0.0);
     for index in range.start.max(turn)..range.end {
@@ -160,11 +165,11 @@ pub fn unrest(run: &Run, window: [f64; 2], turn: usize) -> Option<f64> {
 }
 
 /// The wall as far as the tool came.
-fn wall(job: &Job<'_>, look: &Look, run: &Run) -> Profile {
+fn wall(job: &Job<'_>, settings: &EvaluationSettings, run: &Run) -> Profile {
     let reached = run.trail.nodes().last().map_or(0.0, |node| node.place[0]);
     let end = reached.min(job.cut.length);
     if end <= 0.0 {
         return Profile { start: 0.0, spacing: SPACING, heights: Vec::new() };
     }
-    Profile::of_wall(&run.trail, job.cutter, job.cut, look.height, [0.0, end], SPACING)
+    Profile::of_wall(&run.trail, job.cutter, job.cut, settings.height, [0.0, end], SPACING)
 }

@@ -117,17 +117,17 @@ mod tests {
     use super::*;
     use crate::milling::{Coefficients, Tooth};
     use crate::surface::Node;
-    use stead_model::cutting::Milling as Way;
+    use stead_model::cutting::MillingDirection;
 
     const RADIUS: f64 = 5e-3;
 
     /// Ten turns of 0.2 mm with two teeth; y of the centre at a time in steps.
-    fn pass(runout: f64, way: Way, y: impl Fn(f64) -> f64) -> (Trail, Cutter, Cut) {
+    fn pass(runout: f64, direction: MillingDirection, y: impl Fn(f64) -> f64) -> (Trail, Cutter, Cut) {
         let tooth = |radius| Tooth { pitch: PI, radius };
         let coefficients = Coefficients { tangential: 1e9, radial: 0.0, axial: 0.0 };
         let cutter = Cutter::new(vec![tooth(RADIUS), tooth(RADIUS - runout)], 0.5, 0.01, coefficients).unwrap();
         let cut = Cut {
-            milling: way,
+            milling: direction,
             radial_depth: 4e-3,
             axial_depth: 2e-3,
             length: 1.0,
@@ -148,9 +148,9 @@ mod tests {
     /// along a trochoid, of another curvature at its lowest by `1 +- f / 2 pi R` squared, with f the feed per turn.
     #[test]
     fn a_rigid_tool_leaves_cusps() {
-        for (way, sign) in [(Way::Climb, -1.0), (Way::Conventional, 1.0)] {
+        for (direction, sign) in [(MillingDirection::Climb, -1.0), (MillingDirection::Conventional, 1.0)] {
             for (runout, spacing) in [(0.0, 0.1e-3), (5e-6, 0.2e-3)] {
-                let (trail, cutter, cut) = pass(runout, way, |_| RADIUS);
+                let (trail, cutter, cut) = pass(runout, direction, |_| RADIUS);
                 let profile = Profile::of_wall(&trail, &cutter, &cut, 1e-3, [0.8e-3, 1.4e-3], 0.2e-6);
                 let swifter = 1.0 + sign * 0.2e-3 / (TAU * RADIUS);
                 let cusp = spacing * spacing / (8.0 * RADIUS) / (swifter * swifter);
@@ -166,7 +166,7 @@ mod tests {
     /// The wall is the lowest point of any tooth's whole way, sampled finely.
     #[test]
     fn a_wall_is_the_envelope_of_all_teeth() {
-        let (trail, cutter, cut) = pass(3e-6, Way::Climb, |time| RADIUS + 20e-6 * libm::sin(0.05 * time));
+        let (trail, cutter, cut) = pass(3e-6, MillingDirection::Climb, |time| RADIUS + 20e-6 * libm::sin(0.05 * time));
         let (from, spacing) = (0.8e-3, 2e-6);
         let profile = Profile::of_wall(&trail, &cutter, &cut, 0.5e-3, [from, 1.2e-3], spacing);
         let mut sampled = vec![f64::MAX; profile.heights.len()];

@@ -12,7 +12,7 @@ use stead_calibration::identification::{IdentifyError, identify};
 use stead_format::input::InputError;
 use stead_format::{IdentifyRun, read_identification};
 use stead_report::identification::{identify_json, identify_text, write_identified};
-use stead_report::words::compliance_name;
+use stead_report::names::compliance_name;
 
 pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
     match command {

@@ -7,13 +7,13 @@
 //! least-squares circle (eq. 28 to 32). To first order, with the force turning with the tool, the displacement is that of a
 //! quadratic form: a mean shift of radius, and an ellipse that no shift of the centre removes, so that the circularity is
 //! `|F| (lambda_max - lambda_min)` of the in-plane compliance, whatever the direction of the force
-//! ([`Trial::first_order`]).
+//! ([`DeflectedCircle::first_order`]).
 
+mod deflected_circle;
 #[cfg(test)]
 mod tests;
-mod trial;
 
-pub use trial::{Profile, Trial};
+pub use deflected_circle::{DeflectedCircle, Profile};
 
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -58,7 +58,7 @@ pub enum Turning {
     AgainstTool,
 }
 
-/// Where the limits of the joints are looked at.
+/// Where the limits of the joints are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimitsAt {
     /// At every point of the circle: the whole circle can be milled in one posture.
@@ -78,7 +78,7 @@ pub enum StiffnessModel {
 
 /// Largest deflection, in radii of the circle and apart from what all its points have in common, at which what is left is
 /// still read as a circle: far beyond it the best circle about the points can be quite another one.
-pub const MOST_DEFLECTION: f64 = 0.25;
+pub const MAX_DEFLECTION: f64 = 0.25;
 
 /// A joint that moves by more than this between neighbouring points of a circle jumps. rad
 const JUMP: f64 = PI / 2.0;
@@ -104,7 +104,7 @@ pub struct Benchmark {
     pub flange_from_tool: Option<Pose<f64>>,
     /// Which joints yield; the others count as rigid.
     pub yielding: [bool; 6],
-    /// Where limits are looked at.
+    /// Where limits are checked.
     pub limits_at: LimitsAt,
     /// How a wrench becomes a deflection.
     pub stiffness: StiffnessModel,
@@ -121,7 +121,7 @@ pub enum Obstacle {
     Singularity(usize),
     /// The arm would buckle under the load (loaded stiffness only).
     Buckling,
-    /// The load would deflect the circle by more than a quarter of its radius ([`MOST_DEFLECTION`]).
+    /// The load would deflect the circle by more than a quarter of its radius ([`MAX_DEFLECTION`]).
     TooSoft,
 }
 

@@ -41,12 +41,12 @@ fn simulated_and_first_order(benchmark: &Benchmark) -> Vec<(f64, f64, f64)> {
     let sums = Benchmark { turning: Turning::AgainstTool, ..benchmark.clone() };
     let mut found = Vec::new();
     for robot in ROBOTS.map(shipped) {
-        let (trial, of_sums) = (Trial::new(benchmark, &robot), Trial::new(&sums, &robot));
+        let (deflected, of_sums) = (DeflectedCircle::new(benchmark, &robot), DeflectedCircle::new(&sums, &robot));
         let mut profile = Profile::default();
         for class in Elbow::BOTH.map(|elbow| elbow.forward_class(&robot)) {
             for centre in centres() {
-                let Ok([simulated]) = trial.circularity(centre, class, [1e-3], &mut profile) else { continue };
-                let first = trial.first_order(centre, class, 1e-3).unwrap();
+                let Ok([simulated]) = deflected.circularity(centre, class, [1e-3], &mut profile) else { continue };
+                let first = deflected.first_order(centre, class, 1e-3).unwrap();
                 let sum = of_sums.first_order(centre, class, 1e-3).unwrap();
                 let difference = if benchmark.turning == Turning::WithTool { first } else { sum };
                 found.push((simulated, first, difference / sum));
@@ -86,7 +86,7 @@ fn the_profile_is_equation_34() {
     let benchmark = Benchmark { flange_from_tool: Some(tool()), ..published() };
     let (centre, class) = ([1.6, 1.1], Elbow::Up.forward_class(&robot));
     let mut profile = Profile::default();
-    Trial::new(&benchmark, &robot).circularity(centre, class, [2.0], &mut profile).unwrap();
+    DeflectedCircle::new(&benchmark, &robot).circularity(centre, class, [2.0], &mut profile).unwrap();
     for (k, point) in profile.points().iter().enumerate() {
         let (sine, cosine) = libm::sincos(std::f64::consts::TAU * k as f64 / 72.0);
         // R(phi) about the normal -Y of XOZ.
@@ -130,8 +130,8 @@ fn the_whole_cell_may_be_turned_about_axis_1() {
     let mut profile = Profile::default();
     let mut milled = 0;
     for centre in [[0.0, 0.0], [0.4, -0.3], [-0.2, 0.5], [0.6, 0.6]] {
-        let [found, expected] =
-            [&there, &here].map(|b| Trial::new(b, &robot).circularity(centre, class, [1.0, 0.5], &mut profile));
+        let [found, expected] = [&there, &here]
+            .map(|b| DeflectedCircle::new(b, &robot).circularity(centre, class, [1.0, 0.5], &mut profile));
         match (found, expected) {
             (Ok(found), Ok(expected)) => {
                 assert!(found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-12 && *f > 0.0));
@@ -151,7 +151,7 @@ fn a_spindle_along_axis_6_may_turn_about_it() {
     let mut at = |beta: f64| {
         let base_from_tool = published().base_from_tool * point_from_tool(0.0) * point_from_tool(beta);
         let benchmark = Benchmark { base_from_tool, ..published() };
-        Trial::new(&benchmark, &robot).circularity([1.7, 0.8], class, [1.0], &mut profile).unwrap()[0]
+        DeflectedCircle::new(&benchmark, &robot).circularity([1.7, 0.8], class, [1.0], &mut profile).unwrap()[0]
     };
     let straight = at(0.0);
     for beta in [-3.0, -1.2, 0.4, 2.2] {
@@ -167,7 +167,7 @@ fn joint_limits_hold_all_the_way_round_or_at_the_centre() {
     let (mut both, mut one) = (0, 0);
     for robot in ROBOTS.map(shipped) {
         let class = Elbow::Up.forward_class(&robot);
-        let [all_round, at_centre] = [&whole, &centre_only].map(|benchmark| Trial::new(benchmark, &robot));
+        let [all_round, at_centre] = [&whole, &centre_only].map(|benchmark| DeflectedCircle::new(benchmark, &robot));
         for centre in centres() {
             let found = all_round.circularity(centre, class, [1.0], &mut profile);
             match (found, at_centre.circularity(centre, class, [1.0], &mut profile)) {
@@ -189,7 +189,7 @@ fn a_circle_across_axis_1_is_no_circle_of_one_posture() {
     let robot = shipped("kuka-kr120-r3900.toml");
     let wrist = Benchmark { flange_from_tool: None, limits_at: LimitsAt::Centre, ..published() };
     let class = Elbow::Up.forward_class(&robot);
-    let at = |x: f64| Trial::new(&wrist, &robot).circularity([x, 0.0], class, [1.0], &mut Profile::default());
+    let at = |x: f64| DeflectedCircle::new(&wrist, &robot).circularity([x, 0.0], class, [1.0], &mut Profile::default());
     assert_eq!(at(0.05), Err(Obstacle::Singularity(1)));
     assert!(at(0.15).is_ok());
     assert_eq!(at(9.0), Err(Obstacle::Reach));
@@ -206,7 +206,7 @@ fn a_circle_is_closed_from_its_last_point_to_its_first() {
     let (sine, cosine) = libm::sincos(-2.5_f64.to_radians());
     let at = |radius: f64| {
         let centre = [-radius * cosine, -radius * sine];
-        Trial::new(&level, &robot).circularity(centre, class, [1.0], &mut Profile::default())
+        DeflectedCircle::new(&level, &robot).circularity(centre, class, [1.0], &mut Profile::default())
     };
     assert_eq!(at(0.1), Err(Obstacle::Singularity(1)));
     // A little farther off nothing jumps.
@@ -223,7 +223,8 @@ fn a_flipped_wrist_yields_by_its_own_angles() {
         joints[4].compliance = stead_model::robot::Compliance::Range { at_min, at_max };
         let arm = Robot::new("bent to one side", joints).unwrap();
         let benchmark = Benchmark { limits_at, ..published() };
-        Trial::new(&benchmark, &arm).circularity([1.7, 0.8], class, [1.0], &mut Profile::default()).unwrap()[0]
+        DeflectedCircle::new(&benchmark, &arm).circularity([1.7, 0.8], class, [1.0], &mut Profile::default()).unwrap()
+            [0]
     };
     for limits_at in [LimitsAt::Circle, LimitsAt::Centre] {
         let plain = circularity(0.0, 2.2, 1e-6, 4e-5, limits_at);
@@ -238,14 +239,16 @@ fn the_loaded_arm_is_the_unloaded_one_as_the_load_vanishes() {
     let class = Elbow::Up.forward_class(&robot);
     let loaded = Benchmark { stiffness: StiffnessModel::Loaded, ..published() };
     let relative = |load: f64| {
-        let [linear, tangent] = [&published(), &loaded]
-            .map(|b| Trial::new(b, &robot).circularity([1.5, 1.0], class, [load], &mut Profile::default()).unwrap()[0]);
+        let [linear, tangent] = [&published(), &loaded].map(|b| {
+            DeflectedCircle::new(b, &robot).circularity([1.5, 1.0], class, [load], &mut Profile::default()).unwrap()[0]
+        });
         (tangent / linear - 1.0).abs()
     };
     let (small, large) = (relative(0.05), relative(0.1));
     assert!(large > 1e-5 && large < 1e-2, "{large}");
     assert!((large / small - 2.0).abs() < 0.05, "{small} {large}");
-    let [far] = [&loaded].map(|b| Trial::new(b, &robot).circularity([1.5, 1.0], class, [1e4], &mut Profile::default()));
+    let [far] = [&loaded]
+        .map(|b| DeflectedCircle::new(b, &robot).circularity([1.5, 1.0], class, [1e4], &mut Profile::default()));
     assert_eq!(far, Err(Obstacle::Buckling));
 }
 
@@ -255,17 +258,17 @@ fn a_circle_that_the_arm_is_too_soft_for_has_no_circularity() {
     let class = Elbow::Up.forward_class(&robot);
     for stiffness in [StiffnessModel::Unloaded, StiffnessModel::Loaded] {
         let benchmark = Benchmark { stiffness, ..published() };
-        let trial = Trial::new(&benchmark, &robot);
-        let at = |loads: [f64; 2]| trial.circularity([1.5, 1.0], class, loads, &mut Profile::default());
+        let deflected = DeflectedCircle::new(&benchmark, &robot);
+        let at = |loads: [f64; 2]| deflected.circularity([1.5, 1.0], class, loads, &mut Profile::default());
         let [light, heavy] = at([1.0, 40.0]).unwrap();
         assert!(light > 0.0 && light < 2e-3 && heavy.is_infinite());
         assert_eq!(at([100.0, 40.0]), Err(Obstacle::TooSoft));
         // Up to the limit, circularity is still in proportion to the load of the unloaded arm.
         if stiffness == StiffnessModel::Unloaded {
-            let most = (1..40).rev().find(|load| at([f64::from(*load); 2]).is_ok()).unwrap();
-            assert!(most > 10);
-            let [value, _] = at([f64::from(most); 2]).unwrap();
-            assert!((value / light / f64::from(most) - 1.0).abs() < 0.1, "{most} {value} {light}");
+            let max = (1..40).rev().find(|load| at([f64::from(*load); 2]).is_ok()).unwrap();
+            assert!(max > 10);
+            let [value, _] = at([f64::from(max); 2]).unwrap();
+            assert!((value / light / f64::from(max) - 1.0).abs() < 0.1, "{max} {value} {light}");
         }
     }
 }

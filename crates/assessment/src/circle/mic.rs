@@ -2,7 +2,7 @@
 
 use super::chart::{Centre, Chart, Point, nearest};
 use super::hull::Hull;
-use super::search::Search;
+use super::search::CentreSearch;
 
 /// The centre of the maximum inscribed circle of points in their local frame; starts are guesses at it.
 pub(super) fn maximum_inscribed(points: &[Point], hull: &Hull, starts: &[Point]) -> Point {
@@ -23,6 +23,6 @@ pub(super) fn maximum_inscribed(points: &[Point], hull: &Hull, starts: &[Point])
         from = [from[0].min(corner[0]), from[1].min(corner[1])];
         to = [to[0].max(corner[0]), to[1].max(corner[1])];
     }
-    let search = Search { outer: &[], inner: points, fence: Some(hull) };
+    let search = CentreSearch { outer: &[], inner: points, fence: Some(hull) };
     search.best::<Centre>(from, to, best.1).map_or(best.0, |found| found.coordinates)
 }

@@ -3,7 +3,7 @@
 use super::CircleError;
 use super::chart::{Centre, Chart, Far, Middle, Point, farthest, nearest};
 use super::hull::Hull;
-use super::search::Search;
+use super::search::CentreSearch;
 use std::f64::consts::TAU;
 
 /// Half the side of the square of near centres; farther ones are on the other chart.
@@ -25,7 +25,7 @@ pub(super) fn minimum_zone(points: &[Point], hull: &Hull, starts: &[Point]) -> R
             best = (Middle::Near(*start), width(start));
         }
     }
-    let search = Search { outer: &hull.vertices, inner: points, fence: None };
+    let search = CentreSearch { outer: &hull.vertices, inner: points, fence: None };
     if let Some(found) = search.best::<Centre>([-NEAR, -NEAR], [NEAR, NEAR], best.1) {
         best = (Middle::Near(found.coordinates), found.objective);
     }

@@ -12,7 +12,7 @@ const NEARLY_NORMAL: f64 = 0.9;
 
 /// A plane with a frame in it. Lengths are in the unit of the points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub struct FittedPlane {
     /// The mean of the points, origin of the plane's frame.
     pub center: Vector3<f64>,
     /// Unit normal, its largest component positive: z of the plane's frame.
@@ -24,7 +24,7 @@ pub struct Plane {
     pub y_axis: Vector3<f64>,
 }
 
-impl Plane {
+impl FittedPlane {
     /// The plane with the smallest sum of squared distances from the points (total least squares).
     ///
     /// # Errors
@@ -91,9 +91,9 @@ mod tests {
         ) {
             let normal = Vector3::from(normal);
             prop_assume!(normal.norm() > 0.1);
-            let made = Plane::with(center.into(), normal.normalize());
+            let made = FittedPlane::with(center.into(), normal.normalize());
             let points: Vec<[f64; 3]> = places.iter().map(|p| made.place(*p)).collect();
-            if let Ok(plane) = Plane::fit(&points) {
+            if let Ok(plane) = FittedPlane::fit(&points) {
                 // Four points may be nearly on a line, which leaves the plane free to turn about it.
                 prop_assert!(points.iter().all(|p| plane.coordinates(*p)[2].abs() < 1e-10));
                 for p in &points {
@@ -109,15 +109,15 @@ mod tests {
 
     #[test]
     fn level_points_keep_their_axes_and_lines_are_refused() {
-        let plane = Plane::fit(&[[1.0, 0.0, 5.0], [0.0, 1.0, 5.0], [-1.0, 0.0, 5.0], [0.0, -1.0, 5.0]]).unwrap();
+        let plane = FittedPlane::fit(&[[1.0, 0.0, 5.0], [0.0, 1.0, 5.0], [-1.0, 0.0, 5.0], [0.0, -1.0, 5.0]]).unwrap();
         assert_eq!((plane.center, plane.normal), (Vector3::new(0.0, 0.0, 5.0), Vector3::z()));
         assert_eq!((plane.x_axis, plane.y_axis), (Vector3::x(), Vector3::y()));
-        let upright = Plane::fit(&[[5.0, 1.0, 0.0], [5.0, 0.0, 1.0], [5.0, -1.0, 0.0]]).unwrap();
+        let upright = FittedPlane::fit(&[[5.0, 1.0, 0.0], [5.0, 0.0, 1.0], [5.0, -1.0, 0.0]]).unwrap();
         assert!((upright.x_axis - Vector3::y()).norm() < 1e-15);
         let line: Vec<[f64; 3]> = (0..9).map(|k| [1e4 + 0.1 * f64::from(k), 0.3 * f64::from(k), 0.7]).collect();
-        assert_eq!(Plane::fit(&line), Err(CircleError::Collinear));
-        assert_eq!(Plane::fit(&[[1.0; 3]; 4]), Err(CircleError::TooFew { distinct: 1 }));
-        assert_eq!(Plane::fit(&[[1.0; 3], [2.0; 3], [1.0; 3]]), Err(CircleError::TooFew { distinct: 2 }));
-        assert_eq!(Plane::fit(&[[1.0; 3], [f64::NAN; 3]]), Err(CircleError::NotFinite { point: 1 }));
+        assert_eq!(FittedPlane::fit(&line), Err(CircleError::Collinear));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3]; 4]), Err(CircleError::TooFew { distinct: 1 }));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3], [2.0; 3], [1.0; 3]]), Err(CircleError::TooFew { distinct: 2 }));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3], [f64::NAN; 3]]), Err(CircleError::NotFinite { point: 1 }));
     }
 }

@@ -26,7 +26,7 @@ const STRIDE: usize = 97;
 const SHORT: usize = 12;
 
 /// A search on one chart.
-pub(super) struct Search<'a> {
+pub(super) struct CentreSearch<'a> {
     /// Points that may be farthest from a centre; none where the objective does not ask for the farthest.
     pub outer: &'a [Point],
     /// Points that may be nearest.
@@ -37,7 +37,7 @@ pub(super) struct Search<'a> {
 
 /// A centre by its chart coordinates, and its objective.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct BestCentre {
     pub coordinates: Point,
     pub objective: f64,
 }
@@ -62,10 +62,10 @@ struct View {
     near_gradient: Point,
 }
 
-impl Search<'_> {
+impl CentreSearch<'_> {
     /// The best centre in a rectangle of chart coordinates, if it is better than `known`, which is a bound on the objective.
-    pub fn best<C: Chart>(&self, from: Point, to: Point, known: f64) -> Option<Found> {
-        let mut best = Found { coordinates: from, objective: known };
+    pub fn best<C: Chart>(&self, from: Point, to: Point, known: f64) -> Option<BestCentre> {
+        let mut best = BestCentre { coordinates: from, objective: known };
         let lists = Lists { outer: self.outer.to_vec(), inner: self.inner.to_vec(), size: f64::INFINITY };
         let mut cells = vec![Cell { polygon: Polygon::rectangle(from, to), lists: Rc::new(lists) }];
         while let Some(cell) = cells.pop() {
@@ -77,7 +77,7 @@ impl Search<'_> {
     }
 
     /// Cuts a cell until it is empty or must be split.
-    fn shrink<C: Chart>(&self, mut cell: Cell, best: &mut Found) -> Option<[Cell; 2]> {
+    fn shrink<C: Chart>(&self, mut cell: Cell, best: &mut BestCentre) -> Option<[Cell; 2]> {
         let mut thin = (cell.lists.inner.len() > LONG).then(|| cell.lists.thinned());
         while !cell.polygon.is_empty() {
             let (area, middle) = cell.polygon.area_and_centroid();
@@ -87,7 +87,7 @@ impl Search<'_> {
             let view = lists.view::<C>(&at);
             let is_inside = self.fence.is_none_or(|hull| confine(hull, middle, &mut cell.polygon));
             if thin.is_none() && is_inside && view.objective() < best.objective {
-                *best = Found { coordinates: middle, objective: view.objective() };
+                *best = BestCentre { coordinates: middle, objective: view.objective() };
             }
             if size <= SMALLEST {
                 // Seen in part only, it is looked at once more in full.

@@ -4,8 +4,8 @@ use super::super::reader::{Field, Table};
 use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use stead_assessment::benchmark::{Benchmark, LimitsAt, Plane, StiffnessModel, Turning};
-use stead_assessment::study::ElbowNames;
-use stead_model::cutting::Course;
+use stead_assessment::comparison::ElbowNames;
+use stead_model::cutting::ForceHistory;
 use stead_model::robot::{Pose, point_from_tool};
 use stead_model::task::{PathPoint, Wrench};
 
@@ -51,7 +51,7 @@ pub(super) struct Setting<'a> {
     pub plane: Plane,
     pub flange_from_tool: Pose<f64>,
     pub yields: Yields,
-    pub course: Option<&'a Course>,
+    pub force_history: Option<&'a ForceHistory>,
     pub milling: &'a Field<'a>,
     pub spindle: &'a Field<'a>,
 }
@@ -71,12 +71,12 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     ])?;
     let normal = setting.plane.normal();
     let tool_axis = axis.optional(direction)?.unwrap_or(normal);
-    let wrench = match setting.course {
-        Some(course) => {
+    let wrench = match setting.force_history {
+        Some(force_history) => {
             if let Some(given) = [&force, &moment].into_iter().find(|field| field.is_given()) {
                 return Err(given.error("is given beside a table [milling]", "force_n and moment_nm, or [milling]"));
             }
-            turning_wrench(&course.mean, &tool_axis, &normal).ok_or_else(|| {
+            turning_wrench(&force_history.mean, &tool_axis, &normal).ok_or_else(|| {
                 axis.error(
                     "does not stand on the plane of the circle",
                     "with [milling]: the normal of the plane, or none",
@@ -87,7 +87,7 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     };
     if libm::hypot(wrench.force.x, wrench.force.y) < LEAST_FORCE {
         let rule = "a force with a part in the plane of the circle: [radial, tangential, normal] with the first two not both 0";
-        let field = if setting.course.is_some() { setting.milling } else { &force };
+        let field = if setting.force_history.is_some() { setting.milling } else { &force };
         return Err(field.error("gives no force in the plane", rule));
     }
     let turnings = [("with-tool", Turning::WithTool), ("against-tool", Turning::AgainstTool)];

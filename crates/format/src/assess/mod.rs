@@ -15,24 +15,24 @@ use super::tables::spindle_from;
 use crate::input::{InputError, InputFile};
 use std::path::Path;
 use stead_assessment::benchmark::Plane;
+use stead_assessment::comparison::Comparison;
 use stead_assessment::map::Grid;
-use stead_assessment::printed::Printed;
+use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
-use stead_assessment::study::Study;
-use stead_model::cutting::Course;
+use stead_model::cutting::ForceHistory;
 use stead_model::robot::{Compliance, Pose, Robot};
 
 /// An assessment file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AssessRun {
     /// What is to be assessed.
-    pub study: Study,
+    pub comparison: Comparison,
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// The cutting forces behind the load, where the file computes them.
-    pub course: Option<Course>,
+    pub force_history: Option<ForceHistory>,
     /// Published tables to set beside ours.
-    pub printed: Option<Printed>,
+    pub published: Option<PublishedTables>,
     /// The files that were read: config, robots, reference.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
@@ -66,11 +66,17 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let plane = plane.optional(|field| plane_from(&field.table()?))?.unwrap_or(Plane::XOZ);
     let mounted = spindle.optional(|field| spindle_from(&field.table()?))?;
     let cut = milling.optional(|field| milling_from(&field.table()?))?;
-    let course = cut.map(|(tool, engagement)| Course::new(&tool, &engagement));
+    let force_history = cut.map(|(tool, engagement)| ForceHistory::new(&tool, &engagement));
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
     let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
-    let setting =
-        Setting { plane, flange_from_tool, yields, course: course.as_ref(), milling: &milling, spindle: &spindle };
+    let setting = Setting {
+        plane,
+        flange_from_tool,
+        yields,
+        force_history: force_history.as_ref(),
+        milling: &milling,
+        spindle: &spindle,
+    };
     let (benchmark, elbow_names) = benchmark_from(&benchmark.table()?, &setting)?;
     let grid = grid_from(&map.table()?)?;
     let zones = zones.optional(|field| zones_from(&field.table()?, &grid))?.unwrap_or_default();
@@ -81,7 +87,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
 
     let mut inputs = vec![source.as_config()];
     let robots = robots_from(&robots, yields.range_share, &mut inputs)?;
-    let printed = reference.optional(|field| {
+    let published = reference.optional(|field| {
         let [tables] = field.table()?.fields(["tables"])?;
         let named = tables.named_file()?;
         inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
@@ -89,8 +95,8 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     })?;
     let asked = !selection.forces.is_empty();
     let notes = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten()).collect();
-    let study = Study { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
-    Ok(AssessRun { study, range_share: yields.range_share, course, printed, inputs, notes })
+    let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
+    Ok(AssessRun { comparison, range_share: yields.range_share, force_history, published, inputs, notes })
 }
 
 /// Share of the weight of the payload that makes the rated load, where the file does not say.

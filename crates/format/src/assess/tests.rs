@@ -3,9 +3,9 @@ use super::*;
 use nalgebra::{Matrix3, Vector3};
 use std::path::PathBuf;
 use stead_assessment::benchmark::{LimitsAt, StiffnessModel, Turning};
+use stead_assessment::comparison::{ElbowNames, Load};
 use stead_assessment::map::Elbow;
-use stead_assessment::printed::Quantity;
-use stead_assessment::study::{ElbowNames, Load};
+use stead_assessment::published::Quantity;
 
 /// An assessment file without optional tables but a few, for two robots.
 const TEXT: &str = "robots = ['one.toml', 'two.toml']
@@ -54,7 +54,7 @@ fn read(text: &str) -> Result<AssessRun, InputError> {
 #[test]
 fn defaults_are_equation_34_as_written_on_the_plane_xoz() {
     let run = read(TEXT).unwrap();
-    let Study { robots, benchmark, grid, zones, elbow_names, rated_share, selection } = &run.study;
+    let Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection } = &run.comparison;
     assert_eq!(robots.iter().map(Robot::name).collect::<Vec<_>>(), ["KUKA KR270-2", "KUKA KR 500"]);
     assert_eq!((benchmark.plane, benchmark.radius, benchmark.points), (Plane::XOZ, 0.1, 72));
     assert_eq!(benchmark.wrench.force, Vector3::new(-440.0, -1370.0, -635.0));
@@ -69,7 +69,7 @@ fn defaults_are_equation_34_as_written_on_the_plane_xoz() {
     assert_eq!((*elbow_names, run.range_share, *rated_share), (ElbowNames::Geometric, None, 0.8));
     assert_eq!((selection.accuracies[0], selection.forces[0], selection.remaining_share), (0.2e-3, 500.0, 1.0));
     assert_eq!(selection.gravity, 9.80665);
-    assert!(run.printed.is_none() && run.course.is_none());
+    assert!(run.published.is_none() && run.force_history.is_none());
     assert!(run.notes[0].contains("KUKA KR 500") && run.notes[0].contains("linear in the joint angle"));
     assert_eq!(run.inputs.iter().map(|input| input.role).collect::<Vec<_>>(), ["config", "robot", "robot"]);
 }
@@ -81,7 +81,7 @@ fn optional_tables_override_the_defaults() {
     let keys = "radius_mm = 50\npoints = 36\nforce_turns = 'against-tool'\ntraced = 'wrist-centre'\nlimits_at = 'centre'\n\
                 elbow_names = 'swapped'\nmoment_nm = [1, 2, 3]\ntool_axis = [0, 0.6, 0.8]\nbeta_deg = 90";
     let run = read(&TEXT.replace("[map]", more).replace("radius_mm = 100", keys)).unwrap();
-    let benchmark = &run.study.benchmark;
+    let benchmark = &run.comparison.benchmark;
     assert_eq!(benchmark.plane.origin, Vector3::new(0.0, 0.0, 0.5));
     assert!((benchmark.plane.normal() - Vector3::z()).norm() < 1e-15);
     assert_eq!((benchmark.radius, benchmark.points, benchmark.flange_from_tool), (0.05, 36, None));
@@ -93,10 +93,10 @@ fn optional_tables_override_the_defaults() {
     let [x, z] = [0, 2].map(|k| benchmark.base_from_tool.column(k).into_owned());
     assert!((z + Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-12);
     assert!((x - Vector3::new(-1.0, 0.0, 0.0)).norm() < 1e-12);
-    assert_eq!((run.study.elbow_names, run.range_share), (ElbowNames::Swapped, Some(0.25)));
+    assert_eq!((run.comparison.elbow_names, run.range_share), (ElbowNames::Swapped, Some(0.25)));
     let quarter = Compliance::Constant(0.14 / 1e6 + 0.25 * (0.20 / 1e6 - 0.14 / 1e6));
-    assert_eq!(run.study.robots[1].joints()[1].compliance, quarter);
-    assert_eq!((run.study.rated_share, run.study.selection.gravity), (0.5, 10.0));
+    assert_eq!(run.comparison.robots[1].joints()[1].compliance, quarter);
+    assert_eq!((run.comparison.rated_share, run.comparison.selection.gravity), (0.5, 10.0));
     // No range is left, but the KR270-2's payload is not known.
     assert!(run.notes.len() == 1 && run.notes[0].contains("no payload_kg in the robot file (KUKA KR270-2)"));
 }
@@ -105,14 +105,14 @@ fn optional_tables_override_the_defaults() {
 fn a_cut_is_put_to_the_circle() {
     let computed = TEXT.replace("force_n = [-440, -1370, -635]\n", "").replace("[map]", MILLING);
     let run = read(&computed).unwrap();
-    let mean = run.course.as_ref().unwrap().mean;
+    let mean = run.force_history.as_ref().unwrap().mean;
     // The tool axis is the normal: the feed is tangential, its left towards the centre.
-    let wrench = run.study.benchmark.wrench;
+    let wrench = run.comparison.benchmark.wrench;
     assert_eq!(wrench.force, Vector3::new(-mean.force.y, mean.force.x, mean.force.z));
     assert_eq!(wrench.moment, Vector3::new(-mean.moment.y, mean.moment.x, mean.moment.z));
     // From the other side of the plane the left of the feed is outwards, and the axis is against the normal.
     let other = computed.replace("radius_mm = 100", "radius_mm = 100\ntool_axis = [0, 1, 0]");
-    let wrench = read(&other).unwrap().study.benchmark.wrench;
+    let wrench = read(&other).unwrap().comparison.benchmark.wrench;
     assert_eq!(wrench.force, Vector3::new(mean.force.y, mean.force.x, -mean.force.z));
 }
 
@@ -122,22 +122,22 @@ fn the_shipped_files_are_the_published_case_and_its_tables() {
         [("klimchik-2017.toml", Turning::WithTool), ("klimchik-2017-table-compatible.toml", Turning::AgainstTool)]
     {
         let run = read_assessment(&root().join("configs").join(name)).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!((run.study.robots.len(), run.study.benchmark.turning), (5, turning));
-        let printed = run.printed.unwrap();
+        assert_eq!((run.comparison.robots.len(), run.comparison.benchmark.turning), (5, turning));
+        let published = run.published.unwrap();
         // 5 robots x 2 elbows x (3 + 3 of Table 5, 4 of Table 6, 4 of Table 7).
-        assert_eq!(printed.readings.len(), 140);
-        let dashes = printed.readings.iter().filter(|reading| reading.value.is_none()).count();
+        assert_eq!(published.readings.len(), 140);
+        let dashes = published.readings.iter().filter(|reading| reading.value.is_none()).count();
         assert_eq!(dashes, 5 + 5 + 1);
-        assert_eq!(printed.value("KUKA KR 500", Elbow::Down, Load::Test, Quantity::Minimum), Some(Some(0.41 / 1e3)));
+        assert_eq!(published.value("KUKA KR 500", Elbow::Down, Load::Test, Quantity::Minimum), Some(Some(0.41 / 1e3)));
         assert_eq!(
-            printed.value("KUKA KR 360 L240", Elbow::Up, Load::Rated, Quantity::Minimum),
+            published.value("KUKA KR 360 L240", Elbow::Up, Load::Rated, Quantity::Minimum),
             Some(Some(3.34 / 1e3))
         );
-        assert_eq!(printed.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.5)), Some(None));
-        assert_eq!(printed.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.3)), None);
-        assert_eq!(printed.accuracies.iter().filter(|(_, _, value)| value.is_some()).count(), 25);
+        assert_eq!(published.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.5)), Some(None));
+        assert_eq!(published.value("KUKA KR 500", Elbow::Up, Load::Test, Quantity::MiddleZone(0.3)), None);
+        assert_eq!(published.accuracies.iter().filter(|(_, _, value)| value.is_some()).count(), 25);
         assert_eq!(
-            printed.robots(0.2e-3, 1000.0),
+            published.robots(0.2e-3, 1000.0),
             ["KUKA KR 100 HA", "KUKA KR 270 R2700", "KUKA KR 360 L240", "KUKA KR 500"]
         );
         assert_eq!(run.inputs.len(), 7);
@@ -227,9 +227,9 @@ fn published_rows_may_not_be_longer_than_their_heads() {
     let file = folder.path().join("tables.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replacen("optimal_mm = [1.60, 1.73, 2.24]", "optimal_mm = [1, 2, 3, 4, 5]", 1)).unwrap();
-    let study = folder.path().join("study.toml");
-    std::fs::write(&study, TEXT.replace("[map]", "[reference]\ntables = 'tables.toml'\n[map]")).unwrap();
-    let message = read_assessment(&study).unwrap_err().to_string();
+    let comparison = folder.path().join("study.toml");
+    std::fs::write(&comparison, TEXT.replace("[map]", "[reference]\ntables = 'tables.toml'\n[map]")).unwrap();
+    let message = read_assessment(&comparison).unwrap_err().to_string();
     for part in ["tables.toml:", "robots[1].up.optimal_mm: ", "5 numbers under 4 heads", "found [1, 2, 3, 4, 5]"] {
         assert!(message.contains(part), "{part} in {message}");
     }

@@ -101,8 +101,8 @@ fn motion_from(table: &Table<'_>, robot: &Robot, spindle: &Spindle) -> Result<Mo
     Motion::new(robot, spindle, &pass, ramp).map_err(|error| {
         let at_start = matches!(
             error,
-            MotionError::Limit { way_mm, .. } | MotionError::Singular { way_mm } | MotionError::Unreachable { way_mm, .. }
-            if way_mm == 0.0
+            MotionError::Limit { distance_mm, .. } | MotionError::Singular { distance_mm } | MotionError::Unreachable { distance_mm, .. }
+            if distance_mm == 0.0
         );
         let field = if at_start { &start } else { &length };
         field.error(format!("asks for what the arm cannot do: {error}"), "a pass that the arm can make in the posture of its start")

@@ -3,12 +3,12 @@
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
 use stead_simulation::milling::Cut;
-use stead_simulation::outcome::{Look, Published, Statistics};
+use stead_simulation::outcome::{EvaluationSettings, Published, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
-use stead_simulation::survey::linear_at;
+use stead_simulation::stability_analysis::linear_at;
 
-/// The fields of a simulation file that make a [`Look`].
+/// The fields of a simulation file that make a [`EvaluationSettings`].
 pub(super) struct LookFields<'a, 'b> {
     /// `window_s`, `wall_height_mm` and `cutoff_mm` of `[simulation]`.
     pub keys: Option<&'b [Field<'a>]>,
@@ -28,8 +28,12 @@ const DAMPED: f64 = 0.5;
 ///
 /// # Errors
 /// [`InputError`] with file, line and field.
-pub(super) fn look_from(fields: &LookFields<'_, '_>, setup: &Setup, cut: &Cut) -> Result<Look, InputError> {
-    let mut look = Look { window: None, height: cut.axial_depth / 2.0, cutoff: CUTOFF, published: None };
+pub(super) fn look_from(
+    fields: &LookFields<'_, '_>,
+    setup: &Setup,
+    cut: &Cut,
+) -> Result<EvaluationSettings, InputError> {
+    let mut look = EvaluationSettings { window: None, height: cut.axial_depth / 2.0, cutoff: CUTOFF, published: None };
     if let Some([window, height, cutoff]) = fields.keys {
         let duration = setup.motion.duration();
         let allowed =
@@ -79,8 +83,8 @@ fn published_from(table: &Table<'_>, setup: &Setup) -> Result<Published, InputEr
 fn statistics_from(field: &Field<'_>) -> Result<Statistics, InputError> {
     let numbers: [f64; 4] =
         field.numbers_where("four numbers: smallest, largest, mean and root mean square", f64::is_finite)?;
-    let [least, most, mean, root_mean_square] = numbers;
-    Ok(Statistics { least, most, mean, root_mean_square })
+    let [min, max, mean, root_mean_square] = numbers;
+    Ok(Statistics { min, max, mean, root_mean_square })
 }
 
 /// Refuses steps that are too coarse for the fastest mode that swings.
@@ -90,13 +94,13 @@ fn statistics_from(field: &Field<'_>) -> Result<Statistics, InputError> {
 pub(super) fn check_step(setup: &Setup, cut: &Cut, field: &Field<'_>) -> Result<(), InputError> {
     let Ok(modes) = linear_at(setup, 0.0).and_then(|linear| linear.modes()) else { return Ok(()) };
     let swinging = modes.iter().filter(|mode| mode.damping_ratio < DAMPED);
-    let fastest = swinging.fold(0.0_f64, |most, mode| most.max(mode.frequency));
+    let fastest = swinging.fold(0.0_f64, |max, mode| max.max(mode.frequency));
     let turns_per_second = cut.spindle_speed / std::f64::consts::TAU;
-    let least = STEPS_PER_SWING * fastest / turns_per_second;
-    if (cut.steps_per_turn as f64) < least {
+    let min = STEPS_PER_SWING * fastest / turns_per_second;
+    if (cut.steps_per_turn as f64) < min {
         let problem =
             format!("makes steps of {:.3e} s, too coarse for the fastest mode of the arm, {fastest:.1} Hz", cut.step());
-        return Err(field.error(problem, format!("at least {} steps a turn", least.ceil())));
+        return Err(field.error(problem, format!("at least {} steps a turn", min.ceil())));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
 use std::f64::consts::TAU;
-use stead_model::cutting::Milling;
+use stead_model::cutting::MillingDirection;
 use stead_simulation::milling::{Coefficients, Cut, CutError, Cutter, CutterError, Tooth};
 
 /// The keys of a cutter and its cut.
@@ -81,7 +81,8 @@ pub(crate) fn milling_from(
     let (width, mean) = (radial.positive()? / 1e3, 2.0 * cutter.radius());
     let radial_depth = if (2.0 * radius.min(cutter.radius())..=2.0 * radius).contains(&width) { mean } else { width };
     let cut = Cut {
-        milling: milling.one_of(&[("conventional", Milling::Conventional), ("climb", Milling::Climb)])?,
+        milling: milling
+            .one_of(&[("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)])?,
         radial_depth,
         axial_depth: axial.positive()? / 1e3,
         length,
@@ -102,10 +103,10 @@ pub(crate) fn milling_from(
             }
             CutError::Positive { .. } => rpm.error(format!("makes no cut: {error}"), "finite numbers above 0"),
             CutError::Slices => rpm.error("makes no cut without slices", "at least one slice"),
-            CutError::Steps { least, .. } => {
+            CutError::Steps { min, .. } => {
                 let problem = format!("has teeth so close that {steps_per_turn} steps a turn do not tell them apart");
                 let at = if pitch.is_given() { &pitch } else { &teeth };
-                at.error(problem, format!("at least {least} steps a turn"))
+                at.error(problem, format!("at least {min} steps a turn"))
             }
         }),
     }

@@ -3,7 +3,7 @@
 mod arm;
 mod look;
 mod milling;
-mod survey;
+mod stability;
 #[cfg(test)]
 mod tests;
 
@@ -17,13 +17,13 @@ use arm::{ArmFields, FEED, setup_from};
 pub(super) use arm::{damping_scale_from, variant_from};
 use look::{LookFields, check_duration, check_step, look_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
+use stability::analysis_from;
+pub(super) use stability::max_depth_from;
 use std::path::Path;
 use stead_simulation::milling::{Cut, Cutter};
-use stead_simulation::outcome::Look;
+use stead_simulation::outcome::EvaluationSettings;
 use stead_simulation::setup::Setup;
-use stead_simulation::survey::Plan;
-pub(super) use survey::deepest_from;
-use survey::plan_from;
+use stead_simulation::stability_analysis::AnalysisSettings;
 
 /// A simulation file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,9 +37,9 @@ pub struct SimulationRun {
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
     /// How to look at the simulated pass.
-    pub look: Look,
+    pub evaluation: EvaluationSettings,
     /// What is to be found out of its stability.
-    pub plan: Plan,
+    pub analysis: AnalysisSettings,
     /// The files that were read: config, robot.
     pub inputs: Vec<InputFile>,
 }
@@ -60,11 +60,11 @@ pub fn read_simulation(file: &Path, overrides: &Overrides) -> Result<SimulationR
     read(file, overrides, true)
 }
 
-/// The same for a survey of small motions, which makes no steps: they may be as coarse and as many as they like.
+/// The same for a stability analysis, which makes no steps: they may be as coarse and as many as they like.
 ///
 /// # Errors
 /// [`InputError`] as [`read_simulation`], but for the steps.
-pub fn read_survey(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
+pub fn read_stability(file: &Path, overrides: &Overrides) -> Result<SimulationRun, InputError> {
     read(file, overrides, false)
 }
 
@@ -93,9 +93,9 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
     let keys = simulation.optional(Field::table)?;
     let keys = keys.map(|table| table.fields(["slices", "steps_per_turn", "window_s", "wall_height_mm", "cutoff_mm"]));
     let keys = keys.transpose()?;
-    let whole = |index: usize, most, default: u64| {
+    let whole = |index: usize, max, default: u64| {
         let field = keys.as_ref().map(|keys| &keys[index]);
-        let found = field.map(|field| field.optional(|field| field.integer(1..=most))).transpose()?.flatten();
+        let found = field.map(|field| field.optional(|field| field.integer(1..=max))).transpose()?.flatten();
         Ok::<_, InputError>(found.unwrap_or(default) as usize)
     };
     let (slices, steps) = (whole(0, 1024, SLICES)?, whole(1, 100_000, STEPS_PER_TURN)?);
@@ -106,13 +106,13 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;
     }
-    let plan = plan_from(&stability, &setup, &cutter, &cut)?;
+    let analysis = analysis_from(&stability, &setup, &cutter, &cut)?;
     if steps_are_made {
         check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
         check_duration(&setup, &cut, &feed)?;
     }
-    let look = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap, look, plan, inputs })
+    let evaluation = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap, evaluation, analysis, inputs })
 }
 
 /// The width of the slot that the pass is part of: the cutter has to fit into it.

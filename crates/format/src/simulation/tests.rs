@@ -1,7 +1,7 @@
 use super::*;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
-use stead_model::cutting::Milling;
+use stead_model::cutting::MillingDirection;
 use stead_simulation::arm::Variant;
 use stead_simulation::arm::testing::{spindle, start};
 
@@ -52,7 +52,7 @@ fn the_shipped_files_are_the_published_passes() {
     assert!((run.setup.motion.start().rotation - spindle_pose()).amax() < 1e-9);
     assert_eq!(run.setup.spindle.payload, spindle().payload);
     assert_eq!((run.setup.variant, run.setup.damping_scale), (Variant::Springs, 1.0));
-    assert_eq!(run.cut.milling, Milling::Climb);
+    assert_eq!(run.cut.milling, MillingDirection::Climb);
     assert!((run.cut.spindle_speed - 18700.0 / 60.0 * TAU).abs() < 1e-9);
     assert_eq!((run.cut.slices, run.cut.steps_per_turn, run.gap), (32, 360, 0.5e-3));
     let pitches: Vec<f64> = run.cutter.teeth().iter().map(|tooth| tooth.pitch.to_degrees().round()).collect();
@@ -85,14 +85,17 @@ fn optional_tables_override_the_defaults() {
         .replace("# steps_per_turn = 360", "steps_per_turn = 90\nwall_height_mm = 1.2\ncutoff_mm = 0.8");
     let run = read(&text).unwrap();
     assert_eq!((run.cut.slices, run.cut.steps_per_turn, run.setup.damping_scale), (8, 90, 2.0));
-    assert_eq!((run.look.height, run.look.cutoff, run.look.window), (1.2e-3, 0.8e-3, Some([0.4, 1.4])));
+    assert_eq!(
+        (run.evaluation.height, run.evaluation.cutoff, run.evaluation.window),
+        (1.2e-3, 0.8e-3, Some([0.4, 1.4]))
+    );
     // The figures of the variant that is run, which is the first where none is named.
-    let published = run.look.published.unwrap();
-    assert_eq!(published.forces.unwrap()[1].least, -111.39);
+    let published = run.evaluation.published.unwrap();
+    assert_eq!(published.forces.unwrap()[1].min, -111.39);
     assert_eq!(published.roughness.unwrap().total, 13.5e-6);
-    assert_eq!((run.plan.way, run.plan.points, run.plan.deepest), (0.02, 10, 0.005));
-    assert_eq!(run.plan.frequencies, [0.0, 100.0]);
-    assert!((run.plan.speeds[1] - 20000.0 / 60.0 * TAU).abs() < 1e-9);
+    assert_eq!((run.analysis.distance, run.analysis.points, run.analysis.max_depth), (0.02, 10, 0.005));
+    assert_eq!(run.analysis.frequencies, [0.0, 100.0]);
+    assert!((run.analysis.speeds[1] - 20000.0 / 60.0 * TAU).abs() < 1e-9);
 }
 
 /// Also with runout, which makes the mean radius another than half the diameter.
@@ -109,14 +112,14 @@ fn a_cut_of_the_whole_diameter_is_a_slot() {
     assert!(!run.cut.is_slot(&run.cutter) && run.cut.radial_depth == 9.9e-3);
 }
 
-/// A survey makes no steps, so that a slow pass and a slow spindle are none of its business.
+/// A stability analysis makes no steps, so that a slow pass and a slow spindle are none of its business.
 #[test]
 fn a_survey_does_not_ask_for_steps() {
     let text = shipped("umons-aluminium.toml").replace("window_s", "# window_s");
     for (from, to) in [("= 3700.0 ", "= 0.1 "), ("spindle_rpm = 18700.0", "spindle_rpm = 50.0")] {
         let text = text.replacen(from, to, 1);
         assert!(read(&text).is_err());
-        assert!(read_by(read_survey, &text).is_ok());
+        assert!(read_by(read_stability, &text).is_ok());
     }
 }
 

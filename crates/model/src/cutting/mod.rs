@@ -8,18 +8,18 @@
 //! - [`MillingTool`] knows the geometry of a tooth, so its force has an axial part and comes with its moment (Klimchik 2017,
 //!   section 2.2).
 //! - [`Engagement`] says over which arcs of a turn a tooth cuts. Means are closed forms of integrals over these arcs.
-//! - [`Course`] is the wrench of a milling tool while it moves into the work, and over one turn, to be reported.
+//! - [`ForceHistory`] is the wrench of a milling tool while it moves into the work, and over one turn, to be reported.
 
-mod course;
 mod engagement;
+mod force_history;
 mod milling_tool;
 mod model;
 mod rotation;
 #[cfg(test)]
 mod tests;
 
-pub use course::{Course, Sample};
 pub use engagement::{Arc, Engagement, EngagementError, Integrals};
+pub use force_history::{ForceHistory, Sample};
 pub use milling_tool::MillingTool;
-pub use model::{CuttingModel, Milling, Side};
+pub use model::{CuttingModel, MillingDirection, Side};
 pub use rotation::Rotation;

@@ -32,7 +32,7 @@ impl Side {
 
 /// How the teeth meet the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Milling {
+pub enum MillingDirection {
     /// Up milling: the chip starts at zero thickness.
     Conventional,
     /// Down milling: the chip ends at zero thickness.
@@ -49,7 +49,7 @@ pub struct CuttingModel {
     /// Sense of rotation.
     pub rotation: Rotation,
     /// Conventional or climb milling; with the rotation this says on which side the wall is.
-    pub milling: Milling,
+    pub milling: MillingDirection,
     /// Width of cut a_e. m
     pub radial_depth: f64,
     /// Depth of cut a_p. m
@@ -76,8 +76,10 @@ impl CuttingModel {
     /// The side of the path on which the machined wall stands.
     pub fn wall(&self) -> Side {
         match (self.rotation, self.milling) {
-            (Rotation::Clockwise, Milling::Conventional) | (Rotation::Counterclockwise, Milling::Climb) => Side::Left,
-            (Rotation::Clockwise, Milling::Climb) | (Rotation::Counterclockwise, Milling::Conventional) => Side::Right,
+            (Rotation::Clockwise, MillingDirection::Conventional)
+            | (Rotation::Counterclockwise, MillingDirection::Climb) => Side::Left,
+            (Rotation::Clockwise, MillingDirection::Climb)
+            | (Rotation::Counterclockwise, MillingDirection::Conventional) => Side::Right,
         }
     }
 
@@ -95,8 +97,8 @@ impl CuttingModel {
         let edge_t = self.axial_depth * self.tangential_edge;
         let edge_r = self.axial_depth * self.radial_edge;
         let against = match self.milling {
-            Milling::Conventional => -1.0,
-            Milling::Climb => 1.0,
+            MillingDirection::Conventional => -1.0,
+            MillingDirection::Climb => 1.0,
         };
         let per_turn = f64::from(self.teeth) / TAU;
         let feed = against * (chip_t * turn.sine_cosine + edge_t * turn.cosine)
@@ -155,7 +157,7 @@ mod tests {
             diameter: 0.016,
             teeth: 4,
             rotation: Rotation::Clockwise,
-            milling: Milling::Conventional,
+            milling: MillingDirection::Conventional,
             radial_depth: 0.002,
             axial_depth: 0.005,
             feed_per_tooth: 5e-5,
@@ -185,7 +187,7 @@ mod tests {
         ) {
             let model = CuttingModel {
                 rotation: if clockwise { Rotation::Clockwise } else { Rotation::Counterclockwise },
-                milling: if climb { Milling::Climb } else { Milling::Conventional },
+                milling: if climb { MillingDirection::Climb } else { MillingDirection::Conventional },
                 ..five_segments()
             };
             // A tooth at a compass angle, turning; the wall stands on one side, the work reaches `depth` from it.

@@ -136,8 +136,8 @@ fn both_models_agree_where_they_say_the_same() {
     for rotation in [Rotation::Clockwise, Rotation::Counterclockwise] {
         let tool = MillingTool { rotation, rake: 0.1, friction: 0.5, ..plain() };
         for (milling, engagement) in [
-            (Milling::Conventional, Engagement::up as fn(f64, f64) -> Result<Engagement, EngagementError>),
-            (Milling::Climb, Engagement::down),
+            (MillingDirection::Conventional, Engagement::up as fn(f64, f64) -> Result<Engagement, EngagementError>),
+            (MillingDirection::Climb, Engagement::down),
         ] {
             let model = CuttingModel {
                 diameter: 0.01,

@@ -64,7 +64,7 @@ pub struct Frames<T: Scalar> {
 }
 
 impl<T: Scalar> Frames<T> {
-    /// The frames for joint angles `theta` in rad, limits not looked at.
+    /// The frames for joint angles `theta` in rad, joint limits ignored.
     pub fn new(robot: &Robot, theta: &[T; 6]) -> Self {
         let mut pose = Pose::<T>::identity();
         let mut axes = [Vector3::zeros(); 6];
@@ -107,7 +107,7 @@ impl<T: Scalar> Frames<T> {
 }
 
 impl Robot {
-    /// Frame 6 in the base frame for joint angles `theta` in rad, limits not looked at.
+    /// Frame 6 in the base frame for joint angles `theta` in rad, joint limits ignored.
     pub fn forward<T: Scalar>(&self, theta: &[T; 6]) -> Pose<T> {
         Frames::new(self, theta).base_from_flange
     }

@@ -50,7 +50,7 @@ const SINGULAR: f64 = 1e-12;
 
 impl Robot {
     /// The joint angles (rad, theta_1, 2, 4, 5, 6 in (-pi, pi], theta_3 within a turn of that) that bring frame 6 to
-    /// `base_from_flange` in the given posture. Joint limits are not looked at: see [`super::turns`].
+    /// `base_from_flange` in the given posture. Joint limits are ignored: see [`super::turns`].
     ///
     /// # Errors
     /// [`Unreachable`] when the wrist centre is out of the arm's geometric reach.

@@ -48,7 +48,7 @@ pub fn equilibrium(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<[f64;
                 share = next;
                 step *= 2.0;
             }
-            None if step > LEAST_LOAD_STEP => step /= 2.0,
+            None if step > MIN_LOAD_STEP => step /= 2.0,
             None => return Err(NoEquilibrium { share }),
         }
     }
@@ -70,9 +70,9 @@ pub fn displaced(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<Displac
 }
 
 /// The load is not applied in smaller steps than this share.
-const LEAST_LOAD_STEP: f64 = 1.0 / 4096.0;
+const MIN_LOAD_STEP: f64 = 1.0 / 4096.0;
 /// Newton steps at the most; convergence is quadratic.
-const MOST_STEPS: usize = 20;
+const MAX_STEPS: usize = 20;
 /// A Newton step that turns a joint farther than this does not follow the arm any more. rad
 const WIDEST_STEP: f64 = 0.5;
 /// A Newton step below this is the last: the next would be below its square. rad
@@ -91,7 +91,7 @@ fn settle(
     let (force, moment) = (load.force * share, load.moment * share);
     let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
     let mut is_last = false;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let frames = Frames::new(robot, &turned(theta, roots, &deflection));
         let point = frames.base_from_flange.point(&load.point);
         let inverse = inverse_tangent(&load_hessian(&frames, &point, &force, &moment), roots).ok()?;

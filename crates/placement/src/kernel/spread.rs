@@ -107,7 +107,7 @@ impl Spread {
         directions: &[[Lanes<S>; 2]; 6],
         compliances: &[Lanes<S>; 6],
     ) -> Lanes<S> {
-        let mut gradient = [Lanes::splat(simd, 0.0); Uncertainty::MOST_PARAMETERS];
+        let mut gradient = [Lanes::splat(simd, 0.0); Uncertainty::MAX_PARAMETERS];
         for (entry, (j, slope)) in gradient.iter_mut().zip(&self.slopes) {
             *entry = parts[*j] * slope.at(&limits[*j], directions[*j], compliances[*j]);
         }

@@ -1,29 +1,31 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
-use super::super::json::{Timing, inputs};
-use super::super::number::Unit;
 use super::{AssessmentContext, elbow, load};
+use crate::document::{Document, Timing};
+use crate::units::Unit;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
-use stead_assessment::printed::Agreement;
-use stead_assessment::study::{Assessment, Configuration, ElbowNames, RobotResult, Spot, Study, Zones};
+use stead_assessment::comparison::{Assessment, Comparison, Configuration, ElbowNames, MapPoint, RobotResult, Zones};
+use stead_assessment::published::Agreement;
 
 /// What `stead assess --json` prints.
 pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing: &Timing) -> Value {
-    let mut document = common(assessment, context);
-    document.insert("threads".to_owned(), json!(timing.threads));
-    document.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
-    Value::Object(document)
+    let mut entries = common(assessment, context);
+    entries.insert("threads".to_owned(), json!(timing.threads));
+    entries.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
+    document(context, entries)
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs.
-pub fn summary_json(study: &Study, assessment: &Assessment, context: &AssessmentContext) -> Value {
-    let mut document = common(assessment, context);
-    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
-    document.insert("inputs".to_owned(), inputs(&context.inputs));
-    document.insert("benchmark".to_owned(), benchmark(study, context.range_share));
-    Value::Object(document)
+pub fn summary_json(comparison: &Comparison, assessment: &Assessment, context: &AssessmentContext) -> Value {
+    let mut entries = common(assessment, context);
+    entries.insert("benchmark".to_owned(), benchmark(comparison, context.range_share));
+    document(context, entries)
+}
+
+fn document(context: &AssessmentContext, entries: Map<String, Value>) -> Value {
+    Document::new(&context.inputs).notes(&context.notes).with(Value::Object(entries))
 }
 
 fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {
@@ -41,7 +43,7 @@ fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, V
             "robots": cell.robots,
         })
     });
-    let agreement = context.printed.as_ref().map(|(printed, agreement)| reference(&printed.source, agreement));
+    let agreement = context.published.as_ref().map(|(published, agreement)| reference(&published.source, agreement));
     Map::from_iter([
         ("robots".to_owned(), assessment.robots.iter().map(robot).collect()),
         ("order".to_owned(), json!(assessment.order)),
@@ -63,18 +65,18 @@ fn robot(robot: &RobotResult) -> Value {
 }
 
 fn configuration(configuration: &Configuration) -> Value {
-    let value = |spot: Option<Spot>| optional(spot.map(|spot| spot.circularity));
-    let place = |spot: Option<Spot>| spot.map_or(Value::Null, |spot| centre(spot.centre));
+    let value = |spot: Option<MapPoint>| optional(spot.map(|spot| spot.circularity));
+    let place = |spot: Option<MapPoint>| spot.map_or(Value::Null, |spot| centre(spot.centre));
     json!({
         "elbow": elbow(configuration.elbow),
         "load": load(configuration.load),
         "force_n": Unit::FORCE_N.number(configuration.force),
         "circles": configuration.circles,
         "circles_too_soft": configuration.too_soft,
-        "min_mm": value(configuration.least),
-        "min_at": place(configuration.least),
-        "max_mm": value(configuration.most),
-        "max_at": place(configuration.most),
+        "min_mm": value(configuration.min),
+        "min_at": place(configuration.min),
+        "max_mm": value(configuration.max),
+        "max_at": place(configuration.max),
         "middle_mm": value(configuration.middle),
         "middle_at": place(configuration.middle),
         "zones": configuration.zones.iter().map(zones).collect::<Vec<_>>(),
@@ -115,12 +117,12 @@ fn reference(source: &str, agreement: &Agreement) -> Value {
     })
 }
 
-fn benchmark(study: &Study, range_share: Option<f64>) -> Value {
+fn benchmark(comparison: &Comparison, range_share: Option<f64>) -> Value {
     let Benchmark { plane, radius, points, wrench, turning, base_from_tool, yielding, limits_at, stiffness, .. } =
-        &study.benchmark;
+        &comparison.benchmark;
     let vector = |unit: Unit, v: &Vector3<f64>| [v.x, v.y, v.z].map(|part| unit.number(part));
-    let last = study.grid.at(study.grid.counts.map(|count| (count - 1) as f64));
-    let ends = |axis: usize| [study.grid.origin[axis], last[axis]].map(|end| Unit::PLACE_MM.number(end));
+    let last = comparison.grid.at(comparison.grid.counts.map(|count| (count - 1) as f64));
+    let ends = |axis: usize| [comparison.grid.origin[axis], last[axis]].map(|end| Unit::PLACE_MM.number(end));
     let joints: Vec<usize> = (1..=6).filter(|joint| yielding[joint - 1]).collect();
     json!({
         "plane": {
@@ -133,23 +135,23 @@ fn benchmark(study: &Study, range_share: Option<f64>) -> Value {
         "force_n": vector(Unit::FORCE_N, &wrench.force),
         "moment_nm": vector(Unit::MOMENT_NM, &wrench.moment),
         "force_turns": match turning { Turning::WithTool => "with-tool", Turning::AgainstTool => "against-tool" },
-        "traced": if study.benchmark.flange_from_tool.is_some() { "tool" } else { "wrist-centre" },
+        "traced": if comparison.benchmark.flange_from_tool.is_some() { "tool" } else { "wrist-centre" },
         "tool_axis": vector(Unit::PLAIN, &-base_from_tool.column(2).into_owned()),
         "limits_at": match limits_at { LimitsAt::Circle => "circle", LimitsAt::Centre => "centre" },
-        "elbow_names": match study.elbow_names {
+        "elbow_names": match comparison.elbow_names {
             ElbowNames::Geometric => "geometric",
             ElbowNames::Swapped => "swapped",
         },
         "joints": joints,
         "range_share": range_share,
         "loaded": *stiffness == StiffnessModel::Loaded,
-        "rated_share": study.rated_share,
-        "gravity_m_per_s2": study.selection.gravity,
-        "remaining_share": study.selection.remaining_share,
+        "rated_share": comparison.rated_share,
+        "gravity_m_per_s2": comparison.selection.gravity,
+        "remaining_share": comparison.selection.remaining_share,
         "map": {
             "x_mm": ends(0),
             "y_mm": ends(1),
-            "step_mm": Unit::PLACE_MM.number(study.grid.step),
+            "step_mm": Unit::PLACE_MM.number(comparison.grid.step),
         },
     })
 }

@@ -8,25 +8,27 @@ pub use json::{assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
-use super::{cutting, json as documents, picture};
+use super::{cutting, document as documents, picture};
 use std::path::PathBuf;
+use stead_assessment::comparison::{Assessment, Comparison, Load};
 use stead_assessment::map::Elbow;
-use stead_assessment::printed::{Agreement, Printed};
-use stead_assessment::study::{Assessment, Load, Study};
+use stead_assessment::published::{Agreement, PublishedTables};
 use stead_format::input::InputFile;
-use stead_model::cutting::Course;
+use stead_model::cutting::ForceHistory;
 
-/// What the reports of an assessment state besides the study and its result.
+/// What the reports of an assessment state besides the comparison and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AssessmentContext {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the result rests on: assumptions made and values left at their defaults.
+    pub notes: Vec<String>,
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.
-    pub printed: Option<(Printed, Agreement)>,
+    pub published: Option<(PublishedTables, Agreement)>,
     /// The cutting forces behind the load, where they were computed.
-    pub course: Option<Course>,
+    pub force_history: Option<ForceHistory>,
 }
 
 /// Writes everything that an assessment reports into a folder: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
@@ -38,7 +40,7 @@ pub struct AssessmentContext {
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
 pub fn write_assessment(
     folder: &Folder,
-    study: &Study,
+    comparison: &Comparison,
     assessment: &Assessment,
     context: &AssessmentContext,
 ) -> Result<Vec<PathBuf>, ReportError> {
@@ -46,21 +48,21 @@ pub fn write_assessment(
     for (index, robot) in assessment.robots.iter().enumerate() {
         let name = format!("map-{}", file_name(assessment, index));
         files.push((format!("{name}.csv"), tables::map(robot)?));
-        files.push((format!("{name}.svg"), picture::circularity_map(study, robot)?.into_bytes()));
+        files.push((format!("{name}.svg"), picture::circularity_map(comparison, robot)?.into_bytes()));
     }
-    let printed = context.printed.as_ref().map(|(printed, _)| printed);
+    let published = context.published.as_ref().map(|(published, _)| published);
     let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
-    add("circularity.csv", tables::circularity(assessment, printed)?);
-    add("optimal-zones.csv", tables::optimal_zones(assessment, printed)?);
-    add("middle-zones.csv", tables::middle_zones(assessment, printed)?);
-    add("accuracy.csv", tables::accuracy(assessment, printed)?);
-    add("selection.csv", tables::selection(assessment, printed)?);
+    add("circularity.csv", tables::circularity(assessment, published)?);
+    add("optimal-zones.csv", tables::optimal_zones(assessment, published)?);
+    add("middle-zones.csv", tables::middle_zones(assessment, published)?);
+    add("accuracy.csv", tables::accuracy(assessment, published)?);
+    add("selection.csv", tables::selection(assessment, published)?);
     add("indicators.svg", picture::indicators(assessment)?.into_bytes());
-    add("summary.json", documents::bytes(&summary_json(study, assessment, context)));
-    if let Some(course) = &context.course {
-        add("cutting.svg", picture::cutting(course)?.into_bytes());
-        add("cutting-engagement.csv", cutting::entering(course)?);
-        add("cutting-turn.csv", cutting::turn(course)?);
+    add("summary.json", documents::bytes(&summary_json(comparison, assessment, context)));
+    if let Some(force_history) = &context.force_history {
+        add("cutting.svg", picture::cutting(force_history)?.into_bytes());
+        add("cutting-engagement.csv", cutting::entering(force_history)?);
+        add("cutting-turn.csv", cutting::turn(force_history)?);
     }
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

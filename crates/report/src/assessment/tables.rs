@@ -2,12 +2,12 @@
 //! circles in the coordinates of the plane. Columns `printed_*` are published values: `-` for a dash, empty where nothing
 //! is published.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{elbow, load};
-use stead_assessment::printed::{Printed, Quantity};
-use stead_assessment::study::{Assessment, Configuration, RobotResult, Spot, Zones};
+use crate::csv_file::table;
+use crate::units::Unit;
+use stead_assessment::comparison::{Assessment, Configuration, MapPoint, RobotResult, Zones};
+use stead_assessment::published::{PublishedTables, Quantity};
 
 /// `map-ROBOT.csv`: every circle that can be milled; a column is empty where the arm is too soft for that load, and the rated one where the
 /// payload is not known.
@@ -38,7 +38,7 @@ fn key(robot: &RobotResult, configuration: &Configuration) -> Vec<String> {
 }
 
 /// A value and its place, empty where there is none.
-fn spot(spot: Option<Spot>) -> [String; 3] {
+fn spot(spot: Option<MapPoint>) -> [String; 3] {
     let Some(spot) = spot else { return Default::default() };
     let [x, y] = spot.centre.map(|place| Unit::PLACE_MM.text(place));
     [Unit::DEFLECTION_MM.text(spot.circularity), x, y]
@@ -54,12 +54,20 @@ fn printed_text(value: Option<Option<f64>>) -> String {
     }
 }
 
-fn printed_value(printed: Option<&Printed>, robot: &RobotResult, of: &Configuration, quantity: Quantity) -> String {
-    printed_text(printed.and_then(|printed| printed.value(&robot.name, of.elbow, of.load, quantity)))
+fn printed_value(
+    published: Option<&PublishedTables>,
+    robot: &RobotResult,
+    of: &Configuration,
+    quantity: Quantity,
+) -> String {
+    printed_text(published.and_then(|published| published.value(&robot.name, of.elbow, of.load, quantity)))
 }
 
 /// `circularity.csv` (Klimchik 2017, Table 5).
-pub(super) fn circularity(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {
+pub(super) fn circularity(
+    assessment: &Assessment,
+    published: Option<&PublishedTables>,
+) -> Result<Vec<u8>, ReportError> {
     let header = [
         "robot",
         "elbow",
@@ -82,9 +90,9 @@ pub(super) fn circularity(assessment: &Assessment, printed: Option<&Printed>) ->
     let rows = configurations(assessment).map(|(robot, configuration)| {
         let mut row = key(robot, configuration);
         row.push(configuration.circles.to_string());
-        row.extend([configuration.least, configuration.most, configuration.middle].into_iter().flat_map(spot));
+        row.extend([configuration.min, configuration.max, configuration.middle].into_iter().flat_map(spot));
         let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle];
-        row.extend(quantities.map(|quantity| printed_value(printed, robot, configuration, quantity)));
+        row.extend(quantities.map(|quantity| printed_value(published, robot, configuration, quantity)));
         row
     });
     table("the table of circularities", &header, rows)
@@ -94,19 +102,27 @@ const ZONE: [&str; 9] =
     ["robot", "elbow", "load", "force_n", "size_mm", "largest_mm", "centre_x_mm", "centre_y_mm", "printed_mm"];
 
 /// `optimal-zones.csv` (Klimchik 2017, Table 6).
-pub(super) fn optimal_zones(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {
-    zones("the table of optimal zones", assessment, printed, |zones| (zones.optimal, Quantity::OptimalZone(zones.side)))
+pub(super) fn optimal_zones(
+    assessment: &Assessment,
+    published: Option<&PublishedTables>,
+) -> Result<Vec<u8>, ReportError> {
+    zones("the table of optimal zones", assessment, published, |zones| {
+        (zones.optimal, Quantity::OptimalZone(zones.side))
+    })
 }
 
 /// `middle-zones.csv` (Klimchik 2017, Table 7).
-pub(super) fn middle_zones(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {
-    zones("the table of middle zones", assessment, printed, |zones| (zones.middle, Quantity::MiddleZone(zones.side)))
+pub(super) fn middle_zones(
+    assessment: &Assessment,
+    published: Option<&PublishedTables>,
+) -> Result<Vec<u8>, ReportError> {
+    zones("the table of middle zones", assessment, published, |zones| (zones.middle, Quantity::MiddleZone(zones.side)))
 }
 
 fn zones(
     what: &'static str,
     assessment: &Assessment,
-    printed: Option<&Printed>,
+    published: Option<&PublishedTables>,
     of: impl Fn(&Zones) -> (Option<stead_assessment::zone::Zone>, Quantity),
 ) -> Result<Vec<u8>, ReportError> {
     let rows = configurations(assessment).flat_map(|(robot, configuration)| {
@@ -115,8 +131,8 @@ fn zones(
             let (zone, quantity) = of(zones);
             let mut row = key(robot, configuration);
             row.push(Unit::PLACE_MM.text(zones.side));
-            row.extend(spot(zone.map(|zone| Spot { centre: zone.centre, circularity: zone.largest })));
-            row.push(printed_value(printed, robot, configuration, quantity));
+            row.extend(spot(zone.map(|zone| MapPoint { centre: zone.centre, circularity: zone.largest })));
+            row.push(printed_value(published, robot, configuration, quantity));
             row
         })
     });
@@ -125,10 +141,10 @@ fn zones(
 
 /// `accuracy.csv` (Klimchik 2017, Table 8): circularity at the best place, in proportion to the force; empty where the force
 /// is above the payload.
-pub(super) fn accuracy(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {
+pub(super) fn accuracy(assessment: &Assessment, published: Option<&PublishedTables>) -> Result<Vec<u8>, ReportError> {
     let header = ["robot", "force_n", "circularity_mm", "printed_mm"];
     let rows = assessment.accuracies.iter().map(|cell| {
-        let value = printed.and_then(|printed| printed.accuracy(&cell.robot, cell.force));
+        let value = published.and_then(|published| published.accuracy(&cell.robot, cell.force));
         vec![
             cell.robot.clone(),
             Unit::FORCE_N.text(cell.force),
@@ -140,10 +156,10 @@ pub(super) fn accuracy(assessment: &Assessment, printed: Option<&Printed>) -> Re
 }
 
 /// `selection.csv` (Klimchik 2017, Table 9): names with semicolons between.
-pub(super) fn selection(assessment: &Assessment, printed: Option<&Printed>) -> Result<Vec<u8>, ReportError> {
+pub(super) fn selection(assessment: &Assessment, published: Option<&PublishedTables>) -> Result<Vec<u8>, ReportError> {
     let header = ["accuracy_mm", "force_n", "robots", "printed_robots"];
     let rows = assessment.capable.iter().map(|cell| {
-        let published = printed.map(|printed| printed.robots(cell.accuracy, cell.force).join("; "));
+        let published = published.map(|published| published.robots(cell.accuracy, cell.force).join("; "));
         vec![
             Unit::DEFLECTION_MM.text(cell.accuracy),
             Unit::FORCE_N.text(cell.force),

@@ -1,12 +1,12 @@
 use super::*;
-use crate::json::Timing;
+use crate::document::Timing;
 use serde_json::Value;
 use std::path::Path;
-use stead_assessment::study::assess;
+use stead_assessment::comparison::assess;
 use stead_format::read_assessment;
 
 /// The published study, table-compatible, on a coarse map, with one piece of the file replaced.
-fn study(from: &str, to: &str) -> (Study, AssessmentContext) {
+fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs");
     let text = std::fs::read_to_string(configs.join("klimchik-2017-table-compatible.toml")).unwrap();
     assert!(text.contains(from), "{from}");
@@ -18,12 +18,21 @@ fn study(from: &str, to: &str) -> (Study, AssessmentContext) {
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).unwrap();
     let run = read_assessment(&file).unwrap_or_else(|e| panic!("{e}"));
-    let assessment = assess(&run.study, &|_, _| true).unwrap();
-    let printed = run.printed.map(|printed| {
-        let agreement = printed.agreement(&assessment);
-        (printed, agreement)
+    let assessment = assess(&run.comparison, &|_, _| true).unwrap();
+    let published = run.published.map(|published| {
+        let agreement = published.agreement(&assessment);
+        (published, agreement)
     });
-    (run.study, AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed, course: run.course })
+    (
+        run.comparison,
+        AssessmentContext {
+            inputs: run.inputs,
+            notes: run.notes,
+            range_share: run.range_share,
+            published,
+            force_history: run.force_history,
+        },
+    )
 }
 
 fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
@@ -32,11 +41,11 @@ fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
 
 #[test]
 fn tables_and_documents_tell_the_same() {
-    let (study, context) = study("radius_mm", "radius_mm");
-    let assessment = assess(&study, &|_, _| true).unwrap();
-    let printed = context.printed.as_ref().map(|(printed, _)| printed);
+    let (comparison, context) = comparison("radius_mm", "radius_mm");
+    let assessment = assess(&comparison, &|_, _| true).unwrap();
+    let published = context.published.as_ref().map(|(published, _)| published);
     let document = assess_json(&assessment, &context, &Timing { wall: 1.5, threads: 2 });
-    let table = rows(&tables::circularity(&assessment, printed).unwrap());
+    let table = rows(&tables::circularity(&assessment, published).unwrap());
     assert_eq!(table.len(), 20);
     let mut row = table.iter();
     for robot in document["robots"].as_array().unwrap() {
@@ -52,7 +61,7 @@ fn tables_and_documents_tell_the_same() {
     }
     // KR 100 HA, elbow up, test load: Table 5.
     assert_eq!([14, 15, 16].map(|column| &table[0][column]), ["1.5", "3.28", "2.1"]);
-    let zones = rows(&tables::optimal_zones(&assessment, printed).unwrap());
+    let zones = rows(&tables::optimal_zones(&assessment, published).unwrap());
     assert_eq!((zones.len(), &zones[3][4], &zones[3][8]), (80, "1000.0000", "-"));
     // Table 6 is of the test load alone.
     assert_eq!(&zones[8][2], "rated");
@@ -84,8 +93,14 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
                 x_mm = [2600, 2700]\ny_mm = [1300, 1500]\nstep_mm = 100\n";
     std::fs::write(folder.path().join("study.toml"), text).unwrap();
     let run = read_assessment(&folder.path().join("study.toml")).unwrap();
-    let assessment = assess(&run.study, &|_, _| true).unwrap();
-    let context = AssessmentContext { inputs: run.inputs, range_share: run.range_share, printed: None, course: None };
+    let assessment = assess(&run.comparison, &|_, _| true).unwrap();
+    let context = AssessmentContext {
+        inputs: run.inputs,
+        notes: run.notes,
+        range_share: run.range_share,
+        published: None,
+        force_history: None,
+    };
     let document = assess_json(&assessment, &context, &Timing { wall: 0.0, threads: 1 });
     assert_eq!(document["robots"][0]["configurations"].as_array().unwrap().len(), 2);
     assert_eq!(document["robots"][1]["configurations"].as_array().unwrap().len(), 4);
@@ -97,7 +112,8 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
     // Both names make the same file name.
     assert_eq!([0, 1].map(|index| file_name(&assessment, index)), ["kuka-kr-500", "kuka-kr-500-2"]);
     let out = tempfile::tempdir().unwrap();
-    let written = write_assessment(&Folder::create(out.path()).unwrap(), &run.study, &assessment, &context).unwrap();
+    let written =
+        write_assessment(&Folder::create(out.path()).unwrap(), &run.comparison, &assessment, &context).unwrap();
     assert_eq!(written.len(), 11);
     let map = rows(&std::fs::read(out.path().join("map-kuka-kr-500.csv")).unwrap());
     assert!(!map.is_empty() && map.iter().all(|row| row[4].is_empty() && row[3].parse::<f64>().unwrap() > 0.0));

@@ -1,18 +1,18 @@
 //! The short tables for people.
 
-use super::super::number::{figures, fixed};
-use super::super::text::aligned;
 use super::{AssessmentContext, elbow, load};
-use stead_assessment::benchmark::MOST_DEFLECTION;
-use stead_assessment::printed::{Printed, Quantity};
-use stead_assessment::study::{Assessment, Configuration, RobotResult, obstacle_words};
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
+use stead_assessment::benchmark::MAX_DEFLECTION;
+use stead_assessment::comparison::{Assessment, Configuration, RobotResult, obstacle_words};
+use stead_assessment::published::{PublishedTables, Quantity};
 
 /// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published values
 /// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
 /// tables agree.
 pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
-    let printed = context.printed.as_ref().map(|(printed, _)| printed);
-    let mut text = aligned(&configuration_rows(assessment, printed), &[0, 1, 2]);
+    let published = context.published.as_ref().map(|(published, _)| published);
+    let mut text = aligned(&configuration_rows(assessment, published), &[0, 1, 2]);
     for robot in assessment.robots.iter().filter(|robot| robot.maps.iter().any(|(_, map)| map.count() == 0)) {
         for (name, map) in robot.maps.iter().filter(|(_, map)| map.count() == 0) {
             let why = obstacle_words(&map.obstacles(), map.nodes.len());
@@ -22,7 +22,7 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
     let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
     for (robot, configuration) in every.filter(|(_, configuration)| configuration.too_soft > 0) {
         text += &format!(
-            "{}, elbow {}, {} load: {} circles left out, deflected by more than {MOST_DEFLECTION} of the radius\n",
+            "{}, elbow {}, {} load: {} circles left out, deflected by more than {MAX_DEFLECTION} of the radius\n",
             robot.name,
             elbow(configuration.elbow),
             load(configuration.load),
@@ -38,12 +38,12 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
         text += &aligned(&selection_rows(assessment), &[0]);
     }
     text += &format!("\nmost accurate first: {}\n", assessment.order.join(", "));
-    if let Some((printed, agreement)) = &context.printed {
+    if let Some((published, agreement)) = &context.published {
         let same = |same: bool| if same { "the same" } else { "another" };
         text += &format!(
             "in parentheses: {}\nrms difference {} % over {} values, {} more on one side only\n\
              best robot {}, worst {}, order {}; robots for accuracy and force the same in {} of {} cells\n",
-            printed.source,
+            published.source,
             fixed(agreement.rms * 100.0, 1),
             agreement.readings,
             agreement.one_sided,
@@ -57,7 +57,7 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
     text
 }
 
-fn configuration_rows(assessment: &Assessment, printed: Option<&Printed>) -> Vec<Vec<String>> {
+fn configuration_rows(assessment: &Assessment, published: Option<&PublishedTables>) -> Vec<Vec<String>> {
     let mut header = ["robot", "elbow", "load", "force N", "min mm", "max mm", "middle mm"].map(str::to_owned).to_vec();
     let first = assessment.robots.first().and_then(|robot| robot.configurations.first());
     let sides: Vec<f64> = first.map_or(vec![], |configuration| configuration.zones.iter().map(|z| z.side).collect());
@@ -70,18 +70,18 @@ fn configuration_rows(assessment: &Assessment, printed: Option<&Printed>) -> Vec
         row.push(fixed(configuration.force, 0));
         let zones = sides.iter().map(|side| Quantity::OptimalZone(*side));
         let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().chain(zones);
-        row.extend(quantities.map(|quantity| cell(robot, configuration, quantity, printed)));
+        row.extend(quantities.map(|quantity| cell(robot, configuration, quantity, published)));
         rows.push(row);
     }
     rows
 }
 
 /// Our value, and the published one in parentheses.
-fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, printed: Option<&Printed>) -> String {
+fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, published: Option<&PublishedTables>) -> String {
     let number =
         |value: Option<f64>, write: fn(f64) -> String| value.map_or_else(|| "-".to_owned(), |v| write(v * 1e3));
     let ours = number(quantity.of(of), figures);
-    match printed.and_then(|printed| printed.value(&robot.name, of.elbow, of.load, quantity)) {
+    match published.and_then(|published| published.value(&robot.name, of.elbow, of.load, quantity)) {
         Some(value) => format!("{ours} ({})", number(value, |mm| fixed(mm, 2))),
         None => ours,
     }

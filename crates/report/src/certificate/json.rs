@@ -1,8 +1,8 @@
 //! `certificate.json`.
 
 use super::{Certificate, Ended, Proof};
-use crate::json::{inputs, placement};
-use crate::number::Unit;
+use crate::document::{Document, placement};
+use crate::units::Unit;
 use serde_json::{Value, json};
 
 /// The content of `certificate.json`, and what `stead place --json` prints under `certificate`. `best` and `worst` are null
@@ -11,9 +11,7 @@ use serde_json::{Value, json};
 pub fn certificate_json(certificate: &Certificate) -> Value {
     let [best, worst] = [&certificate.best, &certificate.worst];
     let nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum();
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "inputs": inputs(&certificate.inputs),
+    Document::new(&certificate.inputs).with(json!({
         "gap_percent_asked": Unit::PLAIN.number(certificate.settings.gap * 100.0),
         "time_limit_s": certificate.settings.time_limit,
         "best": best.as_ref().map_or(Value::Null, side),
@@ -22,7 +20,7 @@ pub fn certificate_json(certificate: &Certificate) -> Value {
         "worst_reason": worst.as_ref().err(),
         "nodes": nodes,
         "wall_s": Unit::TIME_S.number(certificate.wall),
-    })
+    }))
 }
 
 fn side(proof: &Proof) -> Value {

@@ -12,9 +12,9 @@ pub use json::certificate_json;
 pub use tables::open_region;
 pub use text::{certificate_text, ending};
 
-use super::json::bytes;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::document::bytes;
 use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_placement::certify::{Bound, Region};
@@ -68,7 +68,7 @@ pub enum Ended {
 /// Percentages of gaps have this many decimals.
 const GAP_DECIMALS: i32 = 4;
 /// Decimals of a bound in mm, as of any deflection.
-const BOUND_DECIMALS: i32 = super::number::Unit::DEFLECTION_MM.decimals as i32;
+const BOUND_DECIMALS: i32 = crate::units::Unit::DEFLECTION_MM.decimals as i32;
 
 /// Wider gaps are none to speak of in sentences.
 pub const MOST_GAP_PERCENT: f64 = 1000.0;

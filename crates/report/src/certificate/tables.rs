@@ -1,10 +1,10 @@
 //! `open-region.csv`.
 
 use super::{Certificate, OpenBox, open_boxes};
-use crate::number::{Unit, fixed};
+use crate::csv_file::table;
+use crate::names;
 use crate::output::ReportError;
-use crate::tables::table;
-use crate::words;
+use crate::units::{Unit, fixed};
 use stead_placement::problem::Problem;
 
 /// `open-region.csv`: the boxes of placements that may still hold one better (or worse) than the value found by more than the
@@ -28,7 +28,7 @@ pub fn open_region(problem: &Problem, certificate: &Certificate) -> Result<Vec<u
     let rows = proofs.flat_map(|proof| {
         open_boxes(problem, proof).into_iter().map(|open| {
             let OpenBox { radius, z, turn, bound } = open;
-            let mut row = vec![words::goal(proof.goal).to_owned()];
+            let mut row = vec![names::goal(proof.goal).to_owned()];
             row.extend([radius, z].into_iter().flatten().map(|value| Unit::PLACE_MM.text(value)));
             row.extend(turn.map(|value| Unit::ANGLE_DEG.text(value)));
             let bound = proof.rounded_mm(bound);

@@ -1,7 +1,7 @@
 //! The certificate in sentences.
 
 use super::{Certificate, Ended, Proof};
-use crate::number::{Unit, figures, fixed};
+use crate::units::{Unit, figures, fixed};
 use stead_placement::outcome::Goal;
 
 /// Widest line.

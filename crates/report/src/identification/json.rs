@@ -1,8 +1,9 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
-use super::super::json::inputs;
-use super::super::number::Unit;
+use super::text::notes;
 use super::{URAD, key, rounded};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::Parameter;
@@ -23,10 +24,8 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         .map(|(index, rms)| json!({ "configuration": sheet.configurations[index].name, "rms_mm": millimetres(rms) }));
     let unpredicted: Vec<&str> =
         found.prediction.unpredicted.iter().map(|index| sheet.configurations[*index].name.as_str()).collect();
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
+    Document::new(&run.inputs).notes(&run.notes).warnings(notes(run, found)).with(json!({
         "robot": found.robot.name(),
-        "inputs": inputs(&run.inputs),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
         "compliances": found.compliances.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
@@ -52,7 +51,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
             "unpredicted": unpredicted,
         },
         "setup": setup(run, found),
-    })
+    }))
 }
 
 /// Lengths, with the digits of any deflection and more where they are tiny.

@@ -12,7 +12,7 @@ pub use json::identify_json;
 pub use robot_file::robot_file;
 pub use text::identify_text;
 
-use super::json as documents;
+use super::document as documents;
 use super::output::{Folder, ReportError};
 use super::picture;
 use std::path::PathBuf;

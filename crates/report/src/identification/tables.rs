@@ -1,9 +1,9 @@
 //! The CSV files of an identification.
 
-use super::super::number::{Unit, fixed};
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{URAD, key, rounded, unit};
+use crate::csv_file::table;
+use crate::units::{Unit, fixed};
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::model::Parameter;
 use stead_format::IdentifyRun;

@@ -1,8 +1,8 @@
 //! The table for people.
 
-use super::super::number::fixed;
-use super::super::text::aligned;
 use super::{URAD, key};
+use crate::columns::aligned;
+use crate::units::fixed;
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::{Layout, Parameter};
 use stead_calibration::identification::outcome::Estimate;
@@ -156,7 +156,7 @@ fn scale_note(run: &IdentifyRun, found: &Identified) -> Option<String> {
 }
 
 /// What the user should know about the result though nothing failed.
-fn notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
+pub(super) fn notes(run: &IdentifyRun, found: &Identified) -> Vec<String> {
     let mut notes = Vec::new();
     let layout = Layout::new(&run.problem.sheet, found.varying, run.problem.angle_tolerance);
     for parameter in &found.held {

@@ -5,15 +5,15 @@ use crate::testing::assert_well_formed;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::OnceLock;
 use stead_assessment::benchmark::{Benchmark, LimitsAt, Obstacle, Plane, StiffnessModel, Turning};
+use stead_assessment::comparison::{Assessment, Comparison, ElbowNames, assess};
 use stead_assessment::map::{Elbow, Grid};
 use stead_assessment::ranking::Selection;
-use stead_assessment::study::{Assessment, ElbowNames, Study, assess};
 use stead_model::robot::Pose;
 use stead_model::task::Wrench;
 
 /// The benchmark of Klimchik 2017 for two of its robots, the tool along the flange axis and towards the plane, over a grid of
 /// so many steps to the metre.
-fn study(steps: usize) -> Study {
+fn comparison(steps: usize) -> Comparison {
     let robots = ["kr500", "kr120-r3900"];
     let robots = robots.map(|name| {
         let path = format!("{}/../../configs/robots/kuka-{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -31,7 +31,7 @@ fn study(steps: usize) -> Study {
         limits_at: LimitsAt::Circle,
         stiffness: StiffnessModel::Unloaded,
     };
-    Study {
+    Comparison {
         robots: robots.to_vec(),
         benchmark,
         grid: Grid { origin: [0.0, -2.0], step: 1.0 / steps as f64, counts: [4 * steps + 1, 6 * steps + 1] },
@@ -42,21 +42,21 @@ fn study(steps: usize) -> Study {
     }
 }
 
-fn small() -> &'static (Study, Assessment) {
-    static SMALL: OnceLock<(Study, Assessment)> = OnceLock::new();
+fn small() -> &'static (Comparison, Assessment) {
+    static SMALL: OnceLock<(Comparison, Assessment)> = OnceLock::new();
     SMALL.get_or_init(|| {
-        let study = study(10);
-        let assessment = assess(&study, &|_, _| true).unwrap();
-        (study, assessment)
+        let comparison = comparison(10);
+        let assessment = assess(&comparison, &|_, _| true).unwrap();
+        (comparison, assessment)
     })
 }
 
 #[test]
 fn maps_are_well_formed_the_same_each_time_and_labelled() {
-    let (study, assessment) = small();
+    let (comparison, assessment) = small();
     for result in &assessment.robots {
-        let svg = circularity_map(study, result).unwrap();
-        assert_eq!(svg, circularity_map(study, result).unwrap());
+        let svg = circularity_map(comparison, result).unwrap();
+        assert_eq!(svg, circularity_map(comparison, result).unwrap());
         assert_well_formed(&svg);
         let title = format!("{}: circularity of a circle of radius 100 mm under 1439 N, mm", result.name);
         let labels =
@@ -69,14 +69,14 @@ fn maps_are_well_formed_the_same_each_time_and_labelled() {
 
 #[test]
 fn a_map_of_ten_thousand_circles_is_small() {
-    let mut study = study(40);
-    study.benchmark.points = 8;
-    study.robots.truncate(1);
-    let assessment = assess(&study, &|_, _| true).unwrap();
+    let mut comparison = comparison(40);
+    comparison.benchmark.points = 8;
+    comparison.robots.truncate(1);
+    let assessment = assess(&comparison, &|_, _| true).unwrap();
     let result = &assessment.robots[0];
     let circles: Vec<usize> = result.maps.iter().map(|(_, map)| map.count()).collect();
     assert!(circles.iter().sum::<usize>() > 10_000, "{circles:?}");
-    let svg = circularity_map(&study, result).unwrap();
+    let svg = circularity_map(&comparison, result).unwrap();
     assert!(svg.len() < 250_000, "{}", svg.len());
     // Finer than the picture shows.
     let mut fine = result.clone();
@@ -86,23 +86,23 @@ fn a_map_of_ten_thousand_circles_is_small() {
         map.nodes = nodes.collect();
         map.grid = Grid { step: map.grid.step / 2.0, counts: [2 * columns, 2 * rows], ..map.grid };
     }
-    let thinned = circularity_map(&study, &fine).unwrap();
+    let thinned = circularity_map(&comparison, &fine).unwrap();
     assert!(thinned.len() < svg.len() * 11 / 10, "{} {}", thinned.len(), svg.len());
 }
 
 #[test]
 fn an_elbow_without_circles_says_so() {
-    let (study, assessment) = small();
+    let (comparison, assessment) = small();
     let mut result = assessment.robots[0].clone();
     let mut clear = |index: usize| {
         let nodes = &mut result.maps[index].1.nodes;
         nodes.iter_mut().for_each(|node| *node = Err(Obstacle::JointLimit(5)));
         let elbow = Elbow::BOTH[index];
         for found in result.configurations.iter_mut().filter(|found| found.elbow == elbow) {
-            (found.circles, found.least, found.most, found.middle) = (0, None, None, None);
+            (found.circles, found.min, found.max, found.middle) = (0, None, None, None);
             found.zones.iter_mut().for_each(|zones| (zones.optimal, zones.middle) = (None, None));
         }
-        circularity_map(study, &result).unwrap()
+        circularity_map(comparison, &result).unwrap()
     };
     let svg = clear(1);
     assert_well_formed(&svg);
@@ -115,18 +115,18 @@ fn an_elbow_without_circles_says_so() {
 
 #[test]
 fn huge_and_tiny_values_are_drawn() {
-    let (study, assessment) = small();
+    let (comparison, assessment) = small();
     for (factor, label) in [(1e9, "e9"), (1e-12, "e-"), (0.0, "smallest 0, ")] {
         let mut result = assessment.robots[0].clone();
         for (_, map) in &mut result.maps {
             map.nodes.iter_mut().flatten().for_each(|values| *values = values.map(|value| value * factor));
         }
         for found in &mut result.configurations {
-            for spot in [&mut found.least, &mut found.middle, &mut found.most].into_iter().flatten() {
+            for spot in [&mut found.min, &mut found.middle, &mut found.max].into_iter().flatten() {
                 spot.circularity *= factor;
             }
         }
-        let svg = circularity_map(study, &result).unwrap();
+        let svg = circularity_map(comparison, &result).unwrap();
         assert_well_formed(&svg);
         assert!(svg.contains(label) && !svg.contains("NaN") && !svg.contains("inf"), "{factor}");
         assert!(svg.len() < 200_000, "{}", svg.len());
@@ -135,15 +135,15 @@ fn huge_and_tiny_values_are_drawn() {
 
 #[test]
 fn a_plane_without_axis_1_shows_no_arm() {
-    let (study, assessment) = small();
-    let mut study = study.clone();
-    study.benchmark.plane.origin.y = 0.5;
-    study.elbow_names = ElbowNames::Swapped;
-    let svg = circularity_map(&study, &assessment.robots[0]).unwrap();
+    let (comparison, assessment) = small();
+    let mut comparison = comparison.clone();
+    comparison.benchmark.plane.origin.y = 0.5;
+    comparison.elbow_names = ElbowNames::Swapped;
+    let svg = circularity_map(&comparison, &assessment.robots[0]).unwrap();
     assert!(svg.contains("plane y = 500 mm") && svg.contains("elbow up, by the names of this study: below the line"));
     assert!(!svg.contains("axis 1") && !svg.contains("shoulder (axis 2)"));
-    study.benchmark.plane.x = Vector3::new(0.6, 0.8, 0.0);
-    let svg = circularity_map(&study, &assessment.robots[0]).unwrap();
+    comparison.benchmark.plane.x = Vector3::new(0.6, 0.8, 0.0);
+    let svg = circularity_map(&comparison, &assessment.robots[0]).unwrap();
     assert!(svg.contains("along the plane") && svg.contains("z (mm)") && !svg.contains("x (mm)"));
 }
 
@@ -165,7 +165,7 @@ fn indicators_show_values_relative_to_the_best_robot() {
 fn indicators_leave_out_what_is_not_known() {
     let mut assessment = small().1.clone();
     assessment.robots[0].data_sheet.price = Some(123_456.0);
-    assessment.robots[0].configurations.iter_mut().for_each(|found| found.least = None);
+    assessment.robots[0].configurations.iter_mut().for_each(|found| found.min = None);
     let svg = indicators(&assessment).unwrap();
     assert!(svg.contains("123456") && svg.contains("the lowest price"));
     // One robot has no accuracy, the other no price.

@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, Drawn, Lettering, Place};
 use super::colour::{GRID, INK};
-use crate::number::fixed;
+use crate::units::fixed;
 
 /// A linear scale from numbers to pixels.
 #[derive(Clone, Copy)]

@@ -6,11 +6,11 @@ use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
 use super::lettering::{lines, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView, Window};
-use crate::number::figures;
 use crate::output::ReportError;
+use crate::units::figures;
 use plotters::style::{BLACK, RGBColor};
+use stead_assessment::comparison::{Comparison, Configuration, ElbowNames, Load, RobotResult, Zones, obstacle_words};
 use stead_assessment::map::{Elbow, Map};
-use stead_assessment::study::{Configuration, ElbowNames, Load, RobotResult, Study, Zones, obstacle_words};
 use stead_assessment::zone::Zone;
 
 const WIDTH: i32 = 1100;
@@ -38,13 +38,13 @@ const WIDENED: f64 = 0.5;
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn circularity_map(study: &Study, result: &RobotResult) -> Result<String, ReportError> {
-    let picture_of = Picture::new(study, result);
+pub fn circularity_map(comparison: &Comparison, result: &RobotResult) -> Result<String, ReportError> {
+    let picture_of = Picture::new(comparison, result);
     picture("the picture of a circularity map", (WIDTH, picture_of.height()), |canvas| picture_of.draw(canvas))
 }
 
 struct Picture<'a> {
-    study: &'a Study,
+    comparison: &'a Comparison,
     result: &'a RobotResult,
     view: PlaneView,
     nodes: [Nodes; 2],
@@ -59,8 +59,8 @@ struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    fn new(study: &'a Study, result: &'a RobotResult) -> Self {
-        let view = PlaneView::new(&study.benchmark.plane);
+    fn new(comparison: &'a Comparison, result: &'a RobotResult) -> Self {
+        let view = PlaneView::new(&comparison.benchmark.plane);
         let [up, down] = &result.maps;
         let extents = [&up.1, &down.1].map(|map| Nodes::new(map, &view, 1).extent());
         let grid = &up.1.grid;
@@ -69,14 +69,14 @@ impl<'a> Picture<'a> {
         let longest = (0..2).map(|k| extent[1][k] - extent[0][k]).fold(0.0, f64::max);
         let stride = ((longest / (grid.step * 1e3)).ceil() as usize).div_ceil(MOST_NODES).max(1);
         let nodes = [&up.1, &down.1].map(|map| Nodes::new(map, &view, stride));
-        let robot = study.robots.iter().find(|robot| robot.name() == result.name);
+        let robot = comparison.robots.iter().find(|robot| robot.name() == result.name);
         let centre = grid.at([0, 1].map(|k| grid.counts[k] as f64 / 2.0));
         let arm = robot.and_then(|robot| view.arm(robot, centre));
         let (window, height) = window(extent, arm.as_ref());
         let bottom = TOP + height;
         let colours = colours(&nodes, bottom);
         let mut picture =
-            Self { study, result, view, nodes, window, bottom, colours, arm, zone_lines: Default::default() };
+            Self { comparison, result, view, nodes, window, bottom, colours, arm, zone_lines: Default::default() };
         picture.zone_lines = Elbow::BOTH.map(|elbow| picture.found(elbow).map_or_else(Vec::new, zone_lines));
         picture
     }
@@ -88,8 +88,8 @@ impl<'a> Picture<'a> {
 
     /// Lower edge of what stands under the panels. Pixels
     fn text_bottom(&self) -> i32 {
-        let most = self.zone_lines.iter().map(Vec::len).max().unwrap_or(0);
-        self.bottom + 50 + 17 * most as i32
+        let max = self.zone_lines.iter().map(Vec::len).max().unwrap_or(0);
+        self.bottom + 50 + 17 * max as i32
     }
 
     fn height(&self) -> i32 {
@@ -108,13 +108,13 @@ impl<'a> Picture<'a> {
     }
 
     fn title(&self, canvas: &Canvas<'_>) -> Drawn {
-        let benchmark = &self.study.benchmark;
+        let benchmark = &self.comparison.benchmark;
         let force = figures(benchmark.in_plane_force());
         let radius = whole_or_figures(benchmark.radius * 1e3);
         let title = format!("{}: circularity of a circle of radius {radius} mm under {force} N, mm", self.result.name);
         let size = (f64::from(WIDTH - 2 * 40) / (title.chars().count() as f64 * 0.6)).min(17.0);
         canvas.text(&title, (COLUMNS[0], 24), Lettering::new(size).bold())?;
-        let names = match self.study.elbow_names {
+        let names = match self.comparison.elbow_names {
             ElbowNames::Geometric => "elbow up: above the line from the shoulder to the wrist centre",
             ElbowNames::Swapped => {
                 "elbow up, by the names of this study: below the line from the shoulder to the wrist centre"
@@ -143,12 +143,12 @@ impl<'a> Picture<'a> {
         };
         canvas.text(name, (left, TOP - 34), Lettering::new(14.0).bold())?;
         let millimetres = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| figures(value * 1e3));
-        let [least, middle, most] =
-            [found.least, found.middle, found.most].map(|spot| millimetres(spot.map(|spot| spot.circularity)));
+        let [min, middle, max] =
+            [found.min, found.middle, found.max].map(|spot| millimetres(spot.map(|spot| spot.circularity)));
         let figures = match found.circles {
             0 => "no circle fits".to_owned(),
-            1 => format!("{least} mm; one circle"),
-            count => format!("smallest {least}, middle {middle}, largest {most} mm; {count} circles"),
+            1 => format!("{min} mm; one circle"),
+            count => format!("smallest {min}, middle {middle}, largest {max} mm; {count} circles"),
         };
         canvas.text(&figures, (left, TOP - 15), Lettering::new(12.0).coloured(INK))?;
         let arm = self.arm.as_ref();
@@ -270,13 +270,13 @@ fn colours(nodes: &[Nodes; 2], bottom: i32) -> Colours {
     let mut sorted: Vec<f64> = nodes.iter().flat_map(finite).collect();
     sorted.sort_by(f64::total_cmp);
     let at = |index: usize| sorted.get(index).copied().unwrap_or(0.0);
-    let (least, common, most) = (at(0), at(sorted.len() * 97 / 100), at(sorted.len().saturating_sub(1)));
-    if most <= least {
-        let scale = Scale::new(0.0, if most > 0.0 { most } else { 1.0 }, bottom, TOP);
+    let (min, common, max) = (at(0), at(sorted.len() * 97 / 100), at(sorted.len().saturating_sub(1)));
+    if max <= min {
+        let scale = Scale::new(0.0, if max > 0.0 { max } else { 1.0 }, bottom, TOP);
         return Colours { ticks: Ticks::round(&scale, 10), scale };
     }
-    let peak = most - least > 1.5 * (common - least) && common > least;
-    let scale = Scale::new(least, if peak { common } else { most }, bottom, TOP);
+    let peak = max - min > 1.5 * (common - min) && common > min;
+    let scale = Scale::new(min, if peak { common } else { max }, bottom, TOP);
     Colours { ticks: Ticks::round(&scale, 10), scale }
 }
 

@@ -8,8 +8,8 @@ use super::lettering::{Area, Label, Labeller, whole_or_figures};
 use super::patches::patches;
 use super::plane_view::{ArmInPlane, PlaneView, Window};
 use plotters::style::{BLACK, RGBColor, WHITE};
+use stead_assessment::comparison::Configuration;
 use stead_assessment::map::Map;
-use stead_assessment::study::Configuration;
 use stead_assessment::zone::Zone;
 
 /// Strokes and gaps of a dash-dotted line. Pixels
@@ -54,8 +54,8 @@ impl Nodes {
         for (index, _) in valued {
             let [low, high] = [-0.5, 0.5]
                 .map(|aside| self.at([(index % self.columns) as f64 + aside, (index / self.columns) as f64 + aside]));
-            let [least, most] = extent.unwrap_or([low, high]);
-            extent = Some([[0, 1].map(|k| least[k].min(low[k])), [0, 1].map(|k| most[k].max(high[k]))]);
+            let [min, max] = extent.unwrap_or([low, high]);
+            extent = Some([[0, 1].map(|k| min[k].min(low[k])), [0, 1].map(|k| max[k].max(high[k]))]);
         }
         extent
     }
@@ -204,7 +204,7 @@ impl ElbowPanel<'_> {
             canvas.curve(&corners, colour, 2)?;
             labeller.take_outline(((left, top), (right, bottom)));
         }
-        if let Some(spot) = self.found.least {
+        if let Some(spot) = self.found.min {
             let place = self.place(self.view.shown(spot.centre));
             canvas.dot(place, 4, BLACK)?;
             let (x, y) = nearest(place);

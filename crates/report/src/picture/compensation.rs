@@ -3,9 +3,9 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
-use crate::number::figures;
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::figures;
+use crate::units::fixed;
 use plotters::style::RGBColor;
 use stead_calibration::compensation::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, reduction};
 

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, picture};
 use super::colour::{BLUE, GREEN, GREY, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use plotters::style::{BLACK, RGBColor, WHITE};
 use stead_placement::outcome::{Generation, Goal, Outcome};
 

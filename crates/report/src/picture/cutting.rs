@@ -3,11 +3,11 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, Place, picture};
 use super::colour::{COMPONENTS, INK, SHADE};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use nalgebra::Vector3;
 use plotters::style::{BLACK, RGBColor};
-use stead_model::cutting::{Course, Sample};
+use stead_model::cutting::{ForceHistory, Sample};
 use stead_model::task::Wrench;
 
 const SIZE: Pixel = (1160, 930);
@@ -33,9 +33,9 @@ const QUANTITIES: [Quantity; 2] = [
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn cutting(course: &Course) -> Result<String, ReportError> {
+pub fn cutting(force_history: &ForceHistory) -> Result<String, ReportError> {
     picture("the picture of the cutting force", SIZE, |canvas| {
-        head(canvas, course)?;
+        head(canvas, force_history)?;
         for (quantity, (bottom, top)) in QUANTITIES.iter().zip(ROWS) {
             let panel = |(left, right), x_label, samples: &[Sample], turn: f64, tick| {
                 let x = Scale::new(0.0, turn, left, right);
@@ -43,13 +43,13 @@ pub fn cutting(course: &Course) -> Result<String, ReportError> {
                 let (x_ticks, y_ticks) = (Ticks::every(&x, tick, 0), Ticks::round(&y, 8));
                 Panel { x, y, x_ticks, y_ticks, x_label, y_label: quantity.label }
             };
-            let entering = panel(COLUMNS[0], "engagement angle (deg)", &course.entering, 180.0, 30.0);
-            ground(canvas, course, &entering)?;
-            curves(canvas, &entering, &course.entering, quantity.of)?;
-            let turn = panel(COLUMNS[1], "angle of the first tooth (deg)", &course.turn, 360.0, 60.0);
-            ground(canvas, course, &turn)?;
-            means(canvas, &turn, (quantity.of)(&course.mean))?;
-            curves(canvas, &turn, &course.turn, quantity.of)?;
+            let entering = panel(COLUMNS[0], "engagement angle (deg)", &force_history.entering, 180.0, 30.0);
+            ground(canvas, force_history, &entering)?;
+            curves(canvas, &entering, &force_history.entering, quantity.of)?;
+            let turn = panel(COLUMNS[1], "angle of the first tooth (deg)", &force_history.turn, 360.0, 60.0);
+            ground(canvas, force_history, &turn)?;
+            means(canvas, &turn, (quantity.of)(&force_history.mean))?;
+            curves(canvas, &turn, &force_history.turn, quantity.of)?;
         }
         let captions = [
             "What the work does to the tool, moments about the tool centre point. Angles run in the sense of rotation, from the \
@@ -64,17 +64,17 @@ pub fn cutting(course: &Course) -> Result<String, ReportError> {
 }
 
 /// Titles, the mean in figures, and the legend.
-fn head(canvas: &Canvas<'_>, course: &Course) -> Drawn {
+fn head(canvas: &Canvas<'_>, force_history: &ForceHistory) -> Drawn {
     let left = COLUMNS[0].0;
     canvas.text("Cutting force and moment on the tool", (left, 24), Lettering::new(17.0).bold())?;
     let figures = |vector: &Vector3<f64>, decimals| {
         let [x, y, z] = [vector.x, vector.y, vector.z].map(|part| fixed(part, decimals));
         format!("({x}, {y}, {z}), magnitude {}", fixed(vector.norm(), decimals))
     };
-    let arcs = course.engagement.arcs().iter();
+    let arcs = force_history.engagement.arcs().iter();
     let arcs = arcs.map(|arc| format!("{} to {}", fixed(arc.entry.to_degrees(), 1), fixed(arc.exit.to_degrees(), 1)));
     let arcs = arcs.collect::<Vec<_>>().join(" and from ");
-    let [force, moment] = [figures(&course.mean.force, 1), figures(&course.mean.moment, 3)];
+    let [force, moment] = [figures(&force_history.mean.force, 1), figures(&force_history.mean.moment, 3)];
     let lines = [
         format!("This cut: a tooth is in the work from {arcs} deg."),
         format!("Mean over a turn, along feed, left and axis: force {force} N; moment {moment} N m."),
@@ -126,8 +126,8 @@ fn range(samples: &[Sample], of: fn(&Wrench) -> Vector3<f64>, bottom: i32, top: 
 }
 
 /// Shaded arcs, and the grid with its zero.
-fn ground(canvas: &Canvas<'_>, course: &Course, panel: &Panel) -> Drawn {
-    for arc in course.engagement.arcs() {
+fn ground(canvas: &Canvas<'_>, force_history: &ForceHistory, panel: &Panel) -> Drawn {
+    for arc in force_history.engagement.arcs() {
         let [from, to] = [arc.entry, arc.exit].map(|phi| panel.x.pixel(phi.to_degrees()));
         canvas.fill((from, panel.y.end), (to, panel.y.start), SHADE)?;
     }
@@ -160,13 +160,13 @@ fn means(canvas: &Canvas<'_>, panel: &Panel, mean: Vector3<f64>) -> Drawn {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::{assert_well_formed, course};
+    use super::super::super::testing::{assert_well_formed, force_history};
     use super::*;
 
     #[test]
     fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {
-        let svg = cutting(&course()).unwrap();
-        assert_eq!(svg, cutting(&course()).unwrap());
+        let svg = cutting(&force_history()).unwrap();
+        assert_eq!(svg, cutting(&force_history()).unwrap());
         assert_well_formed(&svg);
         assert!(svg.len() < 150_000, "{}", svg.len());
         for label in ["force (N)", "moment (N m)", "along the feed", "from 0.0 to 60.0 and from 120.0 to 180.0 deg"] {

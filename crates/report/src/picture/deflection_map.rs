@@ -4,9 +4,9 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, Place, picture};
 use super::colour::{GREEN, GREY, INK, LEVELS, RED, ground, viridis};
 use super::hatch::{Slope, hatch};
-use crate::number::fixed;
+use crate::names;
 use crate::output::ReportError;
-use crate::words;
+use crate::units::fixed;
 use plotters::style::{RGBColor, WHITE};
 use std::collections::BTreeSet;
 use stead_placement::outcome::{Blocked, Case, DeflectionMap, MapCell, Plan};
@@ -94,7 +94,7 @@ impl<'a> Picture<'a> {
     }
 
     fn title(&self, canvas: &Canvas<'_>) -> Drawn {
-        let kind = words::case(self.best.number).0;
+        let kind = names::case(self.best.number).0;
         let title = format!("Deflection at the {kind} placement");
         canvas.text(&title, (LEFT, 24), Lettering::new(17.0).bold())?;
         let place = &self.best.placement;
@@ -245,7 +245,7 @@ impl<'a> Picture<'a> {
         canvas.text("not allowed:", (LEFT, y), lettering)?;
         x = indent;
         for blocked in reasons {
-            let label = words::reason_in_legend(blocked);
+            let label = names::reason_in_legend(blocked);
             let width = 33 + lettering.width(&label);
             if x + width > SIZE.0 {
                 (x, y) = (indent, y + 26);

@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, nearest, picture};
 use super::colour::{COMPONENTS, GREY, INK, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use plotters::style::WHITE;
 use stead_calibration::identification::Identified;
 

@@ -3,10 +3,10 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, picture};
 use super::colour::{BLUE, GREEN, INK, PALE, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::fixed;
 use nalgebra::Complex;
-use stead_simulation::survey::{Answer, Survey};
+use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
 
 /// Decades of the vertical axis.
 const DECADES: f64 = 4.0;
@@ -16,12 +16,13 @@ const DECADES: f64 = 4.0;
 ///
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
-pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
+pub fn frequency_response(analysis: &StabilityAnalysis) -> Result<String, ReportError> {
     let size = |part: Complex<f64>| libm::log10((part.norm_sqr().sqrt() * 1e6).max(1e-12));
-    let all = survey.answers.iter().flat_map(|answer| [answer.feed, answer.normal]);
+    let all = analysis.frequency_response.iter().flat_map(|response| [response.feed, response.normal]);
     let highest = all.map(size).fold(-12.0, f64::max).ceil();
     let lowest = highest - DECADES;
-    let ends = [survey.answers.first(), survey.answers.last()].map(|answer| answer.map_or(0.0, |a| a.frequency));
+    let ends = [analysis.frequency_response.first(), analysis.frequency_response.last()]
+        .map(|response| response.map_or(0.0, |a| a.frequency));
     picture("the picture of the frequency response", (1000, 520), |canvas| {
         canvas.text("How the tool tip answers to a swinging force", (95, 26), Lettering::new(17.0).bold())?;
         let (x, y) = (Scale::new(ends[0], ends[1], 95, 970), Scale::new(lowest, highest, 440, 84));
@@ -29,7 +30,7 @@ pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
         let panel = Panel { x, y, x_ticks, y_ticks, x_label: "frequency (Hz)", y_label: "answer (um/N)" };
         panel.draw_grid(canvas)?;
         let mut free_from = 0;
-        for mode in survey.modes.iter().filter(|mode| (ends[0]..=ends[1]).contains(&mode.natural_frequency())) {
+        for mode in analysis.modes.iter().filter(|mode| (ends[0]..=ends[1]).contains(&mode.natural_frequency())) {
             let at = panel.x.pixel(mode.natural_frequency());
             canvas.line(vec![(at, panel.y.start), (at, panel.y.end)], PALE, 1)?;
             // Labels that would run into each other are left out.
@@ -41,12 +42,12 @@ pub fn frequency_response(survey: &Survey) -> Result<String, ReportError> {
             }
         }
         for (of, colour) in [
-            ((|answer| answer.cross) as fn(&Answer) -> Complex<f64>, GREEN),
-            (|answer| answer.feed, BLUE),
-            (|answer| answer.normal, RED),
+            ((|response| response.cross) as fn(&FrequencyResponse) -> Complex<f64>, GREEN),
+            (|response| response.feed, BLUE),
+            (|response| response.normal, RED),
         ] {
-            let place = |answer: &Answer| panel.place(answer.frequency, size(of(answer)).max(lowest));
-            canvas.curve(&survey.answers.iter().map(place).collect::<Vec<_>>(), colour, 2)?;
+            let place = |response: &FrequencyResponse| panel.place(response.frequency, size(of(response)).max(lowest));
+            canvas.curve(&analysis.frequency_response.iter().map(place).collect::<Vec<_>>(), colour, 2)?;
         }
         panel.draw_frame(canvas)?;
         legend(canvas)

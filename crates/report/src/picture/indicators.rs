@@ -3,11 +3,11 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
 use super::colour::{INDICATORS, INK};
-use crate::number::figures;
-use crate::number::fixed;
 use crate::output::ReportError;
+use crate::units::figures;
+use crate::units::fixed;
 use plotters::style::RGBColor;
-use stead_assessment::study::{Assessment, Load, RobotResult};
+use stead_assessment::comparison::{Assessment, Load, RobotResult};
 
 const WIDTH: i32 = 1100;
 const LEFT: i32 = 80;
@@ -38,7 +38,7 @@ const ALL: [Indicator; 4] = [
         name: "accuracy",
         relative_to: "the smallest circularity of all robots / that of the robot, at the best place of each",
         unit: "mm",
-        of: |robot| robot.competitor().least.map(|least| least * 1e3),
+        of: |robot| robot.competitor().min.map(|min| min * 1e3),
         least_is_best: true,
         text: figures,
     },

@@ -1,7 +1,7 @@
 //! Figures and labels of pictures: numbers of few digits, lines of a given width, and labels that do not cover each other.
 
 use super::canvas::{Canvas, Drawn, Lettering, Pixel};
-use crate::number::{figures, fixed};
+use crate::units::{figures, fixed};
 use plotters::style::RGBColor;
 
 /// A whole number without decimals, any other as [`figures`].

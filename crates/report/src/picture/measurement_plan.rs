@@ -3,8 +3,8 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, nearest, picture};
 use super::colour::{BLUE, GREEN, GREY, INK, PALE, RED};
-use crate::number::{figures, fixed};
 use crate::output::ReportError;
+use crate::units::{figures, fixed};
 use nalgebra::{Vector2, Vector3};
 use plotters::style::RGBColor;
 use stead_calibration::identification::LoadCase;

@@ -3,9 +3,9 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, Drawn, Lettering, Place, picture};
 use super::colour::{GREEN, INK, PALE, RED};
-use crate::number::fixed;
 use crate::output::ReportError;
 use crate::stability::PathStability;
+use crate::units::fixed;
 use plotters::style::RGBColor;
 use stead_placement::outcome::Plan;
 
@@ -18,8 +18,8 @@ const RIGHT: i32 = 970;
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
 pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> Result<String, ReportError> {
-    let (deepest, cut) = (stability.chatter.deepest, stability.chatter.cut.axial_depth);
-    let all = || stability.plans.iter().flatten().map(|depths| depths.semi_discretisation.unwrap_or(deepest));
+    let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.axial_depth);
+    let all = || stability.plans.iter().flatten().map(|depths| depths.semi_discretisation.unwrap_or(max_depth));
     let highest = all().fold(1.3 * cut, f64::max);
     picture("the picture of critical depths along the path", (1000, 520), |canvas| {
         canvas.text("How deep may be cut along the path", (LEFT, 26), Lettering::new(17.0).bold())?;
@@ -37,7 +37,7 @@ pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> Result<St
             }
             for (depths, colour) in stability.plans.iter().zip([GREEN, RED]) {
                 let place = |k: usize| {
-                    let depth = depths.get(k).and_then(|at| at.semi_discretisation).unwrap_or(deepest);
+                    let depth = depths.get(k).and_then(|at| at.semi_discretisation).unwrap_or(max_depth);
                     panel.place(k as f64, depth * 1e3)
                 };
                 curve(canvas, &(first..first + segment.len()).map(place).collect::<Vec<_>>(), colour)?;

@@ -1,6 +1,6 @@
 //! How a plane of the cell is shown: what its axes are called, and what of the robot lies in it.
 
-use crate::number::fixed;
+use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_assessment::benchmark::Plane;
 use stead_model::robot::Robot;

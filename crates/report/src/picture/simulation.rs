@@ -36,9 +36,9 @@ pub fn forces(found: &Simulation) -> Result<String, ReportError> {
                 let [from, to] = [column, column + 1].map(|pixel| panel.x.number(f64::from(pixel)) / found.run.step);
                 let [from, to] = [from, to].map(|step| (step.max(0.0) as usize).min(found.run.samples.len()));
                 let inside = found.run.samples[from..to.max(from)].iter().map(|sample| value(&sample.force));
-                let [least, most] = inside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-                if least <= most {
-                    let ends = [least, most].map(|force| (column, panel.y.pixel(force)));
+                let [min, max] = inside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+                if min <= max {
+                    let ends = [min, max].map(|force| (column, panel.y.pixel(force)));
                     canvas.line(ends.to_vec(), colour, 1)?;
                 }
             }
@@ -82,9 +82,9 @@ pub fn turns(found: &Simulation, spindle_speed: f64) -> Result<String, ReportErr
 /// A panel for the forces of some samples.
 fn panel(found: &Simulation, samples: std::ops::Range<usize>, x: Scale, x_label: &'static str) -> Panel {
     let values = found.run.samples[samples].iter().flat_map(|sample| FORCES.map(|(_, _, value)| value(&sample.force)));
-    let [least, most] = values.fold([0.0_f64, 0.0_f64], |[a, b], v| [a.min(v), b.max(v)]);
-    let margin = 0.06 * (most - least);
-    let y = Scale::new(least - margin, most + margin, if x.to > 100.0 { 400 } else { 440 }, 78);
+    let [min, max] = values.fold([0.0_f64, 0.0_f64], |[a, b], v| [a.min(v), b.max(v)]);
+    let margin = 0.06 * (max - min);
+    let y = Scale::new(min - margin, max + margin, if x.to > 100.0 { 400 } else { 440 }, 78);
     Panel {
         x_ticks: Ticks::round(&x, 12),
         y_ticks: Ticks::round(&y, 8),
@@ -120,15 +120,15 @@ pub fn wall(found: &Simulation) -> Result<String, ReportError> {
 /// A profile: smallest and largest height in every column of pixels.
 fn draw(canvas: &Canvas<'_>, profile: &Profile, title: &str, colour: RGBColor, (top, bottom): (i32, i32)) -> Drawn {
     let heights = &profile.heights;
-    let [least, most] = heights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &h| [a.min(h), b.max(h)]);
+    let [min, max] = heights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &h| [a.min(h), b.max(h)]);
     canvas.text(title, (85, top - 12), Lettering::new(13.0).bold().coloured(colour))?;
-    if least > most {
+    if min > max {
         return canvas.text("no wall was made", (95, (top + bottom) / 2), Lettering::new(13.0).coloured(GREY));
     }
-    let margin = (0.08 * (most - least)).max(0.05e-6);
+    let margin = (0.08 * (max - min)).max(0.05e-6);
     let end = profile.start + profile.spacing * heights.len() as f64;
     let x = Scale::new(profile.start * 1e3, end * 1e3, 85, 975);
-    let y = Scale::new((least - margin) * 1e6, (most + margin) * 1e6, bottom, top);
+    let y = Scale::new((min - margin) * 1e6, (max + margin) * 1e6, bottom, top);
     let (x_ticks, y_ticks) = (Ticks::round(&x, 10), Ticks::round(&y, 7));
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: "along the feed (mm)", y_label: "height (um)" };
     panel.draw_grid(canvas)?;
@@ -138,9 +138,9 @@ fn draw(canvas: &Canvas<'_>, profile: &Profile, title: &str, colour: RGBColor, (
             .map(|pixel| (panel.x.number(f64::from(pixel)) / 1e3 - profile.start) / profile.spacing)
             .map(|index| (index.max(0.0) as usize).min(heights.len()));
         let inside = heights[from..to.max(from)].iter();
-        let [least, most] = inside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &h| [a.min(h), b.max(h)]);
-        if least <= most {
-            let ends = [least, most].map(|height| (column, panel.y.pixel(height * 1e6)));
+        let [min, max] = inside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &h| [a.min(h), b.max(h)]);
+        if min <= max {
+            let ends = [min, max].map(|height| (column, panel.y.pixel(height * 1e6)));
             // Joined to the column before.
             canvas.line(before.into_iter().chain(ends).collect(), colour, 1)?;
             before = Some(ends[1]);

@@ -1,9 +1,9 @@
 //! The JSON documents of a simulated pass.
 
-use super::super::json::inputs;
-use super::super::number::Unit;
 use super::super::stability::{HERTZ, RATE, RPM, SHARE, kind_word};
 use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
@@ -14,9 +14,7 @@ use stead_simulation::roughness::Roughness;
 pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
     let (end, reason) = end_words(&found.run.end);
     let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "inputs": inputs(&run.inputs),
+    Document::new(&run.inputs).with(json!({
         "robot": run.setup.robot.name(),
         "variant": run.setup.variant.word(),
         "damping_scale": run.setup.damping_scale,
@@ -30,7 +28,7 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
         "end": end,
         "end_reason": reason,
         "stable": found.is_stable(),
-        "unrest": found.unrest.map(|unrest| SHARE.number(unrest)),
+        "unrest": found.period_variation.map(|period_variation| SHARE.number(period_variation)),
         "small_motions": {
             "kind": kind_word(found.verdict.kind()),
             "growth_rate_per_s": RATE.number(found.verdict.growth_rate()),
@@ -41,18 +39,18 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
         "profile": found.roughness.as_ref().map(|[raw, filtered]| {
             let mut profile = roughness(filtered);
             profile["raw"] = roughness(raw);
-            profile["height_mm"] = json!(Unit::PLACE_MM.number(run.look.height));
-            profile["cutoff_mm"] = json!(Unit::PLACE_MM.number(run.look.cutoff));
+            profile["height_mm"] = json!(Unit::PLACE_MM.number(run.evaluation.height));
+            profile["cutoff_mm"] = json!(Unit::PLACE_MM.number(run.evaluation.cutoff));
             profile
         }),
         "modes": found.modes.iter().map(mode).collect::<Vec<_>>(),
-        "published": run.look.published.as_ref().map(|published| json!({
+        "published": run.evaluation.published.as_ref().map(|published| json!({
             "source": published.source,
             "force_x": published.forces.as_ref().map(|forces| statistics(&forces[0])),
             "force_y": published.forces.as_ref().map(|forces| statistics(&forces[1])),
             "profile": published.roughness.as_ref().map(roughness),
         })),
-    })
+    }))
 }
 
 /// What `stead simulate --json` prints: the summary, and how long the run took.
@@ -66,10 +64,10 @@ pub fn timed_json(run: &SimulationRun, found: &Simulation, making: &Making) -> V
 }
 
 fn statistics(statistics: &Statistics) -> Value {
-    let Statistics { least, most, mean, root_mean_square } = statistics;
+    let Statistics { min, max, mean, root_mean_square } = statistics;
     json!({
-        "min_n": Unit::FORCE_N.number(*least),
-        "max_n": Unit::FORCE_N.number(*most),
+        "min_n": Unit::FORCE_N.number(*min),
+        "max_n": Unit::FORCE_N.number(*max),
         "mean_n": Unit::FORCE_N.number(*mean),
         "rms_n": Unit::FORCE_N.number(*root_mean_square),
     })

@@ -9,9 +9,9 @@ pub use json::{simulation_json, timed_json};
 pub use tables::{series, wall};
 pub use text::simulation_text;
 
-use super::number::Unit;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
 use stead_simulation::coupled::End;
@@ -44,7 +44,7 @@ pub fn write_simulation(
     let files = [
         ("series.csv", series(found)?),
         ("wall.csv", wall(found)?),
-        ("summary.json", super::json::bytes(&simulation_json(run, found, making))),
+        ("summary.json", crate::document::bytes(&simulation_json(run, found, making))),
         ("forces.svg", picture::forces(found)?.into_bytes()),
         ("turns.svg", picture::turns(found, run.cut.spindle_speed)?.into_bytes()),
         ("wall.svg", picture::wall(found)?.into_bytes()),

@@ -1,9 +1,9 @@
 //! The CSV files of a simulated pass.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
 use super::{HEIGHT_UM, MOMENT_S};
+use crate::csv_file::table;
+use crate::units::Unit;
 use stead_simulation::outcome::Simulation;
 
 const SERIES: [&str; 8] =

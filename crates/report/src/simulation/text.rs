@@ -1,9 +1,9 @@
 //! The text for people.
 
-use super::super::number::{figures, fixed};
 use super::super::stability::kind_word;
-use super::super::text::aligned;
 use super::{Making, end_words};
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_format::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::outcome::{Simulation, Statistics};
@@ -39,12 +39,12 @@ fn forces(run: &SimulationRun, found: &Simulation) -> String {
     };
     let header = ["", "min", "max", "mean", "rms"].map(str::to_owned).to_vec();
     let mut rows = vec![header];
-    let row = |name: String, Statistics { least, most, mean, root_mean_square }: &Statistics| {
+    let row = |name: String, Statistics { min, max, mean, root_mean_square }: &Statistics| {
         let mut row = vec![name];
-        row.extend([least, most, mean, root_mean_square].map(|force| fixed(*force, 2)));
+        row.extend([min, max, mean, root_mean_square].map(|force| fixed(*force, 2)));
         row
     };
-    let published = run.look.published.as_ref().and_then(|published| published.forces.as_ref());
+    let published = run.evaluation.published.as_ref().and_then(|published| published.forces.as_ref());
     for (axis, name) in ["along the feed", "towards the wall"].into_iter().enumerate() {
         rows.push(row(name.to_owned(), &forces[axis]));
         rows.extend(published.map(|published| row("  published".to_owned(), &published[axis])));
@@ -63,8 +63,8 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
         row
     };
     let mut rows = vec![header, row("wall".to_owned(), raw)];
-    rows.push(row(format!("filtered, {} mm", figures(run.look.cutoff * 1e3)), filtered));
-    let published = run.look.published.as_ref().and_then(|published| published.roughness.as_ref());
+    rows.push(row(format!("filtered, {} mm", figures(run.evaluation.cutoff * 1e3)), filtered));
+    let published = run.evaluation.published.as_ref().and_then(|published| published.roughness.as_ref());
     rows.extend(published.map(|published| row("  published".to_owned(), published)));
     format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
 }
@@ -72,10 +72,10 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
 fn verdict(found: &Simulation) -> String {
     let calm = if found.is_stable() { "calm" } else { "unstable" };
     let (_, reason) = end_words(&found.run.end);
-    let mut text = match (reason, found.unrest) {
+    let mut text = match (reason, found.period_variation) {
         (Some(reason), _) => format!("The cut is {calm}: {reason}.\n"),
-        (None, Some(unrest)) => {
-            format!("The cut is {calm}: forces differ by {} % from turn to turn.\n", figures(unrest * 100.0))
+        (None, Some(period_variation)) => {
+            format!("The cut is {calm}: forces differ by {} % from turn to turn.\n", figures(period_variation * 100.0))
         }
         (None, None) => format!("The cut is {calm}.\n"),
     };

@@ -1,38 +1,36 @@
-//! The JSON document of a survey.
+//! The JSON document of a stability analysis.
 
-use super::super::json;
-use super::super::number::Unit;
 use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
-use stead_simulation::survey::{Depths, Survey};
+use stead_simulation::stability_analysis::{CutStability, StabilityAnalysis};
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
-pub fn stability_json(run: &SimulationRun, survey: &Survey) -> Value {
-    let mut document = verdict(&survey.depths);
-    let rate = survey.depths.verdict.growth_rate();
+pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Value {
+    let mut entries = verdict(&analysis.cut_stability);
+    let rate = analysis.cut_stability.verdict.growth_rate();
     let rest = [
-        ("version", json!(env!("CARGO_PKG_VERSION"))),
-        ("inputs", json::inputs(&run.inputs)),
         ("robot", json!(run.setup.robot.name())),
         ("variant", json!(run.setup.variant.word())),
         ("damping_scale", json!(run.setup.damping_scale)),
-        ("way_mm", json!(Unit::PLACE_MM.number(run.plan.way))),
+        ("way_mm", json!(Unit::PLACE_MM.number(run.analysis.distance))),
         ("spindle_rpm", json!(RPM.number(run.cut.spindle_speed))),
         ("axial_depth_mm", json!(DEPTH_MM.number(run.cut.axial_depth))),
-        ("max_depth_mm", json!(DEPTH_MM.number(run.plan.deepest))),
-        ("pass_time_s", json!(Unit::TIME_S.number(survey.pass_time))),
-        ("growth_in_pass", json!(RATE.number(rate * survey.pass_time))),
-        ("modes", modes(&survey.modes)),
-        ("lobes", lobes(survey)),
+        ("max_depth_mm", json!(DEPTH_MM.number(run.analysis.max_depth))),
+        ("pass_time_s", json!(Unit::TIME_S.number(analysis.pass_time))),
+        ("growth_in_pass", json!(RATE.number(rate * analysis.pass_time))),
+        ("modes", modes(&analysis.modes)),
+        ("lobes", lobes(analysis)),
     ];
-    document.extend(rest.map(|(key, value)| (key.to_owned(), value)));
-    Value::Object(document)
+    entries.extend(rest.map(|(key, value)| (key.to_owned(), value)));
+    Document::new(&run.inputs).with(Value::Object(entries))
 }
 
 /// Critical depths and verdict.
-pub(crate) fn verdict(depths: &Depths) -> Map<String, Value> {
+pub(crate) fn verdict(depths: &CutStability) -> Map<String, Value> {
     let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
     let verdict = &depths.verdict;
     let pairs = [
@@ -63,7 +61,7 @@ pub(crate) fn modes(modes: &[Mode]) -> Value {
     modes.iter().map(mode).collect()
 }
 
-fn lobes(survey: &Survey) -> Value {
+fn lobes(analysis: &StabilityAnalysis) -> Value {
     let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
     let lobe = |lobe: &stead_simulation::stability::Lobe| {
         json!({
@@ -72,5 +70,5 @@ fn lobes(survey: &Survey) -> Value {
             "zero_order_mm": depth(lobe.zero_order),
         })
     };
-    survey.lobes.iter().map(lobe).collect()
+    analysis.lobes.iter().map(lobe).collect()
 }

@@ -1,4 +1,4 @@
-//! Reports of a stability survey: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
+//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
 //! text for people.
 
 mod json;
@@ -13,13 +13,13 @@ pub use path::PathStability;
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
-use super::number::Unit;
 use super::output::{Folder, ReportError};
 use super::picture;
+use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
 use stead_simulation::stability::Kind;
-use stead_simulation::survey::Survey;
+use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Frequencies in Hz.
 pub(super) const HERTZ: Unit = Unit { factor: 1.0, decimals: 4 };
@@ -30,7 +30,7 @@ pub(super) const RPM: Unit = Unit { factor: 30.0 / std::f64::consts::PI, decimal
 /// Depths of cut, from m to mm.
 pub(super) const DEPTH_MM: Unit = Unit { factor: 1e3, decimals: 5 };
 /// Answers to a force, from m/N to um/N.
-pub(super) const ANSWER: Unit = Unit { factor: 1e6, decimals: 6 };
+pub(super) const RESPONSE: Unit = Unit { factor: 1e6, decimals: 6 };
 /// Rates of growth in 1/s.
 pub(super) const RATE: Unit = Unit { factor: 1.0, decimals: 4 };
 
@@ -39,14 +39,18 @@ pub(super) const RATE: Unit = Unit { factor: 1.0, decimals: 4 };
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_stability(folder: &Folder, run: &SimulationRun, survey: &Survey) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_stability(
+    folder: &Folder,
+    run: &SimulationRun,
+    analysis: &StabilityAnalysis,
+) -> Result<Vec<PathBuf>, ReportError> {
     let files = [
-        ("modes.csv", modes(survey)?),
-        ("frequency-response.csv", responses(survey)?),
-        ("lobes.csv", lobes(survey)?),
-        ("summary.json", super::json::bytes(&stability_json(run, survey))),
-        ("frequency-response.svg", picture::frequency_response(survey)?.into_bytes()),
-        ("lobes.svg", picture::lobes(survey, &run.cut, run.plan.deepest)?.into_bytes()),
+        ("modes.csv", modes(analysis)?),
+        ("frequency-response.csv", responses(analysis)?),
+        ("lobes.csv", lobes(analysis)?),
+        ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
+        ("frequency-response.svg", picture::frequency_response(analysis)?.into_bytes()),
+        ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth)?.into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

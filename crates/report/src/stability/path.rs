@@ -1,23 +1,23 @@
 //! Critical depths along the plans of a placement.
 
-use super::super::number::fixed;
 use super::super::output::ReportError;
 use super::super::picture;
-use super::super::tables::table;
 use super::json::verdict;
 use super::{DEPTH_MM, RATE, RPM, kind_word};
+use crate::csv_file::table;
+use crate::units::fixed;
 use serde_json::{Value, json};
 use stead_placement::outcome::Plan;
-use stead_simulation::chatter::{Chatter, smallest};
-use stead_simulation::survey::Depths;
+use stead_simulation::path_stability::{PathStabilityAnalysis, smallest};
+use stead_simulation::stability_analysis::CutStability;
 
 /// What may be cut along two plans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathStability {
     /// What is to be cut.
-    pub chatter: Chatter,
+    pub analysis: PathStabilityAnalysis,
     /// Along both plans, point by point.
-    pub plans: [Vec<Depths>; 2],
+    pub plans: [Vec<CutStability>; 2],
 }
 
 impl PathStability {
@@ -36,7 +36,7 @@ impl PathStability {
     /// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
     /// of them too.
     pub fn document(&self, points: bool) -> Value {
-        let plan = |depths: &Vec<Depths>| {
+        let plan = |depths: &Vec<CutStability>| {
             let least = smallest(depths);
             let mut value = json!({
                 "smallest_critical_depth_mm": least.map(|(_, depth)| DEPTH_MM.number(depth)),
@@ -50,11 +50,11 @@ impl PathStability {
             value
         };
         json!({
-            "variant": self.chatter.variant.word(),
-            "damping_scale": self.chatter.damping_scale,
-            "spindle_rpm": RPM.number(self.chatter.cut.spindle_speed),
-            "axial_depth_mm": DEPTH_MM.number(self.chatter.cut.axial_depth),
-            "max_depth_mm": DEPTH_MM.number(self.chatter.deepest),
+            "variant": self.analysis.variant.word(),
+            "damping_scale": self.analysis.damping_scale,
+            "spindle_rpm": RPM.number(self.analysis.cut.spindle_speed),
+            "axial_depth_mm": DEPTH_MM.number(self.analysis.cut.axial_depth),
+            "max_depth_mm": DEPTH_MM.number(self.analysis.max_depth),
             "best": plan(&self.plans[0]),
             "worst": plan(&self.plans[1]),
         })
@@ -64,28 +64,28 @@ impl PathStability {
     pub fn text(&self, names: [&str; 2]) -> String {
         let mut text = String::new();
         for (name, depths) in names.iter().zip(&self.plans) {
-            let deepest = match smallest(depths) {
+            let max_depth = match smallest(depths) {
                 Some((point, depth)) => format!("down to {} mm (point {point})", fixed(depth * 1e3, 3)),
-                None => format!("beyond {} mm everywhere", fixed(self.chatter.deepest * 1e3, 3)),
+                None => format!("beyond {} mm everywhere", fixed(self.analysis.max_depth * 1e3, 3)),
             };
             let (bad, count) = (chattering(depths), depths.len());
             let verdict = match bad {
                 0 => "is stable at every point".to_owned(),
                 _ => format!("chatters at {bad} of {count} points"),
             };
-            let depth = fixed(self.chatter.cut.axial_depth * 1e3, 3);
-            text.push_str(&format!("{name}: critical depth {deepest}; the cut of {depth} mm {verdict}\n"));
+            let depth = fixed(self.analysis.cut.axial_depth * 1e3, 3);
+            text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
         }
         text
     }
 }
 
-fn chattering(depths: &[Depths]) -> usize {
+fn chattering(depths: &[CutStability]) -> usize {
     depths.iter().filter(|at| !at.verdict.is_stable()).count()
 }
 
-/// One row for each path point; depths are empty where all depths looked at are stable.
-fn along(plan: &Plan, depths: &[Depths]) -> Result<Vec<u8>, ReportError> {
+/// One row for each path point; depths are empty where all depths up to the largest are stable.
+fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
     const HEADER: [&str; 7] =
         ["point", "segment", "critical_depth_mm", "zero_order_mm", "stable", "kind", "growth_rate_per_s"];
     let rows = plan.points.iter().zip(depths).map(|(point, at)| {

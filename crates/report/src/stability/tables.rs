@@ -1,10 +1,10 @@
-//! The CSV tables of a survey.
+//! The CSV tables of a stability analysis.
 
-use super::super::number::Unit;
 use super::super::output::ReportError;
-use super::super::tables::table;
-use super::{ANSWER, DEPTH_MM, HERTZ, RPM, SHARE};
-use stead_simulation::survey::Survey;
+use super::{DEPTH_MM, HERTZ, RESPONSE, RPM, SHARE};
+use crate::csv_file::table;
+use crate::units::Unit;
+use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Amplitudes of the tip, from m to mm, for a joint that swings by 1 rad.
 const TIP_MM: Unit = Unit { factor: 1e3, decimals: 4 };
@@ -14,13 +14,13 @@ const TIP_MM: Unit = Unit { factor: 1e3, decimals: 4 };
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn modes(survey: &Survey) -> Result<Vec<u8>, ReportError> {
-    let count = survey.modes.first().map_or(0, |mode| mode.joints.len());
+pub fn modes(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
+    let count = analysis.modes.first().map_or(0, |mode| mode.joints.len());
     let fixed = ["mode", "frequency_hz", "damping_ratio", "tip_x_mm_per_rad", "tip_y_mm_per_rad", "tip_z_mm_per_rad"];
     let mut header: Vec<String> = fixed.map(str::to_owned).to_vec();
     header.extend((0..count).map(|k| joint_name(k, count)));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let rows = survey.modes.iter().zip(1..).map(|(mode, number): (_, usize)| {
+    let rows = analysis.modes.iter().zip(1..).map(|(mode, number): (_, usize)| {
         let mut row = vec![number.to_string(), HERTZ.text(mode.natural_frequency()), SHARE.text(mode.damping_ratio)];
         row.extend(mode.tip.iter().map(|part| TIP_MM.text(*part)));
         row.extend(mode.joints.iter().map(|amplitude| SHARE.text(*amplitude)));
@@ -35,12 +35,12 @@ pub(super) fn joint_name(index: usize, count: usize) -> String {
     format!("joint{}{}", index / each + 1, ["", "_x", "_y"][index % each])
 }
 
-/// `frequency-response.csv`: the complex answer of the tip at each frequency: along the feed to a force along the feed, along the
+/// `frequency-response.csv`: the complex frequency response of the tip: along the feed to a force along the feed, along the
 /// normal of the wall to a force along it, and across.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn responses(survey: &Survey) -> Result<Vec<u8>, ReportError> {
+pub fn responses(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
     const HEADER: [&str; 7] = [
         "frequency_hz",
         "feed_re_um_per_n",
@@ -50,22 +50,22 @@ pub fn responses(survey: &Survey) -> Result<Vec<u8>, ReportError> {
         "cross_re_um_per_n",
         "cross_im_um_per_n",
     ];
-    let rows = survey.answers.iter().map(|answer| {
-        let mut row = vec![HERTZ.text(answer.frequency)];
-        let parts = [answer.feed, answer.normal, answer.cross];
-        row.extend(parts.iter().flat_map(|part| [part.re, part.im]).map(|value| ANSWER.text(value)));
+    let rows = analysis.frequency_response.iter().map(|response| {
+        let mut row = vec![HERTZ.text(response.frequency)];
+        let parts = [response.feed, response.normal, response.cross];
+        row.extend(parts.iter().flat_map(|part| [part.re, part.im]).map(|value| RESPONSE.text(value)));
         row
     });
     table("the table of the frequency response", &HEADER, rows)
 }
 
-/// `lobes.csv`: critical depth over spindle speed, empty where all depths looked at are stable.
+/// `lobes.csv`: critical depth over spindle speed, empty where all depths up to the largest are stable.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn lobes(survey: &Survey) -> Result<Vec<u8>, ReportError> {
+pub fn lobes(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
     const HEADER: [&str; 3] = ["spindle_rpm", "critical_depth_mm", "zero_order_mm"];
-    let rows = survey.lobes.iter().map(|lobe| {
+    let rows = analysis.lobes.iter().map(|lobe| {
         let depths = [lobe.semi_discretisation, lobe.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth));
         std::iter::once(RPM.text(lobe.spindle_speed)).chain(depths).collect()
     });

@@ -1,19 +1,19 @@
 //! The text for people.
 
-use super::super::number::{figures, fixed};
-use super::super::text::aligned;
 use super::RPM;
 use super::tables::joint_name;
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Kind;
-use stead_simulation::survey::Survey;
+use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// More modes than this are left to the files.
 const MODES: usize = 12;
 
 /// Modes with what moves in them, critical depths, and the verdict in a sentence.
-pub fn stability_text(run: &SimulationRun, survey: &Survey) -> String {
+pub fn stability_text(run: &SimulationRun, analysis: &StabilityAnalysis) -> String {
     let mut text = format!("{}, {}", run.setup.robot.name(), run.setup.variant.word());
     if run.setup.damping_scale != 1.0 {
         text.push_str(&format!(", damping times {}", run.setup.damping_scale));
@@ -21,7 +21,7 @@ pub fn stability_text(run: &SimulationRun, survey: &Survey) -> String {
     text.push_str("\n\n");
     let header = ["mode", "frequency Hz", "damping ratio", "joints that move most"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (mode, number) in survey.modes.iter().zip(1..).take(MODES) {
+    for (mode, number) in analysis.modes.iter().zip(1..).take(MODES) {
         let number: usize = number;
         rows.push(vec![
             number.to_string(),
@@ -31,27 +31,27 @@ pub fn stability_text(run: &SimulationRun, survey: &Survey) -> String {
         ]);
     }
     text.push_str(&aligned(&rows, &[3]));
-    if survey.modes.len() > MODES {
-        text.push_str(&format!("{} more in modes.csv\n", survey.modes.len() - MODES));
+    if analysis.modes.len() > MODES {
+        text.push_str(&format!("{} more in modes.csv\n", analysis.modes.len() - MODES));
     }
-    let deepest = fixed(run.plan.deepest * 1e3, 3);
+    let max_depth = fixed(run.analysis.max_depth * 1e3, 3);
     let depth = |depth: Option<f64>| match depth {
         Some(depth) => format!("{} mm", fixed(depth * 1e3, 3)),
-        None => format!("beyond {deepest} mm"),
+        None => format!("beyond {max_depth} mm"),
     };
     let rpm = fixed(run.cut.spindle_speed * RPM.factor, 0);
     text.push_str(&format!(
         "\ncritical depth at {rpm} rpm: {} by semi-discretisation, {} by the zero-order solution\n",
-        depth(survey.depths.semi_discretisation),
-        depth(survey.depths.zero_order)
+        depth(analysis.cut_stability.semi_discretisation),
+        depth(analysis.cut_stability.zero_order)
     ));
-    text.push_str(&sentence(run, survey));
+    text.push_str(&sentence(run, analysis));
     text
 }
 
 /// The verdict in a sentence.
-fn sentence(run: &SimulationRun, survey: &Survey) -> String {
-    let verdict = &survey.depths.verdict;
+fn sentence(run: &SimulationRun, analysis: &StabilityAnalysis) -> String {
+    let verdict = &analysis.cut_stability.verdict;
     let (rate, depth) = (verdict.growth_rate(), fixed(run.cut.axial_depth * 1e3, 3));
     let how = match verdict.kind() {
         Kind::None => {
@@ -63,14 +63,14 @@ fn sentence(run: &SimulationRun, survey: &Survey) -> String {
         Kind::Flip => "flip: every second period alike",
         Kind::Hopf => "Hopf: with a frequency of its own",
     };
-    let growth = libm::exp(rate * survey.pass_time);
+    let growth = libm::exp(rate * analysis.pass_time);
     let times = if growth > MANY { "far more than a million".to_owned() } else { figures(growth) };
     format!(
         "the cut of {depth} mm chatters ({how}): vibrations double every {} ms (growth rate {} 1/s), {times} times over the pass \
          of {} s\n",
         figures(factor_two(rate)),
         figures(rate),
-        fixed(survey.pass_time, 2)
+        fixed(analysis.pass_time, 2)
     )
 }
 

@@ -10,7 +10,7 @@
 //! Play makes springs act or not. For every set of springs that act the step is linear as well; its matrices are made when it
 //! first occurs, and a step is repeated until the springs that it assumes to act are those that do.
 
-use super::{End, Job, JobError, Plane, Process, Run};
+use super::{CutPlane, End, Job, JobError, Process, Run};
 use crate::arm::Arm;
 use crate::integrator::StepError;
 use crate::milling::Force;
@@ -24,11 +24,11 @@ const TICK: f64 = 4e-3;
 /// The force of milling is found again while it moves the tip by what changes it by more than this part of itself.
 const FORCE_TOLERANCE: f64 = 1e-4;
 /// Or by more than this. N
-const LEAST_FORCE: f64 = 1e-3;
+const MIN_FORCE: f64 = 1e-3;
 /// Evaluations of the force in a step, at most.
-const MOST_EVALUATIONS: usize = 30;
+const MAX_EVALUATIONS: usize = 30;
 /// Sets of acting springs tried in a step, at most.
-const MOST_SETS: usize = 12;
+const MAX_SETS: usize = 12;
 
 /// The tip at a place of the pass: how it moves with the joints, and where it is beyond that.
 #[derive(Clone)]
@@ -42,7 +42,7 @@ struct Tip<const N: usize> {
 }
 
 /// The arm between two places of the pass.
-struct Station<const N: usize> {
+struct Interval<const N: usize> {
     mass: SMatrix<f64, N, N>,
     /// Slope of gravity as far as springs feel it; none where they feel nothing.
     gravity: Option<SMatrix<f64, N, N>>,
@@ -57,7 +57,7 @@ struct Factor<const N: usize> {
     /// (M + h/2 D + h^2/4 K)^-1
     inverse: SMatrix<f64, N, N>,
     /// That times J^T: accelerations of a force at the tip.
-    answer: SMatrix<f64, N, 3>,
+    response: SMatrix<f64, N, 3>,
     /// h^2/4 J times that: motion of the tip in the plane.
     tip: Matrix2x3<f64>,
 }
@@ -68,7 +68,7 @@ struct Frozen<'a, const N: usize> {
     step: f64,
     spacing: f64,
     tips: Vec<Tip<N>>,
-    stations: Vec<Station<N>>,
+    intervals: Vec<Interval<N>>,
     tick: f64,
     /// r at every tick. N m
     asked: Vec<SVector<f64, N>>,
@@ -77,11 +77,11 @@ struct Frozen<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Frozen<'a, N> {
-    fn new(arm: &'a Arm<N>, motion: &Motion, plane: &Plane, step: f64, steps: usize) -> Self {
+    fn new(arm: &'a Arm<N>, motion: &Motion, plane: &CutPlane, step: f64, steps: usize) -> Self {
         let count = (motion.length() / SPACING).ceil().max(1.0) as usize;
         let spacing = motion.length() / count as f64;
-        let posed = |way: f64| {
-            let reference = Arm::<N>::spread(&motion.motors_after(way, 0.0).0);
+        let posed = |distance: f64| {
+            let reference = Arm::<N>::spread(&motion.motors_at(distance, 0.0).0);
             let q = arm.at_rest(&reference);
             (q - reference, arm.chain.at(&q))
         };
@@ -90,32 +90,32 @@ impl<'a, const N: usize> Frozen<'a, N> {
             SMatrix::<f64, 3, N>::from_fn(|row, joint| plane.parts(&jacobian.column(joint).into_owned())[row])
         };
         let tips = (0..=count).map(|k| {
-            let way = spacing * k as f64;
-            let (yielded, posed) = posed(way);
+            let distance = spacing * k as f64;
+            let (yielded, posed) = posed(distance);
             let all = turned(posed.tip_jacobian());
             let (jacobian, axial) = (all.fixed_rows::<2>(0).into_owned(), all.fixed_rows::<1>(2).into_owned());
-            let off = Vector2::from(plane.place(&posed.tip())) - Vector2::from(plane.nominal(motion, way));
+            let off = Vector2::from(plane.place(&posed.tip())) - Vector2::from(plane.nominal(motion, distance));
             Tip { jacobian, axial, offset: off - jacobian * yielded }
         });
-        let stations = (0..count).map(|k| {
+        let intervals = (0..count).map(|k| {
             let (_, posed) = posed(spacing * (k as f64 + 0.5));
             let gravity = arm.feels_gravity().then(|| arm.stiffness(&posed, &SVector::zeros()));
             let jacobian = turned(posed.tip_jacobian());
-            Station { mass: posed.mass_matrix(&arm.chain), gravity, jacobian, factors: Vec::new() }
+            Interval { mass: posed.mass_matrix(&arm.chain), gravity, jacobian, factors: Vec::new() }
         });
         let loose: Vec<usize> = (0..N).filter(|joint| arm.drive.backlash[*joint] > 0.0).collect();
         let duration = step * steps as f64;
         let ticks = (duration / TICK).ceil().max(1.0) as usize;
         let tick = duration / ticks as f64;
         let asked = (0..=ticks).map(|k| asked(arm, motion, tick * k as f64));
-        let (tips, stations, asked) = (tips.collect(), stations.collect(), asked.collect());
-        Self { arm, step, spacing, tips, stations, tick, asked, loose }
+        let (tips, intervals, asked) = (tips.collect(), intervals.collect(), asked.collect());
+        Self { arm, step, spacing, tips, intervals, tick, asked, loose }
     }
 
-    /// The station at a way (m), and the tip there.
-    fn at(&self, way: f64) -> (usize, Tip<N>) {
-        let place = way / self.spacing;
-        let index = (place.max(0.0) as usize).min(self.stations.len() - 1);
+    /// The interval at a distance (m) along the pass, and the tip there.
+    fn at(&self, distance: f64) -> (usize, Tip<N>) {
+        let place = distance / self.spacing;
+        let index = (place.max(0.0) as usize).min(self.intervals.len() - 1);
         let share = place - index as f64;
         let (from, to) = (&self.tips[index], &self.tips[index + 1]);
         let jacobian = from.jacobian + (to.jacobian - from.jacobian) * share;
@@ -151,7 +151,7 @@ fn asked<const N: usize>(arm: &Arm<N>, motion: &Motion, time: f64) -> SVector<f6
     torques
 }
 
-impl<const N: usize> Station<N> {
+impl<const N: usize> Interval<N> {
     /// The matrices for a set of acting springs: bits of loose joints that act.
     fn factor(&mut self, arm: &Arm<N>, loose: &[usize], step: f64, set: u32) -> Option<&Factor<N>> {
         if let Some(index) = self.factors.iter().position(|(made, _)| *made == set) {
@@ -171,9 +171,9 @@ impl<const N: usize> Station<N> {
             matrix += (gravity + gravity.transpose()) * (step * step / 8.0);
         }
         let inverse = matrix.cholesky()?.inverse();
-        let answer = inverse * self.jacobian.transpose();
-        let tip = self.jacobian.fixed_rows::<2>(0) * answer * (step * step / 4.0);
-        self.factors.push((set, Factor { inverse, answer, tip }));
+        let response = inverse * self.jacobian.transpose();
+        let tip = self.jacobian.fixed_rows::<2>(0) * response * (step * step / 4.0);
+        self.factors.push((set, Factor { inverse, response, tip }));
         self.factors.last().map(|(_, factor)| factor)
     }
 }
@@ -244,13 +244,13 @@ fn stepped<const N: usize>(
     guess: Force,
 ) -> Result<Ended, StepError> {
     let (h, arm) = (frozen.step, frozen.arm);
-    let (way, feed) = process.motion.ramp().at(time);
-    let (index, tip) = frozen.at(way);
-    let nominal = Vector2::from(process.plane.nominal(process.motion, way)) + tip.offset;
+    let (distance, feed) = process.motion.ramp().at(time);
+    let (index, tip) = frozen.at(distance);
+    let nominal = Vector2::from(process.plane.nominal(process.motion, distance)) + tip.offset;
     let u = state.u + state.speed * h + state.acceleration * (h * h / 4.0);
     let speed = state.speed + state.acceleration * (h / 2.0);
     let mut free = frozen.asked(time) - arm.drive.damping.component_mul(&speed);
-    if let Some(gravity) = &frozen.stations[index].gravity {
+    if let Some(gravity) = &frozen.intervals[index].gravity {
         free -= gravity * u;
     }
     // Springs with play are put in below, by the side on which they act.
@@ -259,9 +259,9 @@ fn stepped<const N: usize>(
     for joint in &frozen.loose {
         sides[*joint] = side(state.u[*joint], arm.drive.backlash[*joint]);
     }
-    let Frozen { stations, loose, .. } = frozen;
+    let Frozen { intervals, loose, .. } = frozen;
     let mut force = guess;
-    for _ in 0..MOST_SETS {
+    for _ in 0..MAX_SETS {
         let mut set = 0;
         let mut torques = free;
         for (bit, joint) in loose.iter().enumerate() {
@@ -273,7 +273,7 @@ fn stepped<const N: usize>(
                 torques[*joint] += stiffness * arm.drive.backlash[*joint] * sides[*joint];
             }
         }
-        let factor = stations[index].factor(arm, loose, h, set).ok_or(StepError::Singular { time })?;
+        let factor = intervals[index].factor(arm, loose, h, set).ok_or(StepError::Singular { time })?;
         let mut assumed = Vector3::from(force.on_tool);
         torques += tip.jacobian.transpose() * assumed.xy() + tip.axial.transpose() * assumed.z;
         let mut acceleration = factor.inverse * torques;
@@ -284,16 +284,16 @@ fn stepped<const N: usize>(
             evaluations += 1;
             let found = Vector3::from(force.on_tool);
             let change = found - assumed;
-            acceleration += factor.answer * change;
+            acceleration += factor.response * change;
             let moved = factor.tip * change;
             place += moved;
             assumed = found;
             // What the force changes by when the tip moves so far.
-            let follows = process.milling.stiffness() * moved.norm();
-            if follows <= (FORCE_TOLERANCE * found.norm()).max(LEAST_FORCE) {
+            let follows = process.removal.stiffness() * moved.norm();
+            if follows <= (FORCE_TOLERANCE * found.norm()).max(MIN_FORCE) {
                 break;
             }
-            if evaluations == MOST_EVALUATIONS || !follows.is_finite() {
+            if evaluations == MAX_EVALUATIONS || !follows.is_finite() {
                 return Err(StepError::NotConverged { time: time - h, step: h });
             }
         }

@@ -2,7 +2,7 @@
 
 use super::{End, Job, JobError, Process, Run};
 use crate::arm::{Arm, Compensation};
-use crate::integrator::{Newmark, Settings, State, System, Tangent};
+use crate::integrator::{MotionState, Newmark, Settings, System, Tangent};
 use crate::milling::Force;
 use nalgebra::SVector;
 
@@ -16,7 +16,7 @@ struct Coupled<'a, const N: usize> {
 }
 
 impl<const N: usize> System<N> for Coupled<'_, N> {
-    fn unbalanced(&mut self, time: f64, state: &State<N>) -> SVector<f64, N> {
+    fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N> {
         let (angles, speeds) = self.process.motion.motors(time);
         let posed = self.arm.chain.at(&state.q);
         let place = self.process.plane.place(&posed.tip());
@@ -30,7 +30,7 @@ impl<const N: usize> System<N> for Coupled<'_, N> {
             - jacobian.tr_mul(&self.process.plane.force(force.on_tool))
     }
 
-    fn tangent(&mut self, time: f64, state: &State<N>) -> Tangent<N> {
+    fn tangent(&mut self, time: f64, state: &MotionState<N>) -> Tangent<N> {
         let posed = self.arm.chain.at(&state.q);
         let reference = Arm::<N>::spread(&self.process.motion.motors(time).0);
         let springs = self.arm.drive.stiffness_at(&state.q, &reference);
@@ -50,7 +50,7 @@ pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError>
     let process = Process::new(job)?;
     let (steps, step) = (process.steps(), process.step);
     let (angles, speeds) = process.motion.motors(0.0);
-    let mut state = State {
+    let mut state = MotionState {
         q: arm.at_rest(&Arm::<N>::spread(&angles)),
         speed: Arm::<N>::spread(&speeds),
         acceleration: SVector::zeros(),

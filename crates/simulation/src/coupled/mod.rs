@@ -11,11 +11,11 @@ mod tests;
 
 use super::arm::{AnyArm, Missing};
 use super::integrator::StepError;
-use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, Milling};
+use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, MaterialRemoval};
 use super::motion::Motion;
 use super::setup::Setup;
+use super::stability_analysis::CutFrame;
 use super::surface::{Node, Trail};
-use super::survey::CutFrame;
 use nalgebra::Vector3;
 
 /// What is to be simulated.
@@ -106,7 +106,7 @@ impl Job<'_> {
 
 /// The plane of the cut in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Plane {
+pub(super) struct CutPlane {
     feed: Vector3<f64>,
     normal: Vector3<f64>,
     axis: Vector3<f64>,
@@ -114,7 +114,7 @@ pub(super) struct Plane {
     origin: Vector3<f64>,
 }
 
-impl Plane {
+impl CutPlane {
     fn new(job: &Job<'_>) -> Self {
         let motion = &job.setup.motion;
         let CutFrame { feed, normal, axis } = CutFrame::along(motion, job.cut.milling);
@@ -144,8 +144,8 @@ impl Plane {
     }
 
     /// Where the tool centre should be after a way (m).
-    fn nominal(&self, motion: &Motion, way: f64) -> [f64; 2] {
-        self.place(&(motion.start().translation + motion.direction() * way))
+    fn nominal(&self, motion: &Motion, distance: f64) -> [f64; 2] {
+        self.place(&(motion.start().translation + motion.direction() * distance))
     }
 }
 
@@ -153,8 +153,8 @@ impl Plane {
 #[derive(Debug)]
 struct Process<'a> {
     motion: &'a Motion,
-    plane: Plane,
-    milling: Milling,
+    plane: CutPlane,
+    removal: MaterialRemoval,
     limits: Limits,
     step: f64,
     samples: Vec<Sample>,
@@ -167,8 +167,8 @@ impl<'a> Process<'a> {
         let steps = (job.setup.motion.duration() / step) as usize + 2;
         Ok(Self {
             motion: &job.setup.motion,
-            plane: Plane::new(job),
-            milling: Milling::with_room(job.cutter, job.cut, steps)?,
+            plane: CutPlane::new(job),
+            removal: MaterialRemoval::with_room(job.cutter, job.cut, steps)?,
             limits: Limits { radius: job.cutter.radius(), spindle_speed: job.cut.spindle_speed },
             step,
             samples: Vec::with_capacity(steps),
@@ -188,17 +188,17 @@ impl<'a> Process<'a> {
         let whole = steps.round();
         // Times are products with the step: whole ones but for rounding.
         let steps = if (steps - whole).abs() < 1e-6 { whole } else { steps };
-        self.milling.force(steps, place)
+        self.removal.force(steps, place)
     }
 
     /// Writes down the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
     fn keep(&mut self, place: [f64; 2], velocity: [f64; 2], force: Force) -> Result<(), Limit> {
         let time = self.samples.len() as f64 * self.step;
-        let (way, feed) = self.motion.ramp().at(time);
-        let nominal = self.plane.nominal(self.motion, way);
+        let (distance, feed) = self.motion.ramp().at(time);
+        let nominal = self.plane.nominal(self.motion, distance);
         let deflection = [place[0] - nominal[0], place[1] - nominal[1]];
         self.samples.push(Sample { force: force.on_tool, deflection });
-        self.milling.remember(Node { place, motion: velocity.map(|part| part * self.step) });
+        self.removal.remember(Node { place, motion: velocity.map(|part| part * self.step) });
         self.limits.check(time, force.chip, deflection, [velocity[0] - feed, velocity[1]])
     }
 
@@ -206,7 +206,7 @@ impl<'a> Process<'a> {
         Run {
             step: self.step,
             samples: self.samples,
-            trail: self.milling.into_trail(),
+            trail: self.removal.into_trail(),
             end,
             evaluations: self.evaluations,
         }

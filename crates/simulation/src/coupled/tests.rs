@@ -4,11 +4,11 @@ use super::*;
 use crate::arm::{Variant, testing};
 use crate::milling::{Coefficients, Tooth};
 use crate::motion::{Pass, Ramp};
-use crate::outcome::{Look, Simulation, Statistics, statistics};
+use crate::outcome::{EvaluationSettings, Simulation, Statistics, statistics};
 use crate::stability::SemiDiscretisation;
-use crate::survey::linear_at;
+use crate::stability_analysis::linear_at;
 use std::f64::consts::TAU;
-use stead_model::cutting::Milling as Way;
+use stead_model::cutting::MillingDirection as Way;
 
 /// The arm on the published pass of a length (m) at a feed (m/s).
 fn setup(variant: Variant, damping_scale: f64, feed: f64, length: f64) -> Setup {
@@ -67,12 +67,12 @@ fn the_aluminium_table_comes_out() {
         (Variant::Backlash, 0.03, [-8.31, 42.40, 8.92, 16.41], [-117.07, 0.0, -25.43, 44.15]),
     ] {
         let found = forces(&aluminium(variant, 360, false));
-        for (found, [least, most, mean, square]) in found.iter().zip([x, y]) {
+        for (found, [min, max, mean, square]) in found.iter().zip([x, y]) {
             assert!(near(found.mean, mean, tolerance), "{variant:?} mean {} {mean}", found.mean);
             assert!(near(found.root_mean_square, square, tolerance), "{variant:?} {} {square}", found.root_mean_square);
-            assert!((found.most - most).abs() <= 0.05 * most.abs() + 1e-6, "{variant:?} most {} {most}", found.most);
-            let allowed = if least > -10.0 { 0.22 } else { 0.05 };
-            assert!(near(found.least, least, allowed), "{variant:?} least {} {least}", found.least);
+            assert!((found.max - max).abs() <= 0.05 * max.abs() + 1e-6, "{variant:?} max {} {max}", found.max);
+            let allowed = if min > -10.0 { 0.22 } else { 0.05 };
+            assert!(near(found.min, min, allowed), "{variant:?} min {} {min}", found.min);
         }
     }
 }
@@ -87,8 +87,8 @@ fn the_condensed_model_is_the_whole_chain() {
         for (full, fast) in forces(&full).iter().zip(forces(&fast)) {
             assert!(near(fast.mean, full.mean, tolerance), "{variant:?} {fast:?} {full:?}");
             assert!(near(fast.root_mean_square, full.root_mean_square, tolerance), "{variant:?} {fast:?} {full:?}");
-            assert!(near(fast.least, full.least, extreme), "{variant:?} {fast:?} {full:?}");
-            assert!((fast.most - full.most).abs() <= extreme * full.most + 1e-6, "{variant:?} {fast:?} {full:?}");
+            assert!(near(fast.min, full.min, extreme), "{variant:?} {fast:?} {full:?}");
+            assert!((fast.max - full.max).abs() <= extreme * full.max + 1e-6, "{variant:?} {fast:?} {full:?}");
         }
         if variant != Variant::Backlash {
             let apart = full.samples.iter().zip(&fast.samples).map(|(full, fast)| {
@@ -145,12 +145,12 @@ fn steel(damping_scale: f64) -> Run {
 #[test]
 fn steel_is_unstable_and_bounded_with_ten_times_the_damping() {
     let [unstable, bounded] = [1.0, 10.0].map(steel);
-    let unrest = |run: &Run| crate::outcome::unrest(run, [7.0, 10.0], 90).unwrap();
-    assert!(unrest(&unstable) > 0.3, "{}", unrest(&unstable));
-    assert!(unrest(&bounded) < 0.1, "{}", unrest(&bounded));
+    let period_variation = |run: &Run| crate::outcome::period_variation(run, [7.0, 10.0], 90).unwrap();
+    assert!(period_variation(&unstable) > 0.3, "{}", period_variation(&unstable));
+    assert!(period_variation(&bounded) < 0.1, "{}", period_variation(&bounded));
     assert_eq!((unstable.end, bounded.end), (End::Complete, End::Complete));
     let [early, late] = [[2.0, 4.0], [8.0, 10.0]].map(|window| statistics(&bounded, window).unwrap()[1]);
-    assert!(near(late.least, early.least, 0.05), "{early:?} {late:?}");
+    assert!(near(late.min, early.min, 0.05), "{early:?} {late:?}");
 }
 
 /// An arm without damping that cuts steel as deep as it goes is thrown out of what is represented: that is stated, and the run is
@@ -190,11 +190,11 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), Cut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
-    let look = Look { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
+    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
     let frame = CutFrame::along(&setup.motion, cut.milling);
-    let verdict_at = |way: f64| {
-        let plant = linear_at(&setup, way).unwrap().plant(&frame).unwrap();
+    let verdict_at = |distance: f64| {
+        let plant = linear_at(&setup, distance).unwrap().plant(&frame).unwrap();
         SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().verdict(cut.axial_depth)
     };
     assert_eq!(found.verdict, verdict_at(cutter.radius() + 0.06 + 0.005));

@@ -15,7 +15,7 @@ impl<const N: usize> Free<N> {
         Self { arm, reference, force: 0.0, kept: vec![] }
     }
 
-    fn energy(&self, state: &State<N>) -> f64 {
+    fn energy(&self, state: &MotionState<N>) -> f64 {
         let posed = self.arm.chain.at(&state.q);
         let kinetic = (state.speed.transpose() * posed.mass_matrix(&self.arm.chain) * state.speed)[0] / 2.0;
         let height = if self.arm.feels_gravity() { posed.potential(&self.arm.chain) } else { 0.0 };
@@ -24,7 +24,7 @@ impl<const N: usize> Free<N> {
 }
 
 impl<const N: usize> System<N> for Free<N> {
-    fn unbalanced(&mut self, time: f64, state: &State<N>) -> SVector<f64, N> {
+    fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N> {
         let posed = self.arm.chain.at(&state.q);
         let push = nalgebra::Vector3::new(0.0, self.force * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
@@ -33,7 +33,7 @@ impl<const N: usize> System<N> for Free<N> {
         self.arm.unbalanced(&posed, motion, reference, &mut compensation) - posed.tip_torques(&push)
     }
 
-    fn tangent(&mut self, _: f64, state: &State<N>) -> Tangent<N> {
+    fn tangent(&mut self, _: f64, state: &MotionState<N>) -> Tangent<N> {
         let posed = self.arm.chain.at(&state.q);
         let springs = self.arm.drive.stiffness_at(&state.q, &self.reference);
         Tangent {
@@ -43,19 +43,19 @@ impl<const N: usize> System<N> for Free<N> {
         }
     }
 
-    fn accept(&mut self, time: f64, _: &State<N>) {
+    fn accept(&mut self, time: f64, _: &MotionState<N>) {
         self.kept.push(time);
     }
 }
 
-fn at_rest<const N: usize>(q: SVector<f64, N>) -> State<N> {
-    State { q, speed: SVector::zeros(), acceleration: SVector::zeros() }
+fn at_rest<const N: usize>(q: SVector<f64, N>) -> MotionState<N> {
+    MotionState { q, speed: SVector::zeros(), acceleration: SVector::zeros() }
 }
 
 const EXACT: Settings = Settings { beta: 0.25, gamma: 0.5, tolerance: 1e-16, most_corrections: 30, most_halvings: 0 };
 
 /// The state after `time` s in steps of `step` s, and the largest change of energy on the way.
-fn run<const N: usize>(system: &mut Free<N>, from: &State<N>, step: f64, time: f64) -> (State<N>, f64) {
+fn run<const N: usize>(system: &mut Free<N>, from: &MotionState<N>, step: f64, time: f64) -> (MotionState<N>, f64) {
     let mut state = Newmark::started(system, 0.0, from).unwrap();
     let mut newmark = Newmark::new(EXACT);
     let energy = system.energy(&state);
@@ -93,12 +93,12 @@ fn energy_is_conserved() {
 /// Springs and a mass that does not change: nothing is lost at any step.
 #[test]
 fn energy_of_a_linear_system_is_kept_at_any_step() {
-    struct Linear;
-    impl System<2> for Linear {
-        fn unbalanced(&mut self, _: f64, state: &State<2>) -> SVector<f64, 2> {
+    struct LinearArm;
+    impl System<2> for LinearArm {
+        fn unbalanced(&mut self, _: f64, state: &MotionState<2>) -> SVector<f64, 2> {
             mass() * state.acceleration + stiffness() * state.q
         }
-        fn tangent(&mut self, _: f64, _: &State<2>) -> Tangent<2> {
+        fn tangent(&mut self, _: f64, _: &MotionState<2>) -> Tangent<2> {
             Tangent { mass: mass(), damping: SMatrix::zeros(), stiffness: stiffness() }
         }
     }
@@ -108,13 +108,14 @@ fn energy_of_a_linear_system_is_kept_at_any_step() {
     fn stiffness() -> SMatrix<f64, 2, 2> {
         SMatrix::from([[300.0, -100.0], [-100.0, 200.0]])
     }
-    let energy =
-        |s: &State<2>| ((s.speed.transpose() * mass() * s.speed)[0] + (s.q.transpose() * stiffness() * s.q)[0]) / 2.0;
+    let energy = |s: &MotionState<2>| {
+        ((s.speed.transpose() * mass() * s.speed)[0] + (s.q.transpose() * stiffness() * s.q)[0]) / 2.0
+    };
     for step in [1e-3, 0.1, 2.0] {
-        let mut state = Newmark::started(&mut Linear, 0.0, &at_rest(SVector::from([0.1, -0.2]))).unwrap();
+        let mut state = Newmark::started(&mut LinearArm, 0.0, &at_rest(SVector::from([0.1, -0.2]))).unwrap();
         let (mut newmark, before) = (Newmark::new(EXACT), energy(&state));
         for k in 0..1000 {
-            newmark.step(&mut Linear, step * f64::from(k), step, &mut state).unwrap();
+            newmark.step(&mut LinearArm, step * f64::from(k), step, &mut state).unwrap();
         }
         assert!((energy(&state) / before - 1.0).abs() < 1e-10, "{step}: {}", energy(&state) / before);
     }
@@ -167,14 +168,14 @@ struct Wall {
 }
 
 impl System<1> for Wall {
-    fn unbalanced(&mut self, _: f64, state: &State<1>) -> SVector<f64, 1> {
+    fn unbalanced(&mut self, _: f64, state: &MotionState<1>) -> SVector<f64, 1> {
         // Not in the tangent: corrections grow as soon as beta h^2 k is above the mass.
         state.acceleration + state.q * self.stiffness
     }
-    fn tangent(&mut self, _: f64, _: &State<1>) -> Tangent<1> {
+    fn tangent(&mut self, _: f64, _: &MotionState<1>) -> Tangent<1> {
         Tangent { mass: SMatrix::identity(), damping: SMatrix::zeros(), stiffness: SMatrix::zeros() }
     }
-    fn accept(&mut self, time: f64, _: &State<1>) {
+    fn accept(&mut self, time: f64, _: &MotionState<1>) {
         self.kept.push(time);
     }
 }

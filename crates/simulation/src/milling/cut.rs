@@ -2,13 +2,13 @@
 
 use super::cutter::Cutter;
 use std::f64::consts::TAU;
-use stead_model::cutting::Milling;
+use stead_model::cutting::MillingDirection;
 
 /// A straight pass along a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cut {
     /// Up or down milling.
-    pub milling: Milling,
+    pub milling: MillingDirection,
     /// Width of cut a_e; the whole diameter is a slot, with work on both sides of the tool. m
     pub radial_depth: f64,
     /// Depth of cut a_p. m
@@ -52,12 +52,12 @@ pub enum CutError {
     #[error("there must be at least one slice")]
     Slices,
     /// Steps that are too coarse to tell teeth apart.
-    #[error("there must be at least {least} steps a turn for the smallest pitch of the teeth, but are {steps}")]
+    #[error("there must be at least {min} steps a turn for the smallest pitch of the teeth, but are {steps}")]
     Steps {
         /// Steps a turn.
         steps: usize,
         /// The fewest that would do.
-        least: usize,
+        min: usize,
     },
 }
 
@@ -86,9 +86,9 @@ impl Cut {
         if self.slices == 0 {
             return Err(CutError::Slices);
         }
-        let least = least_steps(cutter);
-        if self.steps_per_turn < least {
-            return Err(CutError::Steps { steps: self.steps_per_turn, least });
+        let min = min_steps(cutter);
+        if self.steps_per_turn < min {
+            return Err(CutError::Steps { steps: self.steps_per_turn, min });
         }
         Ok(())
     }
@@ -101,8 +101,8 @@ impl Cut {
     /// The sign with which psi changes: down milling ends at the wall, up milling starts there.
     pub fn sense(&self) -> f64 {
         match self.milling {
-            Milling::Climb => -1.0,
-            Milling::Conventional => 1.0,
+            MillingDirection::Climb => -1.0,
+            MillingDirection::Conventional => 1.0,
         }
     }
 
@@ -113,7 +113,7 @@ impl Cut {
 }
 
 /// The fewest steps a turn with which earlier teeth can be found between steps already done.
-pub fn least_steps(cutter: &Cutter) -> usize {
+pub fn min_steps(cutter: &Cutter) -> usize {
     let smallest = cutter.teeth().iter().fold(TAU, |smallest, tooth| tooth.pitch.min(smallest));
     (STEPS_PER_PITCH * TAU / smallest - 1e-9).ceil() as usize
 }
@@ -132,7 +132,7 @@ mod tests {
         let teeth = [170.0_f64, 190.0].map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
         let cutter = Cutter::new(teeth.to_vec(), 0.5, 0.02, K).unwrap();
         let good = Cut {
-            milling: Milling::Climb,
+            milling: MillingDirection::Climb,
             radial_depth: 4e-3,
             axial_depth: 1.6e-3,
             length: 0.09,
@@ -157,7 +157,7 @@ mod tests {
             assert!(matches!(refused(&|cut| cut.spindle_speed = value), CutError::Positive { .. }));
         }
         assert_eq!(refused(&|cut| cut.slices = 0), CutError::Slices);
-        assert!(matches!(refused(&|cut| cut.steps_per_turn = 12), CutError::Steps { least: 13, .. }));
+        assert!(matches!(refused(&|cut| cut.steps_per_turn = 12), CutError::Steps { min: 13, .. }));
         let make = |pitch: f64, radius: f64, helix, flute, coefficients| {
             let teeth = vec![Tooth { pitch, radius: RADIUS }, Tooth { pitch: PI, radius }];
             Cutter::new(teeth, helix, flute, coefficients)

@@ -16,11 +16,11 @@ mod limit;
 #[cfg(test)]
 mod tests;
 
-pub use cut::{Cut, CutError, least_steps};
+pub use cut::{Cut, CutError, min_steps};
 pub use cutter::{Coefficients, Cutter, CutterError, Tooth};
 pub use limit::{Limit, Limits};
 
-use super::surface::{LANES, Look, Node, Passes, Predecessor, Rays, Stock, Trail, starts};
+use super::surface::{LANES, Node, Passes, Predecessor, Rays, Stock, ToothQuery, Trail, starts};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 use stead_numerics::simd::{Instructions, Lanes};
@@ -30,7 +30,7 @@ const STRETCH: usize = 6;
 
 /// Milling under way: the cutter in the work that it has milled so far.
 #[derive(Debug, Clone)]
-pub struct Milling {
+pub struct MaterialRemoval {
     teeth: Vec<Edge>,
     /// Sine and cosine of each slice's lag, in the sense in which psi changes. Bundles are filled up with slices that cut nothing.
     lags: Vec<[[f64; LANES]; 2]>,
@@ -53,7 +53,7 @@ pub struct Milling {
 
 /// A moment of which the chips are asked, with the widest instructions of the processor.
 struct Moment<'a> {
-    milling: &'a mut Milling,
+    removal: &'a mut MaterialRemoval,
     time: f64,
     centre: [f64; 2],
 }
@@ -63,7 +63,7 @@ impl WithSimd for Moment<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Chips {
-        self.milling.chips(simd, self.time, self.centre)
+        self.removal.chips(simd, self.time, self.centre)
     }
 }
 
@@ -95,7 +95,7 @@ struct Chips {
     thickest: [f64; LANES],
 }
 
-impl Milling {
+impl MaterialRemoval {
     /// Before the first contact.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl Milling {
     /// The force at a time (in steps) with the tool centre at a place (m), in the work left by what was
     /// [remembered](Self::remember).
     pub fn force(&mut self, time: f64, centre: [f64; 2]) -> Force {
-        let chips = self.instructions.run(Moment { milling: self, time, centre });
+        let chips = self.instructions.run(Moment { removal: self, time, centre });
         let sum = |parts: [f64; LANES]| parts.iter().sum::<f64>() * self.slice;
         let (cosines, sines) = (sum(chips.cosine), sum(chips.sine));
         let Coefficients { tangential, radial, axial } = self.coefficients;
@@ -162,7 +162,7 @@ impl Milling {
         let last = self.lags.len() - 1;
         for edge in &self.teeth {
             let tip = edge.tip(time, self.turn, self.sense);
-            let look = Look {
+            let query = ToothQuery {
                 trail: &self.trail,
                 predecessors: &edge.predecessors,
                 largest: self.largest,
@@ -180,7 +180,7 @@ impl Milling {
                 if bundle == last {
                     rays.to[self.rest..].fill(-1.0);
                 }
-                self.passes.clear(simd, &look, &mut rays);
+                self.passes.clear(simd, &query, &mut rays);
                 chips.add(simd, &rays);
             }
         }

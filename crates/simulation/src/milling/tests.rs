@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use stead_model::cutting::{Engagement, Milling as Way};
+use stead_model::cutting::{Engagement, MillingDirection as Way};
 
 mod strips;
 
@@ -30,17 +30,17 @@ fn aluminium(slices: usize, steps_per_turn: usize) -> (Cutter, Cut) {
 fn ramped(time: f64) -> [f64; 2] {
     let feed = 3.7 / 60.0;
     let rate = PI / 0.2;
-    let [way, speed] = if time < 0.2 {
+    let [direction, speed] = if time < 0.2 {
         [feed * (time / 2.0 - libm::sin(rate * time) / (2.0 * rate)), feed / 2.0 * (1.0 - libm::cos(rate * time))]
     } else {
         [feed * (time - 0.1), feed]
     };
-    [way - RADIUS - 0.5e-3, speed]
+    [direction - RADIUS - 0.5e-3, speed]
 }
 
 /// Forces over a rigid pass: times and what is printed, F_x and -F_y.
 fn rigid_pass((cutter, cut): &(Cutter, Cut), until: f64) -> Vec<(f64, [f64; 2])> {
-    let mut milling = Milling::new(cutter, cut).unwrap();
+    let mut milling = MaterialRemoval::new(cutter, cut).unwrap();
     let step = cut.step();
     (0..(until / step) as usize)
         .map(|index| {
@@ -94,11 +94,11 @@ fn a_rigid_arm_gives_the_forces_known_for_aluminium() {
 #[test]
 fn a_cut_of_circular_arcs_has_its_closed_form() {
     let feed = 0.2e-3;
-    for (way, sense) in [(Way::Climb, -1.0), (Way::Conventional, 1.0)] {
+    for (direction, sense) in [(Way::Climb, -1.0), (Way::Conventional, 1.0)] {
         let (turn, slices) = (180, 5);
         let cutter = cutter(&[360.0], &[0.0], 30.0);
-        let cut = cut(way, slices, turn);
-        let mut milling = Milling::new(&cutter, &cut).unwrap();
+        let cut = cut(direction, slices, turn);
+        let mut milling = MaterialRemoval::new(&cutter, &cut).unwrap();
         let mut largest = 0.0_f64;
         for step in 0..6 * turn {
             // The tooth is away from the work from 120 to 240 deg; there the tool is moved.
@@ -135,11 +135,11 @@ fn a_cut_of_circular_arcs_has_its_closed_form() {
 /// With little feed the mean over a turn comes near that of `h = f_z sin(phi)`, whose integrals the engagement knows.
 #[test]
 fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
-    for way in [Way::Climb, Way::Conventional] {
+    for direction in [Way::Climb, Way::Conventional] {
         let cutter = cutter(&[180.0; 2], &[0.0; 2], 0.0);
         let turn = 3600;
-        let cut = cut(way, 1, turn);
-        let mut milling = Milling::new(&cutter, &cut).unwrap();
+        let cut = cut(direction, 1, turn);
+        let mut milling = MaterialRemoval::new(&cutter, &cut).unwrap();
         let per_tooth = 1e-6;
         let step = 2.0 * per_tooth / turn as f64;
         let mut mean = [0.0; 2];
@@ -151,7 +151,7 @@ fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
                 mean = [mean[0] + force[0] / turn as f64, mean[1] + force[1] / turn as f64];
             }
         }
-        let engagement = match way {
+        let engagement = match direction {
             Way::Climb => Engagement::down(4e-3, 2.0 * RADIUS),
             Way::Conventional => Engagement::up(4e-3, 2.0 * RADIUS),
         };
@@ -163,12 +163,12 @@ fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
             let (sine, cosine) = libm::sincos(arc.entry + (part as f64 + 0.5) * width);
             let chip = per_tooth * sine * width / PI * 1.6e-3;
             // On the tool: against the motion of the tooth, (cos phi, +-sin phi), and from the tooth to the axis.
-            let side = if way == Way::Climb { 1.0 } else { -1.0 };
+            let side = if direction == Way::Climb { 1.0 } else { -1.0 };
             sum[0] += chip * (-K.tangential * cosine - K.radial * sine);
             sum[1] += chip * side * (K.tangential * sine - K.radial * cosine);
         }
         for (found, expected) in mean.iter().zip(sum) {
-            assert!((found / expected - 1.0).abs() < 2e-3, "{mean:?} {sum:?} {way:?}");
+            assert!((found / expected - 1.0).abs() < 2e-3, "{mean:?} {sum:?} {direction:?}");
         }
     }
 }
@@ -178,7 +178,7 @@ fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
 #[test]
 fn what_is_cut_is_what_is_fed() {
     let (cutter, turn) = (cutter(&[170.0, 190.0], &[0.0; 2], 0.0), 3600);
-    let mut milling = Milling::new(&cutter, &cut(Way::Climb, 1, turn)).unwrap();
+    let mut milling = MaterialRemoval::new(&cutter, &cut(Way::Climb, 1, turn)).unwrap();
     let step = 0.198e-3 / turn as f64;
     let mut area = 0.0;
     for index in 0..=4 * turn {
@@ -278,11 +278,11 @@ proptest! {
     ) {
         let turn = 120;
         let wild = Wild { start: [20e-3, RADIUS], feed, amplitude, waves_per_turn, phase, turn: turn as f64 };
-        let way = if climb { Way::Climb } else { Way::Conventional };
+        let direction = if climb { Way::Climb } else { Way::Conventional };
         let cutter = cutter(&[pitch, 360.0 - pitch], &[0.0, runout], 0.0);
-        let cut = cut(way, 1, turn);
+        let cut = cut(direction, 1, turn);
         // Short stretches, so that there are some.
-        let mut milling = Milling { trail: Trail::with_room(0, 40), ..Milling::new(&cutter, &cut).unwrap() };
+        let mut milling = MaterialRemoval { trail: Trail::with_room(0, 40), ..MaterialRemoval::new(&cutter, &cut).unwrap() };
         let turns = 6;
         let mut met = 0;
         for step in 0..turns * turn {
@@ -328,7 +328,7 @@ fn every_kind_of_instructions_gives_the_same_bits() {
     let (amplitude, waves_per_turn) = ([0.1e-3, 0.2e-3], [0.3, 0.7]);
     let wild = Wild { start: [20e-3, RADIUS], feed: 0.2e-3, amplitude, waves_per_turn, phase: 0.4, turn: 45.0 };
     let runs = Instructions::all().into_iter().map(|instructions| {
-        let mut milling = Milling { instructions, ..Milling::new(&cutter, &cut).unwrap() };
+        let mut milling = MaterialRemoval { instructions, ..MaterialRemoval::new(&cutter, &cut).unwrap() };
         let forces = (0..450).map(|step| {
             let node = wild.node(step as f64);
             let force = milling.force(step as f64, node.place);

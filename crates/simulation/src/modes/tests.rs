@@ -2,9 +2,9 @@ use super::*;
 use crate::arm::testing::{spindle, start, tx200};
 use crate::arm::{AnyArm, Arm, Variant};
 
-fn linear(damping_scale: f64) -> Linear<6> {
+fn linear(damping_scale: f64) -> LinearArm<6> {
     let arm = Arm::six(&tx200(), &spindle(), Variant::Springs, &start()).unwrap();
-    Linear::of(&arm, &start().into(), damping_scale)
+    LinearArm::of(&arm, &start().into(), damping_scale)
 }
 
 /// An independent prototype's frequencies for table 7: six springs, undamped.
@@ -58,7 +58,7 @@ fn one_joint_swings_as_the_formula_says() {
     let one = |value: f64| SMatrix::<f64, 1, 1>::new(value);
     let (mass, stiffness, damping) = (2.0, 800.0, 16.0);
     let tip = SMatrix::<f64, 3, 1>::new(0.0, 0.5, 0.0);
-    let linear = Linear { mass: one(mass), damping: one(damping), stiffness: one(stiffness), tip };
+    let linear = LinearArm { mass: one(mass), damping: one(damping), stiffness: one(stiffness), tip };
     let modes = linear.modes().unwrap();
     assert_eq!(modes.len(), 1);
     assert!((modes[0].frequency - 20.0 / TAU).abs() < 1e-12 && (modes[0].damping_ratio - 0.2).abs() < 1e-12);
@@ -69,17 +69,17 @@ fn one_joint_swings_as_the_formula_says() {
         assert!((response[(1, 1)] - expected).norm() < 1e-15 && response[(0, 0)].norm() == 0.0);
     }
     // Overdamped: two real eigenvalues, both given.
-    let creeping = Linear { damping: one(200.0), ..linear }.modes().unwrap();
+    let creeping = LinearArm { damping: one(200.0), ..linear }.modes().unwrap();
     assert!(creeping.len() == 2 && creeping.iter().all(|mode| (mode.damping_ratio - 1.0).abs() < 1e-12));
 }
 
-/// At zero frequency the tip answers with the static compliance of the arm, and reciprocally at any.
+/// At zero frequency the tip responds with the static compliance of the arm, and reciprocally at any.
 #[test]
 fn the_response_starts_from_the_static_compliance() {
     let AnyArm::Eighteen(arm) = AnyArm::new(&tx200(), &spindle(), Variant::Backlash, &start()).unwrap() else {
         panic!("the variant has eighteen joints");
     };
-    let linear = Linear::of(&arm, &arm.at_rest(&Arm::<18>::spread(&start())), 1.0);
+    let linear = LinearArm::of(&arm, &arm.at_rest(&Arm::<18>::spread(&start())), 1.0);
     let compliance = linear.tip * linear.stiffness.try_inverse().unwrap() * linear.tip.transpose();
     let response = linear.response(0.0).unwrap();
     assert!((response.map(|r| r.re) - compliance).amax() < 1e-12 * compliance.amax());
@@ -87,7 +87,8 @@ fn the_response_starts_from_the_static_compliance() {
     let modes = linear.modes().unwrap();
     let states: usize = modes.iter().map(|mode| if mode.damping_ratio < 1.0 { 2 } else { 1 }).sum();
     assert_eq!(states, 36);
-    let at =
-        Linear { stiffness: (linear.stiffness + linear.stiffness.transpose()) / 2.0, ..linear }.response(30.0).unwrap();
+    let at = LinearArm { stiffness: (linear.stiffness + linear.stiffness.transpose()) / 2.0, ..linear }
+        .response(30.0)
+        .unwrap();
     assert!((at - at.transpose()).map(|r| r.norm()).amax() < 1e-12 * at.map(|r| r.norm()).amax());
 }

@@ -16,14 +16,14 @@ fn the_ramp_is_smooth_and_reaches_the_feed() {
     for k in 1..300 {
         let time = 0.001 * f64::from(k);
         let slope = (RAMP.at(time + h).0 - RAMP.at(time - h).0) / (2.0 * h);
-        let (way, speed) = RAMP.at(time);
+        let (distance, speed) = RAMP.at(time);
         assert!((slope - speed).abs() < 1e-9, "{time}: {slope} {speed}");
         let acceleration = (RAMP.at(time + h).1 - RAMP.at(time - h).1) / (2.0 * h);
         // The jerk is at most 4 feed / time^2.
         let jerk = 4.0 * RAMP.feed / (RAMP.time * RAMP.time);
         assert!((acceleration - acceleration_before).abs() <= jerk * 0.001 * 1.001, "{time}");
         acceleration_before = acceleration;
-        assert!((RAMP.time_of(way) - time).abs() < 1e-9);
+        assert!((RAMP.time_of(distance) - time).abs() < 1e-9);
     }
     assert_eq!(RAMP.at(0.0), (0.0, 0.0));
     assert_eq!(RAMP.at(0.2).1, RAMP.feed);
@@ -41,10 +41,10 @@ proptest! {
         let motion = Motion::new(&robot, &spindle, &pass(direction, 0.1), RAMP).unwrap();
         let (angles, speeds) = motion.motors(time);
         let pose = robot.forward(&angles).then(&spindle.flange_from_tool);
-        let (wanted, way) = motion.tool(time);
+        let (wanted, distance) = motion.tool(time);
         prop_assert!((pose.translation - wanted).norm() < 1e-12, "{}", (pose.translation - wanted).norm());
         prop_assert!((pose.rotation - motion.start().rotation).amax() < 1e-12);
-        prop_assert!((wanted - motion.start().translation - direction * way).norm() < 1e-15);
+        prop_assert!((wanted - motion.start().translation - direction * distance).norm() < 1e-15);
         let velocity = Frames::new(&robot, &angles).jacobian(&pose.translation) * Vector6::from(speeds);
         let expected = direction * RAMP.at(time).1;
         prop_assert!((velocity.fixed_rows::<3>(0) - expected).norm() < 1e-9);
@@ -72,7 +72,7 @@ fn a_pass_starts_at_the_angles_given_and_ends_in_time() {
 fn what_the_arm_cannot_follow_is_said_with_its_place() {
     let (robot, spindle) = (tx200(), spindle());
     let far = Motion::new(&robot, &spindle, &pass(Vector3::x(), 5.0), RAMP).unwrap_err();
-    assert!(matches!(far, MotionError::Unreachable { way_mm, .. } if way_mm > 500.0), "{far}");
+    assert!(matches!(far, MotionError::Unreachable { distance_mm, .. } if distance_mm > 500.0), "{far}");
     let mut joints = robot.joints().clone();
     let at = Range::of(&joints[0]).nearest(start()[0]).0;
     joints[0].min = at - 0.01;

@@ -6,9 +6,9 @@ use proptest::prelude::*;
 
 /// A matrix over time: value, first and second derivative.
 #[derive(Clone, Copy)]
-pub struct Course(pub [Matrix4<f64>; 3]);
+pub struct MotionHistory(pub [Matrix4<f64>; 3]);
 
-impl Course {
+impl MotionHistory {
     fn then(&self, other: &Self) -> Self {
         let ([a, da, dda], [b, db, ddb]) = (&self.0, &other.0);
         Self([a * b, da * b + a * db, dda * b + da * db * 2.0 + a * ddb])
@@ -16,13 +16,13 @@ impl Course {
 }
 
 /// What each joint's frame does at angles, speeds and accelerations: products of exponentials.
-pub fn courses<const N: usize>(
+pub fn motion_histories<const N: usize>(
     chain: &Chain<N>,
     q: &SVector<f64, N>,
     speed: &SVector<f64, N>,
     acceleration: &SVector<f64, N>,
-) -> Vec<Course> {
-    let mut course = Course([Matrix4::identity(), Matrix4::zeros(), Matrix4::zeros()]);
+) -> Vec<MotionHistory> {
+    let mut course = MotionHistory([Matrix4::identity(), Matrix4::zeros(), Matrix4::zeros()]);
     let mut all = vec![];
     for (j, joint) in chain.joints().iter().enumerate() {
         let axis = match joint.axis() {
@@ -39,7 +39,7 @@ pub fn courses<const N: usize>(
         placed.fixed_view_mut::<3, 1>(0, 3).copy_from(&step.translation);
         let first = cross * turn * speed[j];
         let second = cross * cross * turn * speed[j] * speed[j] + cross * turn * acceleration[j];
-        course = course.then(&Course([placed * turn, placed * first, placed * second]));
+        course = course.then(&MotionHistory([placed * turn, placed * first, placed * second]));
         all.push(course);
     }
     all
@@ -53,12 +53,12 @@ pub fn torques_by_bodies<const N: usize>(
     acceleration: &SVector<f64, N>,
 ) -> SVector<f64, N> {
     let zero = SVector::zeros();
-    let courses = courses(chain, q, speed, acceleration);
+    let motion_histories = motion_histories(chain, q, speed, acceleration);
     let mut torques = SVector::zeros();
     for (b, joint) in chain.joints().iter().enumerate() {
         let Some(body) = joint.body() else { continue };
-        let [_, _, dd] = courses[b].0;
-        let [rotation, rate, rate2] = courses[b].0.map(|m| m.fixed_view::<3, 3>(0, 0).into_owned());
+        let [_, _, dd] = motion_histories[b].0;
+        let [rotation, rate, rate2] = motion_histories[b].0.map(|m| m.fixed_view::<3, 3>(0, 0).into_owned());
         let centre = body.centre().push(1.0);
         let force = ((dd * centre).xyz() - chain.free_fall()) * body.mass();
         let spin = of_cross(&(rate * rotation.transpose()));
@@ -68,7 +68,7 @@ pub fn torques_by_bodies<const N: usize>(
         for i in 0..=b {
             let mut unit = zero;
             unit[i] = 1.0;
-            let [_, d, _] = super::testing::courses(chain, q, &unit, &zero)[b].0;
+            let [_, d, _] = super::testing::motion_histories(chain, q, &unit, &zero)[b].0;
             let turned = of_cross(&(d.fixed_view::<3, 3>(0, 0) * rotation.transpose()));
             torques[i] += (d * centre).xyz().dot(&force) + turned.dot(&moment);
         }
@@ -91,7 +91,7 @@ pub fn mass_by_bodies<const N: usize>(chain: &Chain<N>, q: &SVector<f64, N>) -> 
         for i in 0..=b {
             let mut unit = zero;
             unit[i] = 1.0;
-            let [value, d, _] = courses(chain, q, &unit, &zero)[b].0;
+            let [value, d, _] = motion_histories(chain, q, &unit, &zero)[b].0;
             rotation = value.fixed_view::<3, 3>(0, 0).into_owned();
             linear.set_column(i, &(d * body.centre().push(1.0)).xyz());
             angular.set_column(i, &of_cross(&(d.fixed_view::<3, 3>(0, 0) * rotation.transpose())));

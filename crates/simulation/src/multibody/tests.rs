@@ -1,6 +1,6 @@
 //! The chain against the second formulation of [`testing`](super::testing).
 
-use super::testing::{chain, courses, mass_by_bodies, torques_by_bodies, vector_in};
+use super::testing::{chain, mass_by_bodies, motion_histories, torques_by_bodies, vector_in};
 use super::*;
 use proptest::prelude::*;
 
@@ -49,7 +49,7 @@ proptest! {
     ) {
         for q in [q, small] {
             let posed = chain.at(&q);
-            let [value, rate, _] = courses(&chain, &q, &speed, &SVector::zeros())[5].0;
+            let [value, rate, _] = motion_histories(&chain, &q, &speed, &SVector::zeros())[5].0;
             let tip = chain.last_from_tip().translation.push(1.0);
             prop_assert!((posed.tip() - (value * tip).xyz()).norm() < 1e-12);
             prop_assert!((posed.tip_jacobian() * speed - (rate * tip).xyz()).norm() < 1e-12);

@@ -3,7 +3,7 @@
 use crate::milling::{Coefficients, Cut, Cutter};
 use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, Milling};
+use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, MillingDirection};
 
 /// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`. N/m
 ///
@@ -76,10 +76,10 @@ pub(super) fn mean(cutter: &Cutter, cut: &Cut, exit: f64) -> Matrix3x2<f64> {
     matrix(cutter, cut.milling, &Integrals::over(Arc { entry: 0.0, exit })) / TAU
 }
 
-fn matrix(cutter: &Cutter, milling: Milling, sums: &Integrals) -> Matrix3x2<f64> {
+fn matrix(cutter: &Cutter, milling: MillingDirection, sums: &Integrals) -> Matrix3x2<f64> {
     let tangential = match milling {
-        Milling::Climb => cutter.coefficients().tangential,
-        Milling::Conventional => -cutter.coefficients().tangential,
+        MillingDirection::Climb => cutter.coefficients().tangential,
+        MillingDirection::Conventional => -cutter.coefficients().tangential,
     };
     let Coefficients { radial, axial, .. } = cutter.coefficients();
     let Integrals { sine, cosine, sine_squared, cosine_squared, sine_cosine } = *sums;

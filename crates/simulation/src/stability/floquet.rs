@@ -75,10 +75,10 @@ pub struct SemiDiscretisation<'a> {
 
 /// Intervals between two teeth, at least.
 const INTERVALS_PER_TOOTH: usize = 60;
-/// Intervals in a period of the fastest mode that swings, at least, as far as [`MOST_INTERVALS`] allows.
+/// Intervals in a period of the fastest mode that swings, at least, as far as [`MAX_INTERVALS`] allows.
 const INTERVALS_PER_SWING: f64 = 32.0;
 /// Intervals in a turn, at most, unless more are asked for.
-const MOST_INTERVALS: usize = 1200;
+const MAX_INTERVALS: usize = 1200;
 
 impl<'a> SemiDiscretisation<'a> {
     /// With as many intervals as teeth and modes need.
@@ -87,7 +87,7 @@ impl<'a> SemiDiscretisation<'a> {
     /// [`EngagementError`] for a width of cut that is none.
     pub fn new(plant: &'a Plant, cutter: &'a Cutter, cut: &'a Cut) -> Result<Self, EngagementError> {
         let swings = plant.poles().iter().fold(0.0_f64, |most, pole| most.max(pole.im));
-        let for_modes = (INTERVALS_PER_SWING * swings / cut.spindle_speed).min(MOST_INTERVALS as f64) as usize;
+        let for_modes = (INTERVALS_PER_SWING * swings / cut.spindle_speed).min(MAX_INTERVALS as f64) as usize;
         Self::with_intervals(plant, cutter, cut, for_modes.max(INTERVALS_PER_TOOTH * cutter.teeth().len()))
     }
 
@@ -135,7 +135,7 @@ impl<'a> SemiDiscretisation<'a> {
 
     /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to `most`. m
     ///
-    /// Depths are looked at from a thousandth of `most` up, each a fifth larger than the one before, so a narrow island of
+    /// Depths are examined from a thousandth of `most` up, each a fifth larger than the one before, so a narrow island of
     /// instability may be missed.
     pub fn critical_depth(&self, most: f64) -> Option<f64> {
         let [mut low, mut high] = [0.0, most / 1000.0];

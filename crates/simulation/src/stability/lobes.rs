@@ -7,7 +7,7 @@ use crate::milling::{Cut, Cutter};
 use rayon::prelude::*;
 use stead_model::cutting::EngagementError;
 
-/// How deep can be cut at a spindle speed; `None` where all depths looked at are stable.
+/// How deep can be cut at a spindle speed; `None` where all depths up to the largest are stable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobe {
     /// Angular speed of the spindle. rad/s

@@ -1,6 +1,6 @@
-//! How the tool tip answers to forces, as a state-space model.
+//! Response of the tool tip to forces, as a state-space model.
 
-use crate::modes::Linear;
+use crate::modes::LinearArm;
 use nalgebra::{Complex, DMatrix, Matrix2x3, Vector3};
 
 /// `x' = A x + B F`, `u = C x`: force F (N) on the tool tip along the feed, the outward normal of the wall and the tool axis, and
@@ -42,7 +42,7 @@ impl Plant {
 
     /// Small motions of an arm's tip under forces along three directions in the base frame: the feed, the outward normal of the
     /// wall and the tool axis. `None` where the mass matrix has no inverse.
-    pub fn of_arm<const N: usize>(arm: &Linear<N>, directions: [Vector3<f64>; 3]) -> Option<Self> {
+    pub fn of_arm<const N: usize>(arm: &LinearArm<N>, directions: [Vector3<f64>; 3]) -> Option<Self> {
         let a = arm.state_matrix()?;
         let tip = DMatrix::from_fn(3, N, |row, joint| directions[row].dot(&arm.tip.column(joint)));
         let mass = DMatrix::from_fn(N, N, |row, column| arm.mass[(row, column)]);
@@ -81,8 +81,8 @@ impl Plant {
             swing - Complex::from(self.a[(row, column)])
         });
         let states = matrix.lu().solve(&self.b.map(Complex::from))?;
-        let answer = self.c.map(Complex::from) * states;
-        Some(Matrix2x3::from_fn(|row, column| answer[(row, column)]))
+        let response = self.c.map(Complex::from) * states;
+        Some(Matrix2x3::from_fn(|row, column| response[(row, column)]))
     }
 
     /// Over a step (s) exactly, for a force that changes linearly from one value to another: next states are

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::arm::{Arm, Variant, testing};
-use crate::milling::{Coefficients, Cut, Cutter, Milling, Tooth};
-use crate::modes::Linear;
+use crate::milling::{Coefficients, Cut, Cutter, MaterialRemoval, Tooth};
+use crate::modes::LinearArm;
 use crate::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::Milling as Way;
+use stead_model::cutting::MillingDirection as Way;
 
 mod time_domain;
 
@@ -118,7 +118,7 @@ fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: u
     let size = n + 2 * intervals;
     let mut whole = DMatrix::<f64>::identity(size, size);
     let [_, _, rising] = plant.step(1e-9);
-    // B from the answer to a force over a very short time.
+    // B from the response to a force over a very short time.
     let b = rising * 2.0 / 1e-9;
     for interval in 0..intervals {
         let mut mean = Matrix2::zeros();
@@ -160,13 +160,13 @@ fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: u
 #[test]
 fn the_classical_method_agrees_for_all_immersions() {
     let (plant, cutter) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0));
-    for (way, immersion) in [(Way::Climb, 1.0), (Way::Climb, 0.1), (Way::Climb, 0.05), (Way::Conventional, 0.1)] {
-        let cut = cut(way, immersion, 9000.0);
+    for (direction, immersion) in [(Way::Climb, 1.0), (Way::Climb, 0.1), (Way::Climb, 0.05), (Way::Conventional, 0.1)] {
+        let cut = cut(direction, immersion, 9000.0);
         let ours = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap();
         for depth in [0.5e-3, 3e-3] {
             let (ours, classical) =
                 (ours.verdict(depth).multiplier.norm(), classical(&plant, &cutter, &cut, depth, 80));
-            assert!((ours / classical - 1.0).abs() < 0.02, "{ours} {classical} {way:?} {immersion} {depth}");
+            assert!((ours / classical - 1.0).abs() < 0.02, "{ours} {classical} {direction:?} {immersion} {depth}");
         }
     }
 }
@@ -196,17 +196,17 @@ fn the_zero_order_solution_is_that_of_mean_coefficients() {
     let b = DMatrix::from_row_slice(4, 2, &[0., 0., 0., 0., 1.0 / MASS, 0., 0., 1.0 / MASS]);
     let c = DMatrix::from_row_slice(2, 4, &[1., 0., 0., 0., 0., 1., 0., 0.]);
     let two_directions = Plant::new(a, b, c).unwrap();
-    for (plant, way, immersion, rpm, pitches) in [
+    for (plant, direction, immersion, rpm, pitches) in [
         (benchmark_plant(), Way::Climb, 1.0, 8000.0, [180.0; 2]),
         (benchmark_plant(), Way::Conventional, 0.3, 13_000.0, [150.0, 210.0]),
         (two_directions.clone(), Way::Climb, 0.4, 9000.0, [180.0; 2]),
         (two_directions, Way::Conventional, 0.2, 7000.0, [165.0, 195.0]),
     ] {
-        let (cutter, cut) = (benchmark_cutter(&pitches, 0.0), cut(way, immersion, rpm));
+        let (cutter, cut) = (benchmark_cutter(&pitches, 0.0), cut(direction, immersion, rpm));
         let zero_order = ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 0.1).unwrap().unwrap();
         let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap().with_mean_coefficients();
         let depth = method.critical_depth(0.1).unwrap();
-        assert!((zero_order / depth - 1.0).abs() < 5e-3, "{zero_order} {depth} {way:?} {immersion}");
+        assert!((zero_order / depth - 1.0).abs() < 5e-3, "{zero_order} {depth} {direction:?} {immersion}");
     }
 }
 
@@ -231,7 +231,7 @@ fn umons(pitches_deg: [f64; 2], rpm: f64, tangential: f64, radial: f64) -> (Cutt
 #[test]
 fn aluminium_is_calm_and_steel_flips() {
     let arm = Arm::six(&testing::tx200(), &testing::spindle(), Variant::Springs, &testing::start()).unwrap();
-    let linear = Linear::of(&arm, &SVector::from(testing::start()), 1.0);
+    let linear = LinearArm::of(&arm, &SVector::from(testing::start()), 1.0);
     // The wall is on the right of the feed.
     let plant = Plant::of_arm(&linear, [Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
     let (cutter, cut) = umons([170.0, 190.0], 18_700.0, 661.553e6, 253.458e6);
@@ -246,7 +246,7 @@ fn aluminium_is_calm_and_steel_flips() {
             .map(Option::unwrap);
     assert!((0.6e-3..0.7e-3).contains(&depth) && zero_order > 1.2 * depth, "{depth} {zero_order}");
     // Ten times the damping calms it nearly: it more than doubles the depth.
-    let damped = Linear::of(&arm, &SVector::from(testing::start()), 10.0);
+    let damped = LinearArm::of(&arm, &SVector::from(testing::start()), 10.0);
     let damped = Plant::of_arm(&damped, [Vector3::x(), Vector3::y(), Vector3::z()]).unwrap();
     let damped = SemiDiscretisation::new(&damped, &cutter, &cut).unwrap();
     assert!(damped.critical_depth(20e-3).unwrap() > 2.0 * depth);

@@ -6,14 +6,14 @@ use crate::milling::{Cut, Cutter};
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
 use stead_model::cutting::EngagementError;
 
-/// The answer of a tool tip at many frequencies, from which the zero-order solution is read at any spindle speed.
+/// The frequency response of a tool tip, from which the zero-order solution is read at any spindle speed.
 ///
 /// With `F = b K q(omega) u`, K the mean coefficients of all teeth and `q = mean_j (1 - e^(-i omega tau_j))`, motion of a frequency
 /// omega keeps its size where `b q(omega) lambda(omega) = 1` for an eigenvalue lambda of `K G(i omega)` (Altintas and Budak 1995,
 /// here for a given speed, which allows for unequal pitch).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroOrder {
-    answers: Vec<(f64, Matrix2x3<Complex<f64>>)>,
+    responses: Vec<(f64, Matrix2x3<Complex<f64>>)>,
 }
 
 /// Frequencies in the half width of a resonance.
@@ -41,8 +41,8 @@ impl ZeroOrder {
         }
         frequencies.retain(|omega| *omega > 0.0);
         frequencies.sort_by(f64::total_cmp);
-        let answers = frequencies.into_iter().filter_map(|omega| Some((omega, plant.response(omega)?)));
-        Self { answers: answers.collect() }
+        let responses = frequencies.into_iter().filter_map(|omega| Some((omega, plant.response(omega)?)));
+        Self { responses: responses.collect() }
     }
 
     /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `most`. m
@@ -56,14 +56,14 @@ impl ZeroOrder {
         let longest = delays.iter().fold(0.0_f64, |most, delay| most.max(*delay));
         let mut best = most;
         let mut last = None::<[Complex<f64>; 2]>;
-        for pair in self.answers.windows(2) {
+        for pair in self.responses.windows(2) {
             let [(from, first), (to, second)] = pair else { continue };
             // Between two frequencies the delays may turn several times.
             let steps = ((to - from) * longest / STEP).ceil().max(1.0) as usize;
             for step in 0..steps {
                 let share = step as f64 / steps as f64;
-                let answer = first + (second - first) * Complex::from(share);
-                let found = gains(&coefficients, &delays, from + (to - from) * share, &answer);
+                let response = first + (second - first) * Complex::from(share);
+                let found = gains(&coefficients, &delays, from + (to - from) * share, &response);
                 let found = last.map_or(found, |last| matched(&last, found));
                 for (before, after) in last.iter().flatten().zip(found) {
                     // Where the imaginary part passes zero.
@@ -84,7 +84,7 @@ fn gains(
     coefficients: &Matrix3x2<Complex<f64>>,
     delays: &[f64],
     omega: f64,
-    answer: &Matrix2x3<Complex<f64>>,
+    response: &Matrix2x3<Complex<f64>>,
 ) -> [Complex<f64>; 2] {
     let factor: Complex<f64> = delays
         .iter()
@@ -93,7 +93,7 @@ fn gains(
             Complex::new(1.0 - cosine, sine)
         })
         .sum();
-    let fed = answer * coefficients * factor;
+    let fed = response * coefficients * factor;
     let (half, determinant) = (fed.trace() / 2.0, fed.determinant());
     let root = square_root(half * half - determinant);
     [half + root, half - root]

@@ -13,7 +13,7 @@ mod passes;
 mod rays;
 mod trail;
 
-pub use passes::{Look, Passes, Predecessor};
+pub use passes::{Passes, Predecessor, ToothQuery};
 pub(super) use rays::starts;
 pub use rays::{LANES, Rays, Stock};
 pub use trail::{Extent, Extents, Node, Trail};

@@ -18,7 +18,7 @@ pub struct Predecessor {
 
 /// What is constant while one tooth looks along its rays.
 #[derive(Debug, Clone, Copy)]
-pub struct Look<'a> {
+pub struct ToothQuery<'a> {
     /// Where the centre was.
     pub trail: &'a Trail,
     /// The teeth of the last turn, the nearest first; those of the turns before follow them a turn apart.
@@ -63,16 +63,16 @@ impl Passes {
         self.ended = false;
     }
 
-    fn get(&mut self, look: &Look<'_>, index: usize) -> Option<Met> {
+    fn get(&mut self, query: &ToothQuery<'_>, index: usize) -> Option<Met> {
         while self.met.len() <= index && !self.ended {
             let number = self.met.len();
-            let turns = (number / look.predecessors.len()) as f64;
-            let predecessor = look.predecessors[number % look.predecessors.len()];
-            let time = look.time - predecessor.delay - turns * look.turn;
+            let turns = (number / query.predecessors.len()) as f64;
+            let predecessor = query.predecessors[number % query.predecessors.len()];
+            let time = query.time - predecessor.delay - turns * query.turn;
             // So that the centre is known for all rays that lie within a radian.
-            match look.trail.at(time).filter(|_| time >= look.steps_per_radian.abs()) {
+            match query.trail.at(time).filter(|_| time >= query.steps_per_radian.abs()) {
                 Some(centre) => {
-                    let older = look.trail.up_to(time - predecessor.spacing / 2.0);
+                    let older = query.trail.up_to(time - predecessor.spacing / 2.0);
                     self.met.push(Met { time, radius: predecessor.radius, centre, older });
                 }
                 None => self.ended = true,
@@ -84,13 +84,14 @@ impl Passes {
     /// Moves the beginning of each ray to where earlier teeth have cleared it: as far as need be, to the end of the ray at
     /// most. m
     #[inline(always)]
-    pub fn clear<S: Simd>(&mut self, simd: S, look: &Look<'_>, rays: &mut Rays) {
+    pub fn clear<S: Simd>(&mut self, simd: S, query: &ToothQuery<'_>, rays: &mut Rays) {
         let mut index = 0;
-        while let Some(met) = self.get(look, index) {
-            let centres = centres(simd, look, &met, rays);
-            advance(simd, look, &met, &centres, rays);
+        while let Some(met) = self.get(query, index) {
+            let centres = centres(simd, query, &met, rays);
+            advance(simd, query, &met, &centres, rays);
             let Some(Extents { recent, before }) = &met.older else { break };
-            if !may_reach(simd, recent, look, rays) && !before.is_some_and(|older| may_reach(simd, &older, look, rays))
+            if !may_reach(simd, recent, query, rays)
+                && !before.is_some_and(|older| may_reach(simd, &older, query, rays))
             {
                 break;
             }
@@ -110,11 +111,11 @@ const STRAY: f64 = 2e-5;
 /// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower than the edge,
 /// unless it is swift or just now on the turn.
 #[inline(always)]
-fn centres<S: Simd>(simd: S, look: &Look<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
-    let [vx, vy] = met.centre.motion.map(|motion| motion * look.steps_per_radian / met.radius);
+fn centres<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
+    let [vx, vy] = met.centre.motion.map(|motion| motion * query.steps_per_radian / met.radius);
     let [x, y] = met.centre.place;
-    let first = times(simd, look, met, rays, &[[x; LANES], [y; LANES]], [vx, vy]);
-    let found = places(simd, look, met, &first);
+    let first = times(simd, query, met, rays, &[[x; LANES], [y; LANES]], [vx, vy]);
+    let found = places(simd, query, met, &first);
     let stray = |lane: usize| {
         let [dx, dy] = [(0, x), (1, y)]
             .map(|(axis, place)| (found[axis][lane] - place - met.centre.motion[axis] * first[lane]).abs());
@@ -125,13 +126,13 @@ fn centres<S: Simd>(simd: S, look: &Look<'_>, met: &Met, rays: &Rays) -> [[f64; 
     }
     let (mut known, mut found) = (first, found);
     for _ in 0..3 {
-        let mut next = times(simd, look, met, rays, &found, [0.0; 2]);
+        let mut next = times(simd, query, met, rays, &found, [0.0; 2]);
         for lane in 0..LANES {
             // What is left of the error shrinks once more by the drift of the centre.
             let drift = vx * rays.cosine[lane] + vy * rays.sine[lane];
             next[lane] += drift * (known[lane] - next[lane]);
         }
-        found = places(simd, look, met, &next);
+        found = places(simd, query, met, &next);
         known = next;
     }
     found
@@ -143,7 +144,7 @@ fn centres<S: Simd>(simd: S, look: &Look<'_>, met: &Met, rays: &Rays) -> [[f64; 
 #[inline(always)]
 fn times<S: Simd>(
     simd: S,
-    look: &Look<'_>,
+    query: &ToothQuery<'_>,
     met: &Met,
     rays: &Rays,
     [xs, ys]: &[[f64; LANES]; 2],
@@ -153,25 +154,25 @@ fn times<S: Simd>(
     let mut times = [0.0; LANES];
     for start in starts::<S>() {
         let (sine, cosine) = (Lanes::load(simd, &rays.sine, start), Lanes::load(simd, &rays.cosine, start));
-        let (dx, dy) = (Lanes::load(simd, xs, start) - look.centre[0], Lanes::load(simd, ys, start) - look.centre[1]);
+        let (dx, dy) = (Lanes::load(simd, xs, start) - query.centre[0], Lanes::load(simd, ys, start) - query.centre[1]);
         let drift = cosine * vx + sine * vy;
         let ratio = (cosine * dx + sine * dy) * -inverse * ((drift * drift - drift) + 1.0);
         let square = ratio * ratio;
         let series = (((square * (5.0 / 112.0) + 3.0 / 40.0) * square + 1.0 / 6.0) * square + 1.0) * ratio;
         let turned = series.min(ratio.all(1.0)).max(ratio.all(-1.0));
-        (turned * look.steps_per_radian).store(&mut times, start);
+        (turned * query.steps_per_radian).store(&mut times, start);
     }
     times
 }
 
 /// Where the centre was at times after that of an earlier tooth: x and y. m
 #[inline(always)]
-fn places<S: Simd>(simd: S, look: &Look<'_>, met: &Met, times: &[f64; LANES]) -> [[f64; LANES]; 2] {
+fn places<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, times: &[f64; LANES]) -> [[f64; LANES]; 2] {
     let [mut xs, mut ys] = [[0.0; LANES]; 2];
     let [first, last] = [times[0], times[LANES - 1]];
     let middle = (first + last) / 2.0;
     let beside = (last - first).abs() / 2.0 + (times[LANES / 2] - middle).abs();
-    match look.trail.leg(met.time + middle) {
+    match query.trail.leg(met.time + middle) {
         Some((leg, within)) if within > beside - BESIDE && within + beside < 1.0 + BESIDE => {
             let offset = within - middle;
             for start in starts::<S>() {
@@ -185,7 +186,7 @@ fn places<S: Simd>(simd: S, look: &Look<'_>, met: &Met, times: &[f64; LANES]) ->
         _ => {
             for lane in 0..LANES {
                 // Before the first step: as far away as never to matter.
-                [xs[lane], ys[lane]] = look.trail.place(met.time + times[lane]).unwrap_or([-1e3, 0.0]);
+                [xs[lane], ys[lane]] = query.trail.place(met.time + times[lane]).unwrap_or([-1e3, 0.0]);
             }
         }
     }
@@ -194,11 +195,11 @@ fn places<S: Simd>(simd: S, look: &Look<'_>, met: &Met, times: &[f64; LANES]) ->
 
 /// Moves the beginning of each ray to the arc of an earlier tooth, where that is farther.
 #[inline(always)]
-fn advance<S: Simd>(simd: S, look: &Look<'_>, met: &Met, [xs, ys]: &[[f64; LANES]; 2], rays: &mut Rays) {
+fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, [xs, ys]: &[[f64; LANES]; 2], rays: &mut Rays) {
     let square = met.radius * met.radius;
     for start in starts::<S>() {
         let (sine, cosine) = (Lanes::load(simd, &rays.sine, start), Lanes::load(simd, &rays.cosine, start));
-        let (dx, dy) = (Lanes::load(simd, xs, start) - look.centre[0], Lanes::load(simd, ys, start) - look.centre[1]);
+        let (dx, dy) = (Lanes::load(simd, xs, start) - query.centre[0], Lanes::load(simd, ys, start) - query.centre[1]);
         let across = dx * cosine + dy * sine;
         let left = across.all(square) - across * across;
         let reach = dx * sine - dy * cosine + left.sqrt();
@@ -214,8 +215,8 @@ fn advance<S: Simd>(simd: S, look: &Look<'_>, met: &Met, [xs, ys]: &[[f64; LANES
 /// `d . e + R - (d x e)^2 / 2R` at most, with the nearest centre. A ray a little astern is cleared most by a centre farther back,
 /// unless that is as near as they come. A ray far astern is only known to be no further cleared than any edge came down.
 #[inline(always)]
-fn may_reach<S: Simd>(simd: S, older: &Extent, look: &Look<'_>, rays: &Rays) -> bool {
-    let ([x, y], radius) = (look.centre, look.largest);
+fn may_reach<S: Simd>(simd: S, older: &Extent, query: &ToothQuery<'_>, rays: &Rays) -> bool {
+    let ([x, y], radius) = (query.centre, query.largest);
     let behind = x - older.front;
     if behind > 2.0 * radius {
         return false;

@@ -62,7 +62,7 @@ pub struct Compensator {
 }
 
 /// A spring may not get shorter than this within the limits of its joint. m
-const LEAST_SPRING: f64 = 1e-9;
+const MIN_SPRING: f64 = 1e-9;
 
 impl Compensator {
     /// Length of the spring at a joint angle in rad. m
@@ -113,7 +113,7 @@ impl Compensator {
                 continue;
             }
             let angle_deg = angle.to_degrees();
-            if self.length_at(cosine) <= LEAST_SPRING {
+            if self.length_at(cosine) <= MIN_SPRING {
                 return Err(RobotError::SpringVanishes { joint: number, angle_deg });
             }
             let stiffness = 1.0 / alone + self.stiffness_at(cosine);

@@ -1,4 +1,4 @@
-//! How the compliance of a joint answers to the parameters of its law: exact derivatives, for uncertainties.
+//! Derivatives of the compliance of a joint with respect to the parameters of its law: exact derivatives, for uncertainties.
 
 use super::{Compensator, Compliance, Joint};
 use crate::robot::Parameter;

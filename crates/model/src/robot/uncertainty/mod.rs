@@ -140,7 +140,7 @@ const ROUNDING: f64 = 1e-9;
 
 impl Uncertainty {
     /// The most parameters that the laws of six joints can have: three at each.
-    pub const MOST_PARAMETERS: usize = 18;
+    pub const MAX_PARAMETERS: usize = 18;
 
     /// Takes parameters and their covariance, in SI units, row and column k for parameter k.
     ///

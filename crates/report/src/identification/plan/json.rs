@@ -1,9 +1,9 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
-use super::super::super::json::inputs;
-use super::super::super::number::Unit;
 use super::super::{URAD, key, rounded};
 use super::warnings;
+use crate::document::Document;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::design::expected::ExpectedCompliance;
@@ -34,10 +34,8 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
         value.insert("lever_mm".to_owned(), json!(Unit::PLACE_MM.number(hardly.lever)));
         Value::Object(value)
     });
-    json!({
-        "version": env!("CARGO_PKG_VERSION"),
+    Document::new(&run.inputs).notes(&run.notes).warnings(warnings(run, plan)).with(json!({
         "robot": request.robot.name(),
-        "inputs": inputs(&run.inputs),
         "seed": request.seed,
         "load_n": Unit::FORCE_N.number(request.load),
         "noise_mm": request.noise * 1e3,
@@ -64,8 +62,7 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
         "travel_deg": Unit::ANGLE_DEG.number(plan.travel),
         "unseen": plan.unobservable.iter().map(unidentifiable).collect::<Vec<_>>(),
         "hardly_seen": hardly.collect::<Vec<_>>(),
-        "warnings": warnings(run, plan),
-    })
+    }))
 }
 
 /// Null where there is no finite number.

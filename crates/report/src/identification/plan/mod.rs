@@ -7,11 +7,11 @@ mod text;
 pub use json::plan_json;
 pub use text::plan_text;
 
-use super::super::json as documents;
+use super::super::document as documents;
 use super::super::output::{Folder, ReportError};
 use super::super::picture;
-use super::super::words::compliance_name;
-use crate::number::{figures, fixed};
+use crate::names::compliance_name;
+use crate::units::{figures, fixed};
 use std::path::PathBuf;
 use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason};
 use stead_calibration::identification::design::{Design, Loads};

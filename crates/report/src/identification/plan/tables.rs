@@ -1,9 +1,9 @@
 //! The CSV file of expected errors.
 
-use super::super::super::number::Unit;
 use super::super::super::output::ReportError;
-use super::super::super::tables::table;
 use super::super::{URAD, key, rounded, unit};
+use crate::csv_file::table;
+use crate::units::Unit;
 use stead_calibration::identification::design::Design;
 
 /// Significant digits of expected errors.

@@ -1,9 +1,9 @@
 //! The table for people.
 
-use super::super::super::number::{figures, fixed};
-use super::super::super::text::aligned;
 use super::super::{URAD, key};
 use super::{left_out, warnings};
+use crate::columns::aligned;
+use crate::units::{figures, fixed};
 use stead_calibration::identification::design::{Design, TestCases};
 use stead_format::PlanRun;
 

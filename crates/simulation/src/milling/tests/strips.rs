@@ -16,10 +16,12 @@ fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
         phase: 4.797,
         turn: turn as f64,
     };
-    for (way, width) in [(Way::Climb, 4e-3), (Way::Climb, 9.75e-3), (Way::Conventional, 9.75e-3), (Way::Climb, 10e-3)] {
+    for (direction, width) in
+        [(Way::Climb, 4e-3), (Way::Climb, 9.75e-3), (Way::Conventional, 9.75e-3), (Way::Climb, 10e-3)]
+    {
         let cutter = cutter(&[360.0], &[0.0], 0.0);
-        let cut = Cut { radial_depth: width, length, ..cut(way, 1, turn) };
-        let mut milling = Milling::new(&cutter, &cut).unwrap();
+        let cut = Cut { radial_depth: width, length, ..cut(direction, 1, turn) };
+        let mut milling = MaterialRemoval::new(&cutter, &cut).unwrap();
         let mut met = 0;
         for step in 0..30 * turn {
             let node = wild.node(step as f64);
@@ -40,7 +42,7 @@ fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
             let reach = brute_force(&wild, &cutter, cut.sense(), step as f64, psi);
             let expected = (to - from.max(reach)).max(0.0);
             met += usize::from(expected > 0.0);
-            assert!((found - expected).abs() < 2e-9, "{found} {expected} at {step} {way:?} {width}");
+            assert!((found - expected).abs() < 2e-9, "{found} {expected} at {step} {direction:?} {width}");
         }
         assert!(met > 10, "{met}");
     }

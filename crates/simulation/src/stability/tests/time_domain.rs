@@ -7,7 +7,7 @@ use super::*;
 fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize, lean: f64) -> bool {
     let cut = Cut { axial_depth: depth, ..*cut };
     let (turn, dt) = (cut.steps_per_turn, cut.step());
-    let mut milling = Milling::new(cutter, &cut).unwrap();
+    let mut milling = MaterialRemoval::new(cutter, &cut).unwrap();
     let feed = 0.1e-3 * cutter.teeth().len() as f64 / turn as f64;
     let (k, c) = (MASS * OMEGA * OMEGA, 2.0 * DAMPING * OMEGA * MASS);
     let effective = MASS + dt / 2.0 * c + dt * dt / 4.0 * k;
@@ -47,7 +47,7 @@ fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize, lean: f64) -> boo
 #[test]
 fn the_time_domain_has_the_same_critical_depths() {
     let plant = benchmark_plant();
-    for (way, immersion, rpm, pitches, helix, slices) in [
+    for (direction, immersion, rpm, pitches, helix, slices) in [
         (Way::Climb, 0.5, 5000.0, [180.0; 2], 0.0, 1),
         (Way::Climb, 0.5, 5000.0, [180.0; 2], 30.0, 8),
         (Way::Conventional, 0.5, 10_000.0, [180.0; 2], 0.0, 1),
@@ -56,11 +56,11 @@ fn the_time_domain_has_the_same_critical_depths() {
         (Way::Climb, 0.6, 8000.0, [160.0, 200.0], 0.0, 1),
     ] {
         let cutter = benchmark_cutter(&pitches, helix);
-        let cut = Cut { slices, steps_per_turn: 360, ..cut(way, immersion, rpm) };
+        let cut = Cut { slices, steps_per_turn: 360, ..cut(direction, immersion, rpm) };
         let period = if pitches[0] == pitches[1] { 180 } else { 360 };
         let ours = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().critical_depth(20e-3).unwrap();
         let calm = |depth: f64| calm(&cutter, &cut, depth, period, 0.0);
-        assert!(calm(0.95 * ours) && !calm(1.05 * ours), "{ours} {way:?} {immersion} {rpm} {pitches:?} {helix}");
+        assert!(calm(0.95 * ours) && !calm(1.05 * ours), "{ours} {direction:?} {immersion} {rpm} {pitches:?} {helix}");
     }
 }
 

@@ -3,56 +3,44 @@
 //! Both have the cases, the refinements and the counts. The printed document adds the plans point by point and how long
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
-use super::number::Unit;
-use super::{Context, words};
+use super::Context;
+use crate::document::{Timing, placement, put_deviation};
+use crate::names;
+use crate::units::Unit;
 use serde_json::{Map, Value, json};
-use stead_format::input::InputFile;
 use stead_placement::lookup::{Axis, Unsuited};
 use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
-use stead_placement::problem::{Interval, Placement, Problem};
+use stead_placement::problem::{Interval, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
-
-/// How long a computation took.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timing {
-    /// Time on the clock. s
-    pub wall: f64,
-    /// Threads used.
-    pub threads: usize,
-}
 
 /// What `stead place --json` prints.
 pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
-    let mut document = common(outcome, context, true);
-    document.insert("cases".to_owned(), cases(outcome, true));
-    document.insert("threads".to_owned(), json!(timing.threads));
-    document.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
+    let mut entries = common(outcome, context, true);
+    entries.insert("cases".to_owned(), cases(outcome, true));
+    entries.insert("threads".to_owned(), json!(timing.threads));
+    entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
-    document.insert("states_per_second".to_owned(), rate);
-    Value::Object(document)
+    entries.insert("states_per_second".to_owned(), rate);
+    context.document().with(Value::Object(entries))
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
 pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> Value {
-    let mut document = common(outcome, context, false);
-    document.insert("version".to_owned(), json!(env!("CARGO_PKG_VERSION")));
-    document.insert("robot".to_owned(), json!(problem.robot.name()));
-    document.insert("seed".to_owned(), json!(context.search.seed));
-    document.insert("inputs".to_owned(), inputs(&context.inputs));
-    document.insert("search".to_owned(), search(context));
-    document.insert("transfer".to_owned(), transfer_settings(context));
-    document.insert("cell".to_owned(), cell(problem));
-    document.insert("constraints".to_owned(), constraints(problem));
-    document.insert("criterion".to_owned(), criterion(problem));
-    document.insert("redundancy".to_owned(), redundancy(problem));
-    document.insert("task".to_owned(), task(problem));
-    document.insert("cases".to_owned(), cases(outcome, false));
-    Value::Object(document)
-}
-
-/// A document as the bytes of a file or of standard output: indented, with a line break at the end.
-pub fn bytes(document: &Value) -> Vec<u8> {
-    format!("{document:#}\n").into_bytes()
+    let mut entries = common(outcome, context, false);
+    let settings = [
+        ("robot", json!(problem.robot.name())),
+        ("seed", json!(context.search.seed)),
+        ("search", search(context)),
+        ("transfer", transfer_settings(context)),
+        ("cell", cell(problem)),
+        ("constraints", constraints(problem)),
+        ("criterion", criterion(problem)),
+        ("redundancy", redundancy(problem)),
+        ("task", task(problem)),
+        ("cases", cases(outcome, false)),
+    ];
+    entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    context.document().with(Value::Object(entries))
 }
 
 fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {
@@ -126,24 +114,6 @@ fn case(case: &Case, with_plan: bool) -> Value {
     value
 }
 
-/// Adds a standard deviation to an object where the robot's uncertainty is known.
-pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
-    if let (Some(deviation), Value::Object(map)) = (deviation, object) {
-        map.insert(key.to_owned(), number(unit, deviation));
-    }
-}
-
-/// A placement as every JSON document states it.
-pub fn placement(placement: &Placement) -> Value {
-    json!({
-        "x_mm": number(Unit::PLACE_MM, placement.x),
-        "y_mm": number(Unit::PLACE_MM, placement.y),
-        "z_mm": number(Unit::PLACE_MM, placement.z),
-        "q4": number(Unit::PLAIN, placement.q4()),
-        "yaw_deg": number(Unit::ANGLE_DEG, placement.yaw),
-    })
-}
-
 fn plan_point(point: &PlanPoint) -> Value {
     let mut value = json!({
         "point": point.point,
@@ -169,7 +139,7 @@ fn transfer(transfer: &Transfer) -> Value {
 
 fn refinement(refinement: &Refinement) -> Value {
     json!({
-        "search": words::goal(refinement.goal),
+        "search": names::goal(refinement.goal),
         "start": placement(&refinement.start),
         "start_mean_mm": number(Unit::DEFLECTION_MM, refinement.start_mean),
         "end": placement(&refinement.end),
@@ -179,11 +149,6 @@ fn refinement(refinement: &Refinement) -> Value {
         "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
         "status": refinement.statuses.join("; "),
     })
-}
-
-/// The files that a result depends on, as every JSON document states them.
-pub fn inputs(files: &[InputFile]) -> Value {
-    files.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 })).collect()
 }
 
 fn search(context: &Context) -> Value {

@@ -1,9 +1,9 @@
 //! The CSV files. One function makes one file; every column carries its unit.
 
-use super::number::{Unit, fixed};
-use super::output::ReportError;
-use super::words;
-use nalgebra::Vector3;
+use crate::csv_file::{table, vector};
+use crate::names;
+use crate::output::ReportError;
+use crate::units::{Unit, fixed};
 use stead_format::input::Reference;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
@@ -94,7 +94,7 @@ pub fn placements(cases: &[Case; 4], reference: Option<&Reference>) -> Result<Ve
     let rows = cases.iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number.to_string()];
         row.extend(placement(&case.placement, true));
-        row.push(words::postures(&case.plan.postures));
+        row.push(names::postures(&case.plan.postures));
         row.extend([case.plan.mean, case.plan.max].map(|value| Unit::DEFLECTION_MM.text(value)));
         row.push(Unit::PLAIN.text_or_empty(ratio(cases, index)));
         row.push(reference.map_or_else(String::new, |reference| reference.case_mm[index].to_string()));
@@ -116,7 +116,7 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
     let header = ["search", "generation", "best_mm", "average_mm", "feasible", "population", "evaluations"];
     let rows = generations.iter().map(|state| {
         vec![
-            words::goal(state.goal).to_owned(),
+            names::goal(state.goal).to_owned(),
             state.generation.to_string(),
             Unit::DEFLECTION_MM.text_or_empty(state.best),
             Unit::DEFLECTION_MM.text_or_empty(state.average),
@@ -142,7 +142,7 @@ pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>,
             let mut fields = vec![point.to_string(), segment(path, point), fixed(beta_deg, Unit::ANGLE_DEG.decimals)];
             fields.extend(match cell {
                 Ok(cell) => [Unit::DEFLECTION_MM.text(cell.score), cell.posture.to_string(), String::new()],
-                Err(blocked) => [String::new(), String::new(), words::reason(*blocked)],
+                Err(blocked) => [String::new(), String::new(), names::reason(*blocked)],
             });
             fields
         })
@@ -196,7 +196,7 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
         "status",
     ];
     let rows = refinements.iter().map(|refinement| {
-        let mut row = vec![words::goal(refinement.goal).to_owned()];
+        let mut row = vec![names::goal(refinement.goal).to_owned()];
         row.extend(placement(&refinement.start, false));
         row.push(Unit::DEFLECTION_MM.text(refinement.start_mean));
         row.extend(placement(&refinement.end, false));
@@ -217,23 +217,4 @@ fn placement(placement: &Placement, with_q4: bool) -> Vec<String> {
     }
     fields.push(Unit::ANGLE_DEG.text(placement.yaw));
     fields
-}
-
-pub(super) fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
-    [vector.x, vector.y, vector.z].map(|value| unit.text(value))
-}
-
-/// A CSV file with a header.
-pub(super) fn table(
-    what: &'static str,
-    header: &[&str],
-    rows: impl IntoIterator<Item = Vec<String>>,
-) -> Result<Vec<u8>, ReportError> {
-    let fail = |cause: csv::Error| ReportError::Format { what, cause: cause.to_string() };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header).map_err(fail)?;
-    for row in rows {
-        writer.write_record(&row).map_err(fail)?;
-    }
-    writer.into_inner().map_err(|error| ReportError::Format { what, cause: error.to_string() })
 }

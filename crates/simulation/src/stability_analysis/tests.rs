@@ -1,10 +1,11 @@
 use super::*;
 use crate::arm::testing::{spindle, start, tx200};
-use crate::chatter::{Chatter, Station, smallest};
 use crate::milling::{Coefficients, Tooth};
 use crate::motion::{Motion, Pass, Ramp};
+use crate::path_stability::{PathConfiguration, PathStabilityAnalysis, smallest};
 use crate::stability::Kind;
 use std::f64::consts::{PI, TAU};
+use stead_model::cutting::MillingDirection;
 
 fn setup(variant: Variant, damping_scale: f64) -> Setup {
     let pass = Pass { start: start(), direction: Vector3::x(), length: 0.1 };
@@ -18,7 +19,7 @@ fn steel() -> (Cutter, Cut) {
     let teeth = vec![Tooth { pitch: PI, radius: 5e-3 }; 2];
     let cutter = Cutter::new(teeth, 30_f64.to_radians(), 0.022, coefficients).unwrap();
     let cut = Cut {
-        milling: Milling::Climb,
+        milling: MillingDirection::Climb,
         radial_depth: 4e-3,
         axial_depth: 1.6e-3,
         length: 0.09,
@@ -29,20 +30,20 @@ fn steel() -> (Cutter, Cut) {
     (cutter, cut)
 }
 
-fn plan(cut: &Cut) -> Plan {
+fn settings(cut: &Cut) -> AnalysisSettings {
     let speeds = [cut.spindle_speed, cut.spindle_speed * 1.2];
-    Plan { way: 0.0, speeds, points: 2, deepest: 0.022, frequencies: [0.0, 100.0] }
+    AnalysisSettings { distance: 0.0, speeds, points: 2, max_depth: 0.022, frequencies: [0.0, 100.0] }
 }
 
 #[test]
 fn the_wall_of_climb_milling_is_to_the_right_of_the_feed() {
     let (feed, up) = (Vector3::x(), Vector3::z());
-    let climb = CutFrame::new(feed, up, Milling::Climb);
+    let climb = CutFrame::new(feed, up, MillingDirection::Climb);
     assert_eq!((climb.feed, climb.normal), (feed, Vector3::y()));
-    let conventional = CutFrame::new(feed, up, Milling::Conventional);
+    let conventional = CutFrame::new(feed, up, MillingDirection::Conventional);
     assert_eq!((conventional.feed, conventional.normal), (feed, -Vector3::y()));
     // A feed that goes down a little is one in the plane of the cut.
-    let sloping = CutFrame::new(Vector3::new(0.8, 0.0, -0.6), up, Milling::Climb);
+    let sloping = CutFrame::new(Vector3::new(0.8, 0.0, -0.6), up, MillingDirection::Climb);
     assert!((sloping.feed - feed).norm() < 1e-15 && (sloping.normal - Vector3::y()).norm() < 1e-15);
 }
 
@@ -50,45 +51,49 @@ fn the_wall_of_climb_milling_is_to_the_right_of_the_feed() {
 #[test]
 fn a_survey_of_the_published_steel_cut() {
     let (cutter, cut) = steel();
-    let found = survey(&setup(Variant::Springs, 1.0), &cutter, &cut, &plan(&cut)).unwrap();
+    let found = analyse(&setup(Variant::Springs, 1.0), &cutter, &cut, &settings(&cut)).unwrap();
     assert_eq!(found.modes.len(), 6);
-    assert_eq!(found.depths.verdict.kind(), Kind::Flip);
-    let critical = found.depths.semi_discretisation.unwrap();
-    assert!(critical < found.depths.zero_order.unwrap() && critical < cut.axial_depth);
+    assert_eq!(found.cut_stability.verdict.kind(), Kind::Flip);
+    let critical = found.cut_stability.semi_discretisation.unwrap();
+    assert!(critical < found.cut_stability.zero_order.unwrap() && critical < cut.axial_depth);
     // The first lobe is at the speed of the cut.
     assert_eq!(found.lobes[0].semi_discretisation, Some(critical));
     assert!((found.lobes[1].spindle_speed / cut.spindle_speed - 1.2).abs() < 1e-12);
     assert!((found.pass_time - 0.09 / (0.28 / 60.0)).abs() < 1e-9);
     // Ten times the damping is nearly enough, twenty times is.
-    let damped = survey(&setup(Variant::Springs, 10.0), &cutter, &cut, &plan(&cut)).unwrap();
-    let growth = |found: &Survey| found.depths.verdict.growth_rate();
-    assert!(damped.depths.semi_discretisation.unwrap() > 2.0 * critical && growth(&damped) < growth(&found) / 5.0);
-    let calm = survey(&setup(Variant::Springs, 20.0), &cutter, &cut, &plan(&cut)).unwrap();
-    assert!(calm.depths.verdict.is_stable() && growth(&calm) < 0.0);
+    let damped = analyse(&setup(Variant::Springs, 10.0), &cutter, &cut, &settings(&cut)).unwrap();
+    let growth = |found: &StabilityAnalysis| found.cut_stability.verdict.growth_rate();
+    assert!(
+        damped.cut_stability.semi_discretisation.unwrap() > 2.0 * critical && growth(&damped) < growth(&found) / 5.0
+    );
+    let calm = analyse(&setup(Variant::Springs, 20.0), &cutter, &cut, &settings(&cut)).unwrap();
+    assert!(calm.cut_stability.verdict.is_stable() && growth(&calm) < 0.0);
     assert!(calm.modes[0].damping_ratio > 5.0 * found.modes[0].damping_ratio);
 }
 
-/// At rest the tip yields as springs and Jacobian say; a station of a path is the same arm as a place on a pass.
+/// At rest the tip yields as springs and Jacobian say; a configuration of a path is the same arm as a place on a pass.
 #[test]
 fn answers_and_stations_are_those_of_the_arm() {
     let (cutter, cut) = steel();
     let setup = setup(Variant::Gravity, 1.0);
-    let found = survey(&setup, &cutter, &cut, &plan(&cut)).unwrap();
+    let found = analyse(&setup, &cutter, &cut, &settings(&cut)).unwrap();
     let arm = Arm::six(&tx200(), &spindle(), Variant::Springs, &start()).unwrap();
     let jacobian = arm.chain.at(&start().into()).tip_jacobian();
     let along = |row: usize| (0..6).map(|j| jacobian[(row, j)].powi(2) / arm.drive.stiffness[j]).sum::<f64>();
-    assert_eq!(found.answers[0].frequency, 0.0);
+    assert_eq!(found.frequency_response[0].frequency, 0.0);
     // Gravity changes the stiffness of joints 4 and 6 by far less than a percent.
-    assert!((found.answers[0].feed.re / along(0) - 1.0).abs() < 1e-2);
-    assert!((found.answers[0].normal.re / along(1) - 1.0).abs() < 1e-2);
-    assert_eq!(found.answers.len(), 1000);
+    assert!((found.frequency_response[0].feed.re / along(0) - 1.0).abs() < 1e-2);
+    assert!((found.frequency_response[0].normal.re / along(1) - 1.0).abs() < 1e-2);
+    assert_eq!(found.frequency_response.len(), 1000);
 
-    let chatter = Chatter { variant: Variant::Gravity, damping_scale: 1.0, cutter, cut, deepest: 0.022 };
-    let station = |way: f64| Station { joints: setup.motion.motors_after(way, 0.0).0, feed: Vector3::x() };
-    let depths = chatter.along(&tx200(), &spindle(), &[station(0.0), station(0.1)]).unwrap();
+    let chatter =
+        PathStabilityAnalysis { variant: Variant::Gravity, damping_scale: 1.0, cutter, cut, max_depth: 0.022 };
+    let configuration =
+        |distance: f64| PathConfiguration { joints: setup.motion.motors_at(distance, 0.0).0, feed: Vector3::x() };
+    let depths = chatter.along(&tx200(), &spindle(), &[configuration(0.0), configuration(0.1)]).unwrap();
     let close = |a: Option<f64>, b: Option<f64>| (a.unwrap() / b.unwrap() - 1.0).abs() < 1e-9;
-    assert!(close(depths[0].semi_discretisation, found.depths.semi_discretisation));
-    assert!(close(depths[0].zero_order, found.depths.zero_order));
+    assert!(close(depths[0].semi_discretisation, found.cut_stability.semi_discretisation));
+    assert!(close(depths[0].zero_order, found.cut_stability.zero_order));
     let least = smallest(&depths).unwrap();
     let expected = depths.iter().filter_map(|at| at.semi_discretisation).fold(f64::INFINITY, f64::min);
     assert_eq!(depths[least.0].semi_discretisation, Some(expected));
@@ -99,6 +104,6 @@ fn what_is_missing_is_said() {
     let (cutter, cut) = steel();
     let still = crate::arm::testing::massless(&tx200());
     let setup = Setup { robot: still, ..setup(Variant::Springs, 1.0) };
-    let error = survey(&setup, &cutter, &cut, &plan(&cut));
-    assert_eq!(error, Err(SurveyError::Missing(Missing::Dynamics)));
+    let error = analyse(&setup, &cutter, &cut, &settings(&cut));
+    assert_eq!(error, Err(StabilityError::Missing(Missing::Dynamics)));
 }

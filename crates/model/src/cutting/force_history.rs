@@ -1,4 +1,4 @@
-//! How force and moment of a milling tool go with the engagement and over a turn (Klimchik 2017, Fig. 4).
+//! Force and moment of a milling tool over the engagement and over a turn (Klimchik 2017, Fig. 4).
 
 use super::engagement::{Arc, Engagement, Integrals};
 use super::milling_tool::MillingTool;
@@ -16,7 +16,7 @@ pub struct Sample {
 
 /// The wrench of a milling tool: its mean, how the mean grows as the tool moves into the work, and how it goes over a turn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct ForceHistory {
     /// Where a tooth cuts.
     pub engagement: Engagement,
     /// The mean over a turn.
@@ -33,8 +33,8 @@ const ENTERING_STEPS: u32 = 180;
 /// Steps of a turn.
 const TURN_STEPS: u32 = 720;
 
-impl Course {
-    /// The course of a tool in an engagement.
+impl ForceHistory {
+    /// The forces of a tool in an engagement.
     pub fn new(tool: &MillingTool, engagement: &Engagement) -> Self {
         let angles = |steps: u32, end: f64| (0..=steps).map(move |k| end * (f64::from(k) / f64::from(steps)));
         let entering = |phi| Sample { phi, wrench: tool.mean_over(Integrals::over(Arc { entry: 0.0, exit: phi })) };
@@ -57,23 +57,23 @@ mod tests {
     #[test]
     fn means_grow_from_nothing_to_the_slot_and_gain_any_cut_over_its_arcs() {
         let tool = published();
-        let course = Course::new(&tool, &Engagement::open_slot(0.5, 1.0).unwrap());
-        assert_eq!(course.entering[0], Sample { phi: 0.0, wrench: Wrench::zero() });
-        assert_eq!(course.entering[180].phi, PI);
-        assert_eq!(course.entering[180].wrench, tool.mean_wrench(&Engagement::slot()));
+        let force_history = ForceHistory::new(&tool, &Engagement::open_slot(0.5, 1.0).unwrap());
+        assert_eq!(force_history.entering[0], Sample { phi: 0.0, wrench: Wrench::zero() });
+        assert_eq!(force_history.entering[180].phi, PI);
+        assert_eq!(force_history.entering[180].wrench, tool.mean_wrench(&Engagement::slot()));
         // The arcs of this cut are 0 to 60 and 120 to 180 deg.
-        let force = |deg: usize| course.entering[deg].wrench.force;
-        assert!((force(60) + force(180) - force(120) - course.mean.force).norm() < 1e-12);
+        let force = |deg: usize| force_history.entering[deg].wrench.force;
+        assert!((force(60) + force(180) - force(120) - force_history.mean.force).norm() < 1e-12);
     }
 
     #[test]
     fn a_turn_repeats_itself_from_tooth_to_tooth_and_has_the_mean() {
-        let course = Course::new(&published(), &Engagement::slot());
-        let turn = &course.turn;
+        let force_history = ForceHistory::new(&published(), &Engagement::slot());
+        let turn = &force_history.turn;
         assert_eq!((turn.len(), turn[720].phi), (721, TAU));
         let close = |a: &Sample, b: &Sample| (a.wrench.force - b.wrench.force).norm() < 1e-9;
         assert!((0..=480).all(|k| close(&turn[k], &turn[k + 240])));
         let sum: Vector3<f64> = turn[..720].iter().map(|sample| sample.wrench.force).sum();
-        assert!((sum / 720.0 - course.mean.force).norm() < 0.02, "{sum}");
+        assert!((sum / 720.0 - force_history.mean.force).norm() < 0.02, "{sum}");
     }
 }

@@ -1,6 +1,6 @@
-//! The whole assessment: every robot, both elbows, both loads, zones, and the selection.
+//! Comparison of robots: every robot, both elbows, both loads, zones, and the selection.
 
-use super::benchmark::{Benchmark, MOST_DEFLECTION, Obstacle};
+use super::benchmark::{Benchmark, MAX_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
@@ -9,7 +9,7 @@ use stead_model::robot::{DataSheet, Robot};
 
 /// What is to be assessed, and how.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Study {
+pub struct Comparison {
     /// The robots, in the order of the results. No two have the same name.
     pub robots: Vec<Robot>,
     /// The circle and its load.
@@ -46,7 +46,7 @@ pub enum Load {
 
 /// A value of a map and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
+pub struct MapPoint {
     /// Centre of the circle, in the coordinates of the plane. m
     pub centre: [f64; 2],
     /// Circularity there. m
@@ -67,7 +67,7 @@ pub struct Zones {
 /// One robot with one elbow under one load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configuration {
-    /// The elbow, by the names of the study.
+    /// The elbow, by the names of the comparison.
     pub elbow: Elbow,
     /// The load.
     pub load: Load,
@@ -78,12 +78,12 @@ pub struct Configuration {
     /// Number of circles for which the arm is too soft under this load alone; they are not among the former.
     pub too_soft: usize,
     /// The most accurate place.
-    pub least: Option<Spot>,
+    pub min: Option<MapPoint>,
     /// The least accurate place.
-    pub most: Option<Spot>,
+    pub max: Option<MapPoint>,
     /// The middle of the map: the centre of the largest square of places that can all be milled.
-    pub middle: Option<Spot>,
-    /// Zones of the sizes of the study, in their order.
+    pub middle: Option<MapPoint>,
+    /// Zones of the sizes of the comparison, in their order.
     pub zones: Vec<Zones>,
 }
 
@@ -98,7 +98,7 @@ pub struct RobotResult {
     pub working_radius: f64,
     /// Load of [`Load::Rated`] in multiples of the benchmark's wrench, where the payload is known.
     pub rated_load: Option<f64>,
-    /// Elbow up, then elbow down, by the names of the study: circularity under the test load and, where there is one, under
+    /// Elbow up, then elbow down, by the names of the comparison: circularity under the test load and, where there is one, under
     /// the rated load (else that of the test load again).
     pub maps: [(Elbow, Map<2>); 2],
     /// Both elbows under the test load, then both under the rated load where there is one.
@@ -108,7 +108,7 @@ pub struct RobotResult {
 /// What an assessment finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
-    /// The robots in the order of the study.
+    /// The robots in the order of the comparison.
     pub robots: Vec<RobotResult>,
     /// Every robot at every force of the selection.
     pub accuracies: Vec<Accuracy>,
@@ -163,20 +163,23 @@ pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
             Obstacle::JointLimit(joint) => format!("limit of joint {joint}"),
             Obstacle::Singularity(joint) => format!("singularity, joint {joint} would jump"),
             Obstacle::Buckling => "arm buckles under the load".to_owned(),
-            Obstacle::TooSoft => format!("deflected by more than {MOST_DEFLECTION} of the radius"),
+            Obstacle::TooSoft => format!("deflected by more than {MAX_DEFLECTION} of the radius"),
         };
         format!("{what} at {count} of {tried} places")
     });
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Assesses every robot of the study. `progress` is told how many rows of maps are done, and of how many; it says whether to
+/// Assesses every robot of the comparison. `progress` is told how many rows of maps are done, and of how many; it says whether to
 /// go on.
 ///
 /// # Errors
 /// [`AssessError`] when no robot can mill the circle anywhere on the grid, or when `progress` said to stop.
-pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Assessment, AssessError> {
-    let rows = study.robots.len() * 2 * study.grid.counts[1];
+pub fn assess(
+    comparison: &Comparison,
+    progress: &(dyn Fn(usize, usize) -> bool + Sync),
+) -> Result<Assessment, AssessError> {
+    let rows = comparison.robots.len() * 2 * comparison.grid.counts[1];
     let done = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
     let row_done = || {
@@ -185,22 +188,22 @@ pub fn assess(study: &Study, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -
         }
         !stopped.load(Ordering::Relaxed)
     };
-    let mut robots: Vec<RobotResult> = Vec::with_capacity(study.robots.len());
-    for robot in &study.robots {
-        robots.push(study.robot(robot, &row_done));
+    let mut robots: Vec<RobotResult> = Vec::with_capacity(comparison.robots.len());
+    for robot in &comparison.robots {
+        robots.push(comparison.robot(robot, &row_done));
         if stopped.load(Ordering::Relaxed) {
             return Err(AssessError::Interrupted);
         }
     }
     if robots.iter().all(|robot| robot.maps.iter().all(|(_, map)| map.count() == 0)) {
         let limits = robots.iter().map(RobotResult::limits).collect();
-        return Err(AssessError::FitsNowhere(FitsNowhere { radius: study.benchmark.radius, limits }));
+        return Err(AssessError::FitsNowhere(FitsNowhere { radius: comparison.benchmark.radius, limits }));
     }
     let competitors: Vec<Competitor> = robots.iter().map(RobotResult::competitor).collect();
-    let reference = study.benchmark.in_plane_force();
+    let reference = comparison.benchmark.in_plane_force();
     Ok(Assessment {
-        accuracies: study.selection.accuracies(&competitors, reference),
-        capable: study.selection.capable(&competitors, reference),
+        accuracies: comparison.selection.accuracies(&competitors, reference),
+        capable: comparison.selection.capable(&competitors, reference),
         order: order(&competitors),
         robots,
     })
@@ -224,12 +227,12 @@ impl RobotResult {
     /// The robot as the selection sees it.
     pub fn competitor(&self) -> Competitor {
         let test = self.configurations.iter().filter(|configuration| configuration.load == Load::Test);
-        let least = test.filter_map(|configuration| configuration.least.map(|spot| spot.circularity));
-        Competitor { name: self.name.clone(), least: least.reduce(f64::min), payload: self.data_sheet.payload }
+        let min = test.filter_map(|configuration| configuration.min.map(|spot| spot.circularity));
+        Competitor { name: self.name.clone(), min: min.reduce(f64::min), payload: self.data_sheet.payload }
     }
 }
 
-impl Study {
+impl Comparison {
     fn robot(&self, robot: &Robot, row_done: &(dyn Fn() -> bool + Sync)) -> RobotResult {
         let sheet = *robot.data_sheet();
         let force = self.benchmark.in_plane_force();
@@ -259,7 +262,7 @@ impl Study {
     fn configuration(&self, elbow: Elbow, load: Load, force: f64, map: &Map<2>, index: usize) -> Configuration {
         let values = map.values(index);
         let grid = &self.grid;
-        let spot = |node: usize| Spot { centre: grid.place(node), circularity: values[node] };
+        let spot = |node: usize| MapPoint { centre: grid.place(node), circularity: values[node] };
         let feasible = || (0..values.len()).filter(|node| values[*node].is_finite());
         let middle = zone::middle(grid, &values);
         let zones = self.zones.iter().map(|intervals| Zones {
@@ -273,9 +276,9 @@ impl Study {
             force,
             circles: feasible().count(),
             too_soft: map.count() - feasible().count(),
-            least: feasible().min_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
+            min: feasible().min_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
             // The first of several equal ones, as for the least.
-            most: feasible().rev().max_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
+            max: feasible().rev().max_by(|a, b| values[*a].total_cmp(&values[*b])).map(spot),
             middle: middle.map(|[column, row]| spot(row * grid.counts[0] + column)),
             zones: zones.collect(),
         }

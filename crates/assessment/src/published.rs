@@ -1,12 +1,12 @@
-//! Published results to set beside ours, and how far the two agree.
+//! Published results of an assessment, and their agreement with computed ones.
 
+use super::comparison::{Assessment, Configuration, Load};
 use super::map::Elbow;
 use super::ranking::{Capable, Competitor, order};
-use super::study::{Assessment, Configuration, Load};
 
 /// Published tables of an assessment.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Printed {
+pub struct PublishedTables {
     /// Where they were published.
     pub source: String,
     /// Readings of single configurations.
@@ -84,8 +84,8 @@ impl Quantity {
     pub fn of(self, configuration: &Configuration) -> Option<f64> {
         let zones = |side: f64| configuration.zones.iter().find(move |zones| (zones.side - side).abs() < SAME_SIDE);
         match self {
-            Self::Minimum => configuration.least.map(|spot| spot.circularity),
-            Self::Maximum => configuration.most.map(|spot| spot.circularity),
+            Self::Minimum => configuration.min.map(|spot| spot.circularity),
+            Self::Maximum => configuration.max.map(|spot| spot.circularity),
             Self::Middle => configuration.middle.map(|spot| spot.circularity),
             Self::OptimalZone(side) => zones(side).and_then(|zones| zones.optimal).map(|zone| zone.largest),
             Self::MiddleZone(side) => zones(side).and_then(|zones| zones.middle).map(|zone| zone.largest),
@@ -106,7 +106,7 @@ impl Quantity {
     }
 }
 
-impl Printed {
+impl PublishedTables {
     /// The printed value of a quantity: `None` where it is not printed, `Some(None)` for a dash. m
     pub fn value(&self, robot: &str, elbow: Elbow, load: Load, quantity: Quantity) -> Option<Option<f64>> {
         let is_it = |reading: &&Reading| {
@@ -137,8 +137,8 @@ impl Printed {
         for reading in self.readings.iter().filter(|r| r.load == Load::Test && r.quantity.is_compared()) {
             let configuration = ours.configuration(&reading.robot, reading.elbow, reading.load);
             match (configuration.and_then(|c| reading.quantity.of(c)), reading.value) {
-                (Some(found), Some(printed)) => {
-                    let error = found / printed - 1.0;
+                (Some(found), Some(published)) => {
+                    let error = found / published - 1.0;
                     squares += error * error;
                     readings += 1;
                 }
@@ -146,11 +146,11 @@ impl Printed {
                 _ => one_sided += 1,
             }
         }
-        let printed_order = self.order(ours);
-        let shared: Vec<String> = ours.order.iter().filter(|name| printed_order.contains(name)).cloned().collect();
+        let published_order = self.order(ours);
+        let shared: Vec<String> = ours.order.iter().filter(|name| published_order.contains(name)).cloned().collect();
         let rounded = |value: Option<f64>| value.map(|value| (value * 1e5).round());
         let cells = ours.accuracies.iter().filter_map(|cell| {
-            self.accuracy(&cell.robot, cell.force).map(|printed| rounded(printed) == rounded(cell.circularity))
+            self.accuracy(&cell.robot, cell.force).map(|published| rounded(published) == rounded(cell.circularity))
         });
         let cells: Vec<bool> = cells.collect();
         let heads = |accuracy: f64, force: f64| {
@@ -159,19 +159,19 @@ impl Printed {
         };
         let named = ours.capable.iter().filter(|cell| heads(cell.accuracy, cell.force));
         let same = |cell: &Capable| {
-            let printed = self.robots(cell.accuracy, cell.force);
-            let found: Vec<&String> = cell.robots.iter().filter(|name| printed_order.contains(name)).collect();
-            found.len() == printed.len() && found.iter().all(|name| printed.contains(&name.as_str()))
+            let published = self.robots(cell.accuracy, cell.force);
+            let found: Vec<&String> = cell.robots.iter().filter(|name| published_order.contains(name)).collect();
+            found.len() == published.len() && found.iter().all(|name| published.contains(&name.as_str()))
         };
         let named: Vec<bool> = named.map(same).collect();
         Agreement {
             rms: if readings > 0 { libm::sqrt(squares / f64::from(readings)) } else { 0.0 },
             readings: readings as usize,
             one_sided,
-            same_best: !shared.is_empty() && shared.first() == printed_order.first(),
-            same_worst: !shared.is_empty() && shared.last() == printed_order.last(),
-            same_order: !shared.is_empty() && shared == printed_order,
-            order: printed_order,
+            same_best: !shared.is_empty() && shared.first() == published_order.first(),
+            same_worst: !shared.is_empty() && shared.last() == published_order.last(),
+            same_order: !shared.is_empty() && shared == published_order,
+            order: published_order,
             accuracies: (cells.len(), cells.iter().filter(|same| **same).count()),
             capable: (named.len(), named.iter().filter(|same| **same).count()),
         }
@@ -179,12 +179,12 @@ impl Printed {
 
     /// The order of the robots by their printed smallest circularity under the test load over both elbows.
     fn order(&self, ours: &Assessment) -> Vec<String> {
-        let least = |name: &str| {
+        let min = |name: &str| {
             let both = Elbow::BOTH.map(|elbow| self.value(name, elbow, Load::Test, Quantity::Minimum).flatten());
             both.into_iter().flatten().reduce(f64::min)
         };
         let names = ours.robots.iter().map(|robot| robot.name.clone());
-        let robots: Vec<_> = names.map(|name| Competitor { least: least(&name), name, payload: None }).collect();
+        let robots: Vec<_> = names.map(|name| Competitor { min: min(&name), name, payload: None }).collect();
         order(&robots)
     }
 }

@@ -1,6 +1,6 @@
 //! One arm on the benchmark, circle by circle.
 
-use super::{Benchmark, JUMP, LimitsAt, MOST_DEFLECTION, Obstacle, StiffnessModel, Turning};
+use super::{Benchmark, JUMP, LimitsAt, MAX_DEFLECTION, Obstacle, StiffnessModel, Turning};
 use crate::circle::least_squares;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -10,7 +10,7 @@ use stead_model::stiffness::loaded::loaded_displacement;
 
 /// An arm on the benchmark: what does not change from circle to circle.
 #[derive(Debug, Clone)]
-pub struct Trial<'a> {
+pub struct DeflectedCircle<'a> {
     benchmark: &'a Benchmark,
     robot: &'a Robot,
     tool_from_flange: Pose<f64>,
@@ -44,7 +44,7 @@ impl Profile {
     }
 }
 
-impl<'a> Trial<'a> {
+impl<'a> DeflectedCircle<'a> {
     /// Sets an arm up for a benchmark.
     pub fn new(benchmark: &'a Benchmark, robot: &'a Robot) -> Self {
         let wrist_centre =
@@ -115,12 +115,12 @@ impl<'a> Trial<'a> {
         };
         let ([xx, xy], [yx, yy]) = (unit(&plane.x), unit(&plane.y));
         let eigenvalues = Matrix2::new(xx, (xy + yx) / 2.0, (xy + yx) / 2.0, yy).symmetric_eigenvalues();
-        let (most, least) = (eigenvalues.max(), eigenvalues.min());
+        let (max, min) = (eigenvalues.max(), eigenvalues.min());
         Ok(load
             * self.benchmark.in_plane_force()
             * match self.benchmark.turning {
-                Turning::WithTool => most - least,
-                Turning::AgainstTool => most + least,
+                Turning::WithTool => max - min,
+                Turning::AgainstTool => max + min,
             })
     }
 
@@ -128,7 +128,7 @@ impl<'a> Trial<'a> {
     fn go_round(&self, centre: [f64; 2], class: PostureClass, angles: &mut Vec<[f64; 6]>) -> Result<(), Obstacle> {
         angles.clear();
         let radius = self.benchmark.radius;
-        // Joints 1 to 3 are looked at as they come: most circles that fail do so early.
+        // Joints 1 to 3 are checked as they come: most circles that fail do so early.
         let (early, mut flip) = match self.benchmark.limits_at {
             LimitsAt::Circle => (3, Flip::Plain),
             LimitsAt::Centre => {
@@ -136,8 +136,8 @@ impl<'a> Trial<'a> {
                 (0, self.within_limits(&joints, &joints)?)
             }
         };
-        let mut least = [f64::INFINITY; 6];
-        let mut most = [f64::NEG_INFINITY; 6];
+        let mut min = [f64::INFINITY; 6];
+        let mut max = [f64::NEG_INFINITY; 6];
         let mut unwrapped = [0.0; 6];
         // The first point is the last one too: the circle has to be closed.
         for (k, [cosine, sine]) in self.directions.iter().chain(self.directions.first()).enumerate() {
@@ -151,9 +151,9 @@ impl<'a> Trial<'a> {
                     return Err(Obstacle::Singularity(j + 1));
                 }
                 unwrapped[j] = if k == 0 { joints[j] } else { unwrapped[j] + step };
-                least[j] = least[j].min(unwrapped[j]);
-                most[j] = most[j].max(unwrapped[j]);
-                if j < early && !fits(&self.ranges[j], least[j], most[j]) {
+                min[j] = min[j].min(unwrapped[j]);
+                max[j] = max[j].max(unwrapped[j]);
+                if j < early && !fits(&self.ranges[j], min[j], max[j]) {
                     return Err(Obstacle::JointLimit(j + 1));
                 }
             }
@@ -162,7 +162,7 @@ impl<'a> Trial<'a> {
             }
         }
         if self.benchmark.limits_at == LimitsAt::Circle {
-            flip = self.within_limits(&least, &most)?;
+            flip = self.within_limits(&min, &max)?;
         }
         if flip == Flip::Flipped && !self.robot.flips_yield_alike() {
             for [_, _, _, fourth, fifth, sixth] in angles {
@@ -174,13 +174,13 @@ impl<'a> Trial<'a> {
 
     /// Which of the two wrist flips keeps all joints within their limits between the given angles of the unflipped one; that
     /// one, if both do.
-    fn within_limits(&self, least: &[f64; 6], most: &[f64; 6]) -> Result<Flip, Obstacle> {
-        let unflipped = (0..6).find(|j| !fits(&self.ranges[*j], least[*j], most[*j]));
+    fn within_limits(&self, min: &[f64; 6], max: &[f64; 6]) -> Result<Flip, Obstacle> {
+        let unflipped = (0..6).find(|j| !fits(&self.ranges[*j], min[*j], max[*j]));
         let Some(joint) = unflipped else { return Ok(Flip::Plain) };
         let flipped = (0..6).all(|j| match j {
-            3 | 5 => fits(&self.ranges[j], least[j] + PI, most[j] + PI),
-            4 => fits(&self.ranges[j], -most[j], -least[j]),
-            _ => fits(&self.ranges[j], least[j], most[j]),
+            3 | 5 => fits(&self.ranges[j], min[j] + PI, max[j] + PI),
+            4 => fits(&self.ranges[j], -max[j], -min[j]),
+            _ => fits(&self.ranges[j], min[j], max[j]),
         });
         if flipped { Ok(Flip::Flipped) } else { Err(Obstacle::JointLimit(joint + 1)) }
     }
@@ -247,8 +247,8 @@ impl<'a> Trial<'a> {
         let count = profile.displacements.len() as f64;
         let mean = [0, 1].map(|axis| profile.displacements.iter().map(|moved| moved[axis]).sum::<f64>() / count);
         let off = |moved: &[f64; 2]| libm::hypot(moved[0] - mean[0], moved[1] - mean[1]) * scale;
-        let most = profile.displacements.iter().map(off).fold(0.0, f64::max);
-        if most.is_nan() || most > MOST_DEFLECTION * radius {
+        let max = profile.displacements.iter().map(off).fold(0.0, f64::max);
+        if max.is_nan() || max > MAX_DEFLECTION * radius {
             return Err(Obstacle::TooSoft);
         }
         least_squares(&profile.points).map(|fit| fit.circularity).map_err(|_| Obstacle::TooSoft)
@@ -256,7 +256,7 @@ impl<'a> Trial<'a> {
 }
 
 /// Whether some number of turns brings an interval of angles into a range.
-fn fits(range: &Range, least: f64, most: f64) -> bool {
-    let lowest = range.lowest(least);
-    lowest + (most - least) <= range.max + stead_model::robot::angles::ANGLE_ROUNDING
+fn fits(range: &Range, min: f64, max: f64) -> bool {
+    let lowest = range.lowest(min);
+    lowest + (max - min) <= range.max + stead_model::robot::angles::ANGLE_ROUNDING
 }

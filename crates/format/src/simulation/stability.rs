@@ -6,46 +6,51 @@ use crate::input::InputError;
 use std::f64::consts::TAU;
 use stead_simulation::milling::{Cut, Cutter};
 use stead_simulation::setup::Setup;
-use stead_simulation::survey::Plan;
+use stead_simulation::stability_analysis::AnalysisSettings;
 
 /// Reads the table, which may be left out as may each of its keys: `way_mm`, where on the pass (0), `lobes_rpm`, from which
 /// spindle speed to which (a third to thrice that of the cut), `lobes_points` (60), `max_depth_mm` (length of the flutes)
 /// and `frequencies_hz`, of the answer at the tip (1 to 250).
-pub(super) fn plan_from(field: &Field<'_>, setup: &Setup, cutter: &Cutter, cut: &Cut) -> Result<Plan, InputError> {
-    let mut plan = Plan {
-        way: 0.0,
+pub(super) fn analysis_from(
+    field: &Field<'_>,
+    setup: &Setup,
+    cutter: &Cutter,
+    cut: &Cut,
+) -> Result<AnalysisSettings, InputError> {
+    let mut settings = AnalysisSettings {
+        distance: 0.0,
         speeds: [cut.spindle_speed / 3.0, cut.spindle_speed * 3.0],
         points: 60,
-        deepest: cutter.flute(),
+        max_depth: cutter.flute(),
         frequencies: [1.0, 250.0],
     };
-    let Some(table) = field.optional(Field::table)? else { return Ok(plan) };
-    let [way, speeds, points, deepest, frequencies] =
+    let Some(table) = field.optional(Field::table)? else { return Ok(settings) };
+    let [distance, speeds, points, max_depth, frequencies] =
         table.fields(["way_mm", "lobes_rpm", "lobes_points", "max_depth_mm", "frequencies_hz"])?;
     let length_mm = setup.motion.length() * 1e3;
     let on_pass = format!("a number from 0 to the length of the pass, {length_mm} mm");
-    let from_to = |field: &Field<'_>, least: f64, most: f64| {
-        let allowed = format!("two numbers [from, to] from {least} to {most}, the first below the second");
-        field.wide_interval_where(&allowed, |value| (least..=most).contains(&value))
+    let from_to = |field: &Field<'_>, min: f64, max: f64| {
+        let allowed = format!("two numbers [from, to] from {min} to {max}, the first below the second");
+        field.wide_interval_where(&allowed, |value| (min..=max).contains(&value))
     };
-    if let Some(way) = way.optional(|f| f.number_where(&on_pass, |value| (0.0..=length_mm).contains(&value)))? {
-        plan.way = way / 1e3;
+    if let Some(mm) = distance.optional(|f| f.number_where(&on_pass, |value| (0.0..=length_mm).contains(&value)))? {
+        settings.distance = mm / 1e3;
     }
     if let Some(ends) = speeds.optional(|field| from_to(field, 1.0, FASTEST_RPM))? {
-        plan.speeds = ends.map(|rpm| rpm / 60.0 * TAU);
+        settings.speeds = ends.map(|rpm| rpm / 60.0 * TAU);
     }
     if let Some(count) = points.optional(|field| field.integer(2..=10_000))? {
-        plan.points = count as usize;
+        settings.points = count as usize;
     }
-    plan.deepest = deepest_from(&deepest, cutter)?;
+    settings.max_depth = max_depth_from(&max_depth, cutter)?;
     if let Some(ends) = frequencies.optional(|field| from_to(field, 0.0, 1e5))? {
-        plan.frequencies = ends;
+        settings.frequencies = ends;
     }
-    Ok(plan)
+    Ok(settings)
 }
 
 /// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
-pub(crate) fn deepest_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
+pub(crate) fn max_depth_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
     let flute_mm = cutter.flute() * 1e3;
     let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
     let depth = field.optional(|field| field.number_where(&within, |value| value > 0.0 && value <= flute_mm))?;

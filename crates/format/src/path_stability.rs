@@ -1,9 +1,9 @@
 //! The `[stability]` table of a run: what is to be cut along the path, to be told where it chatters.
 
 use super::reader::Table;
-use super::simulation::{MILLING_KEYS, damping_scale_from, deepest_from, milling_from, variant_from};
+use super::simulation::{MILLING_KEYS, damping_scale_from, max_depth_from, milling_from, variant_from};
 use crate::input::InputError;
-use stead_simulation::chatter::Chatter;
+use stead_simulation::path_stability::PathStabilityAnalysis;
 
 /// Slices of the cutter: enough for mean coefficients.
 const SLICES: usize = 32;
@@ -15,17 +15,17 @@ const STEPS: usize = 3600;
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a missing or unknown key, a value of the wrong kind or out of range.
-pub(super) fn chatter_from(table: &Table<'_>) -> Result<Chatter, InputError> {
+pub(super) fn path_stability_from(table: &Table<'_>) -> Result<PathStabilityAnalysis, InputError> {
     const OWN: [&str; 3] = ["variant", "damping_scale", "max_depth_mm"];
     let keys: [&str; MILLING_KEYS.len() + OWN.len()] =
         std::array::from_fn(|k| *MILLING_KEYS.get(k).unwrap_or(&OWN[k.saturating_sub(MILLING_KEYS.len())]));
     table.fields(keys)?;
-    let [variant, damping_scale, deepest] = OWN.map(|key| table.field(key));
+    let [variant, damping_scale, max_depth] = OWN.map(|key| table.field(key));
     let (cutter, cut) = milling_from(table, 1.0, SLICES, STEPS)?;
-    Ok(Chatter {
+    Ok(PathStabilityAnalysis {
         variant: variant_from(&variant)?,
         damping_scale: damping_scale_from(&damping_scale)?,
-        deepest: deepest_from(&deepest, &cutter)?,
+        max_depth: max_depth_from(&max_depth, &cutter)?,
         cutter,
         cut,
     })

@@ -1,7 +1,9 @@
 //! The short table for people.
 
-use super::number::{figures, fixed};
-use super::{Context, words};
+use super::Context;
+use crate::columns::{aligned, line};
+use crate::names;
+use crate::units::{figures, fixed};
 use stead_format::input::Reference;
 use stead_placement::lookup::Unsuited;
 use stead_placement::outcome::{Outcome, ratio};
@@ -55,13 +57,13 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
     let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for case in &outcome.cases {
-        let (placement_word, plan_word) = words::case(case.number);
+        let (placement_word, plan_word) = names::case(case.number);
         let placement = &case.placement;
         let mut row = vec![case.number.to_string(), placement_word.to_owned(), plan_word.to_owned()];
         row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
         row.push(fixed(placement.q4(), 4));
         row.push(fixed(placement.yaw.to_degrees(), 1));
-        row.push(words::postures_within(&case.plan.postures, POSTURES_WIDTH));
+        row.push(names::postures_within(&case.plan.postures, POSTURES_WIDTH));
         rows.push(row);
     }
     rows
@@ -91,24 +93,4 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
         rows.push(row);
     }
     rows
-}
-
-/// Columns with two blanks between them, to the right but for the given ones.
-pub(super) fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate().map(|(k, (cell, width))| {
-            if to_the_left.contains(&k) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        line(&mut text, cells.collect::<Vec<_>>().join("  ").trim_end());
-    }
-    text
-}
-
-fn line(text: &mut String, words: &str) {
-    text.push_str(words);
-    text.push('\n');
 }

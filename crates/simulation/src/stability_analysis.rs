@@ -1,33 +1,33 @@
-//! Whether a cut chatters: modes of the arm, its answer at the tip, and how deep it may cut at which spindle speed.
+//! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the spindle speed.
 
 use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::milling::{Cut, Cutter};
-use super::modes::{Linear, Mode};
+use super::modes::{LinearArm, Mode};
 use super::motion::Motion;
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
-use stead_model::cutting::{EngagementError, Milling};
+use stead_model::cutting::{EngagementError, MillingDirection};
 use stead_model::robot::{Robot, Spindle};
 
 /// What is to be found out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plan {
+pub struct AnalysisSettings {
     /// Where on the pass the arm stands. m
-    pub way: f64,
+    pub distance: f64,
     /// Spindle speeds of the lobes, from and to. rad/s
     pub speeds: [f64; 2],
     /// Spindle speeds between and at both.
     pub points: usize,
-    /// Depths of cut beyond this are not looked at. m
-    pub deepest: f64,
-    /// Frequencies of the answer at the tip, from and to. Hz
+    /// Largest depth of cut that is examined. m
+    pub max_depth: f64,
+    /// Frequencies of the frequency response, from and to. Hz
     pub frequencies: [f64; 2],
 }
 
-/// How the tip answers to a swinging force, in the plane of the cut.
+/// Frequency response of the tool tip at one frequency, in the plane of the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct FrequencyResponse {
     /// Frequency of the force. Hz
     pub frequency: f64,
     /// Along the feed, to a force along the feed. m/N
@@ -52,22 +52,22 @@ pub struct CutFrame {
 impl CutFrame {
     /// For a cutter that turns clockwise as seen from its spindle: `axis` points from the work to the spindle. In climb milling
     /// the wall is to the right of the feed. What the feed has along the axis is left out.
-    pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: Milling) -> Self {
+    pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: MillingDirection) -> Self {
         let left = axis.cross(&feed).normalize();
-        let normal = if milling == Milling::Climb { left } else { -left };
+        let normal = if milling == MillingDirection::Climb { left } else { -left };
         Self { feed: left.cross(&axis), normal, axis }
     }
 
     /// Along a pass.
-    pub fn along(motion: &Motion, milling: Milling) -> Self {
+    pub fn along(motion: &Motion, milling: MillingDirection) -> Self {
         Self::new(*motion.direction(), -motion.start().rotation.column(2), milling)
     }
 }
 
 /// How deep may be cut, and whether the cut at hand is calm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Depths {
-    /// By semi-discretisation; none where all depths looked at are stable. m
+pub struct CutStability {
+    /// By semi-discretisation; none where all depths up to the largest are stable. m
     pub semi_discretisation: Option<f64>,
     /// By the zero-order solution. m
     pub zero_order: Option<f64>,
@@ -75,40 +75,45 @@ pub struct Depths {
     pub verdict: Verdict,
 }
 
-/// What a survey found.
+/// Result of a stability analysis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Survey {
+pub struct StabilityAnalysis {
     /// All modes, by natural frequency.
     pub modes: Vec<Mode>,
-    /// The answer at the tip over frequency.
-    pub answers: Vec<Answer>,
+    /// Frequency response of the tool tip.
+    pub frequency_response: Vec<FrequencyResponse>,
     /// At the spindle speed of the cut.
-    pub depths: Depths,
+    pub cut_stability: CutStability,
     /// Over the spindle speed.
     pub lobes: Vec<Lobe>,
     /// Time of the pass through the work at the feed. s
     pub pass_time: f64,
 }
 
-/// Frequencies of the answer at the tip.
+/// Number of frequencies of the frequency response.
 const FREQUENCIES: usize = 1000;
 
-/// Modes, answer, critical depths and lobes of a cut, with the arm where the plan says.
+/// Modes, frequency response, critical depths and stability lobes of a cut, linearised where the settings say.
 ///
 /// # Errors
-/// [`SurveyError`] for an arm that says too little, or a cut without width.
-pub fn survey(setup: &Setup, cutter: &Cutter, cut: &Cut, plan: &Plan) -> Result<Survey, SurveyError> {
-    let linear = linear_at(setup, plan.way)?;
+/// [`StabilityError`] for an arm that says too little, or a cut without width.
+pub fn analyse(
+    setup: &Setup,
+    cutter: &Cutter,
+    cut: &Cut,
+    settings: &AnalysisSettings,
+) -> Result<StabilityAnalysis, StabilityError> {
+    let linear = linear_at(setup, settings.distance)?;
     let frame = CutFrame::along(&setup.motion, cut.milling);
     let plant = linear.plant(&frame)?;
     let between = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
         (0..count).map(|k| from + (to - from) * k as f64 / (count - 1).max(1) as f64).collect()
     };
-    Ok(Survey {
+    Ok(StabilityAnalysis {
         modes: linear.modes()?,
-        answers: linear.answers(&frame, &between(plan.frequencies, FREQUENCIES))?,
-        depths: depths(&plant, cutter, cut, plan.deepest)?,
-        lobes: lobes(&plant, cutter, cut, &between(plan.speeds, plan.points), plan.deepest)?,
+        frequency_response: linear.frequency_response(&frame, &between(settings.frequencies, FREQUENCIES))?,
+        cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
+        lobes: lobes(&plant, cutter, cut, &between(settings.speeds, settings.points), settings.max_depth)?,
         pass_time: cut.length / setup.motion.ramp().feed,
     })
 }
@@ -117,9 +122,9 @@ pub fn survey(setup: &Setup, cutter: &Cutter, cut: &Cut, plan: &Plan) -> Result<
 ///
 /// # Errors
 /// [`EngagementError`] for a cut without width.
-pub fn depths(plant: &Plant, cutter: &Cutter, cut: &Cut, most: f64) -> Result<Depths, EngagementError> {
+pub fn cut_stability(plant: &Plant, cutter: &Cutter, cut: &Cut, most: f64) -> Result<CutStability, EngagementError> {
     let motion = SemiDiscretisation::new(plant, cutter, cut)?;
-    Ok(Depths {
+    Ok(CutStability {
         semi_discretisation: motion.critical_depth(most),
         zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, most)?,
         verdict: motion.verdict(cut.axial_depth),
@@ -128,7 +133,7 @@ pub fn depths(plant: &Plant, cutter: &Cutter, cut: &Cut, most: f64) -> Result<De
 
 /// Why there is nothing to be said.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum SurveyError {
+pub enum StabilityError {
     /// The robot file says too little.
     #[error("{0}")]
     Missing(#[from] Missing),
@@ -143,98 +148,102 @@ pub enum SurveyError {
 /// The arm of a setup, for small motions about where it stands after a way (m) of its pass.
 ///
 /// # Errors
-/// [`SurveyError::Missing`] when the robot says too little for the variant.
-pub fn linear_at(setup: &Setup, way: f64) -> Result<AnyLinear, SurveyError> {
-    let motors = setup.motion.motors_after(way, 0.0).0;
+/// [`StabilityError::Missing`] when the robot says too little for the variant.
+pub fn linear_at(setup: &Setup, distance: f64) -> Result<AnyLinearArm, StabilityError> {
+    let motors = setup.motion.motors_at(distance, 0.0).0;
     linear_of(&setup.robot, &setup.spindle, setup.variant, setup.damping_scale, &motors)
 }
 
 /// The arm with its drives at joint angles `theta` (rad), for small motions about its rest.
 ///
 /// # Errors
-/// [`SurveyError::Missing`] when the robot says too little for the variant.
+/// [`StabilityError::Missing`] when the robot says too little for the variant.
 pub fn linear_of(
     robot: &Robot,
     spindle: &Spindle,
     variant: Variant,
     damping_scale: f64,
     theta: &[f64; 6],
-) -> Result<AnyLinear, SurveyError> {
-    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> Box<Linear<N>> {
-        Box::new(Linear::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale))
+) -> Result<AnyLinearArm, StabilityError> {
+    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> Box<LinearArm<N>> {
+        Box::new(LinearArm::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale))
     }
     Ok(match AnyArm::new(robot, spindle, variant, theta)? {
-        AnyArm::Six(arm) => AnyLinear::Six(about(&arm, theta, damping_scale)),
-        AnyArm::Eighteen(arm) => AnyLinear::Eighteen(about(&arm, theta, damping_scale)),
+        AnyArm::Six(arm) => AnyLinearArm::Six(about(&arm, theta, damping_scale)),
+        AnyArm::Eighteen(arm) => AnyLinearArm::Eighteen(about(&arm, theta, damping_scale)),
     })
 }
 
-/// A [`Linear`] of as many joints as its arm has.
+/// A [`LinearArm`] of as many joints as its arm has.
 #[derive(Debug, Clone, PartialEq)]
-pub enum AnyLinear {
+pub enum AnyLinearArm {
     /// Six joints.
-    Six(Box<Linear<6>>),
+    Six(Box<LinearArm<6>>),
     /// Eighteen.
-    Eighteen(Box<Linear<18>>),
+    Eighteen(Box<LinearArm<18>>),
 }
 
-impl AnyLinear {
+impl AnyLinearArm {
     /// All modes, by natural frequency.
     ///
     /// # Errors
-    /// [`SurveyError::Singular`].
-    pub fn modes(&self) -> Result<Vec<Mode>, SurveyError> {
+    /// [`StabilityError::Singular`].
+    pub fn modes(&self) -> Result<Vec<Mode>, StabilityError> {
         let modes = match self {
             Self::Six(linear) => linear.modes(),
             Self::Eighteen(linear) => linear.modes(),
         };
-        modes.ok_or(SurveyError::Singular)
+        modes.ok_or(StabilityError::Singular)
     }
 
-    /// The answer of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
+    /// The response of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
     ///
     /// # Errors
-    /// [`SurveyError::Singular`] in a resonance without damping.
-    pub fn response(&self, frequency: f64) -> Result<Matrix3<Complex<f64>>, SurveyError> {
+    /// [`StabilityError::Singular`] in a resonance without damping.
+    pub fn response(&self, frequency: f64) -> Result<Matrix3<Complex<f64>>, StabilityError> {
         let response = match self {
             Self::Six(linear) => linear.response(frequency),
             Self::Eighteen(linear) => linear.response(frequency),
         };
-        response.ok_or(SurveyError::Singular)
+        response.ok_or(StabilityError::Singular)
     }
 
     /// The tip as a plant of the stability analysis.
     ///
     /// # Errors
-    /// [`SurveyError::Singular`].
-    pub fn plant(&self, frame: &CutFrame) -> Result<Plant, SurveyError> {
+    /// [`StabilityError::Singular`].
+    pub fn plant(&self, frame: &CutFrame) -> Result<Plant, StabilityError> {
         let directions = [frame.feed, frame.normal, frame.axis];
         let plant = match self {
             Self::Six(linear) => Plant::of_arm(linear, directions),
             Self::Eighteen(linear) => Plant::of_arm(linear, directions),
         };
-        plant.ok_or(SurveyError::Singular)
+        plant.ok_or(StabilityError::Singular)
     }
 
-    /// The answer in the plane of the cut at frequencies (Hz).
+    /// Frequency response in the plane of the cut at frequencies (Hz).
     ///
     /// # Errors
-    /// [`SurveyError::Singular`] in a resonance without damping.
-    pub fn answers(&self, frame: &CutFrame, frequencies: &[f64]) -> Result<Vec<Answer>, SurveyError> {
+    /// [`StabilityError::Singular`] in a resonance without damping.
+    pub fn frequency_response(
+        &self,
+        frame: &CutFrame,
+        frequencies: &[f64],
+    ) -> Result<Vec<FrequencyResponse>, StabilityError> {
         let along = |response: &Matrix3<Complex<f64>>, to: &Vector3<f64>, from: &Vector3<f64>| {
             let pairs = (0..3).flat_map(|row| (0..3).map(move |column| (row, column)));
             pairs.map(|(row, column)| response[(row, column)] * (to[row] * from[column])).sum()
         };
-        let answer = |frequency: &f64| {
+        let response = |frequency: &f64| {
             let response = self.response(*frequency)?;
-            Ok(Answer {
+            Ok(FrequencyResponse {
                 frequency: *frequency,
                 feed: along(&response, &frame.feed, &frame.feed),
                 normal: along(&response, &frame.normal, &frame.normal),
                 cross: along(&response, &frame.normal, &frame.feed),
             })
         };
-        frequencies.iter().map(answer).collect()
+        frequencies.iter().map(response).collect()
     }
 }
 

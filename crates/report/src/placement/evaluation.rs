@@ -1,10 +1,10 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
-use super::json::{placement as placement_json, put_deviation};
-use super::number::{Unit, fixed};
-use super::stability::PathStability;
-use super::text::aligned;
-use super::words;
+use super::Context;
+use crate::columns::aligned;
+use crate::document::{placement as placement_json, put_deviation};
+use crate::names;
+use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_placement::feasibility::{Explanation, Finding};
 use stead_placement::outcome::Plan;
@@ -17,7 +17,7 @@ const FINE_DEG: Unit = Unit { decimals: 6, ..Unit::ANGLE_DEG };
 const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
 
 /// What `stead score --json` prints, with the critical depths along both plans where they were asked for.
-pub fn score_json(score: &Score, stability: Option<&PathStability>) -> Value {
+pub fn score_json(score: &Score, context: &Context) -> Value {
     let plan = |plan: &Plan| {
         let mut value = json!({
             "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
@@ -27,20 +27,20 @@ pub fn score_json(score: &Score, stability: Option<&PathStability>) -> Value {
         put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
         value
     };
-    let mut document = json!({
+    let mut entries = json!({
         "placement": placement_json(&score.placement),
         "feasible": true,
         "best": plan(&score.best),
         "worst": plan(&score.worst),
     });
-    if let (Some(stability), Some(object)) = (stability, document.as_object_mut()) {
-        object.insert("stability".to_owned(), stability.document(true));
+    if let Some(stability) = &context.stability {
+        entries["stability"] = stability.document(true);
     }
-    document
+    context.document().with(entries)
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
-pub fn infeasible_json(nothing: &NothingFeasible) -> Value {
+pub fn infeasible_json(nothing: &NothingFeasible, context: &Context) -> Value {
     let finding = |finding: &Finding| {
         json!({
             "segment": finding.segment,
@@ -49,21 +49,21 @@ pub fn infeasible_json(nothing: &NothingFeasible) -> Value {
             "message": finding.to_string(),
         })
     };
-    json!({
+    context.document().with(json!({
         "placement": placement_json(&nothing.placement),
         "feasible": false,
         "best": Value::Null,
         "worst": Value::Null,
         "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),
-    })
+    }))
 }
 
 /// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
-pub fn score_text(score: &Score, stability: Option<&PathStability>) -> String {
+pub fn score_text(score: &Score, context: &Context) -> String {
     let row = |name: &str, plan: &Plan| {
         let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
         row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
-        row.push(words::postures_within(&plan.postures, 60));
+        row.push(names::postures_within(&plan.postures, 60));
         row
     };
     let mut header = vec!["plan", "mean mm", "max mm"];
@@ -72,12 +72,18 @@ pub fn score_text(score: &Score, stability: Option<&PathStability>) -> String {
     let last = header.len() - 1;
     let header = header.into_iter().map(str::to_owned).collect();
     let rows = [header, row("best", &score.best), row("worst", &score.worst)];
-    let stability = stability.map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
+    let stability = context.stability.as_ref().map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
     format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
 }
 
 /// What `stead explain --json` prints.
-pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> Value {
+pub fn explain_json(
+    placement: &Placement,
+    point: usize,
+    beta: f64,
+    postures: &[Explanation; 8],
+    context: &Context,
+) -> Value {
     let posture = |e: &Explanation| {
         let state = e.state.as_ref();
         let mut value = json!({
@@ -92,12 +98,12 @@ pub fn explain_json(placement: &Placement, point: usize, beta: f64, postures: &[
         put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.deviation));
         value
     };
-    json!({
+    context.document().with(json!({
         "placement": placement_json(placement),
         "point": point,
         "beta_deg": FINE_DEG.number(beta),
         "postures": postures.iter().map(posture).collect::<Vec<_>>(),
-    })
+    }))
 }
 
 /// The table of `stead explain`.

@@ -1,8 +1,10 @@
-//! Tests over the whole room: what is written for a placement job.
+//! Tests of what is written for a placement job.
 
-use super::json::{Timing, place_json, summary_json};
-use super::testing::{assert_well_formed, context, outcome, problem};
-use super::{Folder, picture, tables, text, write_placement};
+use super::{place_json, placement_text, summary_json, tables, write_placement};
+use crate::document::Timing;
+use crate::output::Folder;
+use crate::picture;
+use crate::testing::{assert_well_formed, context, outcome, problem};
 
 fn rows(bytes: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes);
@@ -87,7 +89,7 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
     let bare = place_json(outcome(), &context(), &timing);
     assert!(bare["cases"][3].get("mean_std_mm").is_none() && bare["cases"][0]["plan"][9].get("std_mm").is_none());
     assert!(summary_json(problem(), outcome(), &context())["criterion"].get("confidence").is_none());
-    let text = text::placement_text(problem(), &known, &context());
+    let text = placement_text(problem(), &known, &context());
     assert!(text.contains("std mm") && text.lines().all(|line| line.chars().count() <= 110), "{text}");
 }
 
@@ -211,12 +213,12 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
 
 #[test]
 fn text_fits_into_110_columns_and_states_the_published_ratios() {
-    let text = text::placement_text(problem(), outcome(), &context());
+    let text = placement_text(problem(), outcome(), &context());
     assert!(text.lines().all(|line| line.chars().count() <= 110), "{text}");
     assert!(text.contains("14.46") && text.contains("Table III") && text.contains("-1643.5"), "{text}");
     let mut stopped = outcome().clone();
     stopped.interrupted = true;
-    assert!(text::placement_text(problem(), &stopped, &context()).contains("stopped before its end"));
+    assert!(placement_text(problem(), &stopped, &context()).contains("stopped before its end"));
 }
 
 #[test]

@@ -1,0 +1,99 @@
+//! What all JSON documents have in common: what they state first, their bytes, and views that several of them hold.
+
+use crate::units::Unit;
+use serde_json::{Map, Value, json};
+use stead_format::input::InputFile;
+use stead_placement::problem::Placement;
+
+/// How long a computation took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Time on the clock. s
+    pub wall: f64,
+    /// Threads used.
+    pub threads: usize,
+}
+
+/// The layout of every JSON document of stead; raised when a key goes or changes its meaning, not when one is added.
+pub const FORMAT: u32 = 1;
+
+/// A JSON document of stead: whatever it reports, it states `format`, `version`, `inputs`, `notes` and `warnings`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Document(Map<String, Value>);
+
+impl Document {
+    /// A document on what was computed from these files, without notes and warnings yet.
+    pub fn new(inputs: &[InputFile]) -> Self {
+        let inputs = inputs.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 }));
+        Self(Map::from_iter([
+            ("format".to_owned(), json!(FORMAT)),
+            ("version".to_owned(), json!(env!("CARGO_PKG_VERSION"))),
+            ("inputs".to_owned(), inputs.collect()),
+            ("notes".to_owned(), json!([])),
+            ("warnings".to_owned(), json!([])),
+        ]))
+    }
+
+    /// States what the result rests on: assumptions made and values left at their defaults.
+    pub fn notes(self, notes: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.messages("notes", notes)
+    }
+
+    /// States why the result may not be what was wanted.
+    pub fn warnings(self, warnings: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.messages("warnings", warnings)
+    }
+
+    fn messages(mut self, key: &str, messages: impl IntoIterator<Item = impl ToString>) -> Self {
+        if let Some(Value::Array(list)) = self.0.get_mut(key) {
+            list.extend(messages.into_iter().map(|message| json!(message.to_string())));
+        }
+        self
+    }
+
+    /// The document with the entries of a result, which is a JSON object.
+    pub fn with(mut self, result: Value) -> Value {
+        if let Value::Object(entries) = result {
+            self.0.extend(entries);
+        }
+        Value::Object(self.0)
+    }
+}
+
+/// A document as the bytes of a file or of standard output: indented, with a line break at the end.
+pub fn bytes(document: &Value) -> Vec<u8> {
+    format!("{document:#}\n").into_bytes()
+}
+
+/// Adds a standard deviation to an object where the robot's uncertainty is known.
+pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
+    if let (Some(deviation), Value::Object(map)) = (deviation, object) {
+        map.insert(key.to_owned(), json!(unit.number(deviation)));
+    }
+}
+
+/// A placement as every JSON document states it.
+pub fn placement(placement: &Placement) -> Value {
+    json!({
+        "x_mm": Unit::PLACE_MM.number(placement.x),
+        "y_mm": Unit::PLACE_MM.number(placement.y),
+        "z_mm": Unit::PLACE_MM.number(placement.z),
+        "q4": Unit::PLAIN.number(placement.q4()),
+        "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_document_states_where_it_comes_from_before_its_result() {
+        let input = InputFile { role: "config", name: "run.toml".to_owned(), sha256: "0".repeat(64) };
+        let document = Document::new(&[input]).notes(["a"]).warnings(["b", "c"]).with(json!({ "mean_mm": 0.5 }));
+        assert_eq!((&document["format"], &document["mean_mm"]), (&json!(1), &json!(0.5)));
+        assert_eq!((&document["notes"], &document["warnings"]), (&json!(["a"]), &json!(["b", "c"])));
+        assert_eq!(document["inputs"][0]["name"], "run.toml");
+        assert!(bytes(&document).ends_with(b"}\n"));
+    }
+}
