@@ -25,6 +25,7 @@ use std::path::{Display, Path};
 use std::process::ExitCode;
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
+use stead_format::LocatedError;
 use stead_format::input::InputError;
 use stead_placement::place::NothingFeasible;
 use stead_report::document;
@@ -54,6 +55,15 @@ enum Failure {
     /// The job itself failed.
     #[error("{0}")]
     Job(String),
+}
+
+impl From<LocatedError> for Failure {
+    fn from(error: LocatedError) -> Self {
+        match error {
+            LocatedError::Input(error) => Failure::Input(error),
+            LocatedError::Job(message) => Failure::Job(message),
+        }
+    }
 }
 
 impl Failure {

@@ -55,12 +55,6 @@ pub(super) fn case(number: u8) -> (&'static str, &'static str) {
     (placement, plan)
 }
 
-/// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
-pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
-    let number = joint + 1;
-    angle.map_or_else(|| format!("k_{number}"), |angle| format!("k_{number} at {:.2} deg", angle.to_degrees()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ use stead_model::robot::RobotError;
 /// Why nothing can be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IdentifyError {
-    /// Base transform and reference points cannot be told.
+    /// Base transform and reference points are not identifiable.
     #[error("{0}")]
     Setup(#[from] SetupError),
     /// A deflection is far larger than the load could cause on the starting arm.
@@ -23,7 +23,7 @@ pub enum IdentifyError {
         expected_mm: f64,
     },
     /// Fewer equations than unknowns.
-    #[error("{equations} deflection components do not tell {unknowns} compliances")]
+    #[error("{equations} deflection components do not determine {unknowns} compliances")]
     TooFew {
         /// Components read.
         equations: usize,
@@ -49,7 +49,7 @@ pub enum IdentifyError {
         /// Lines of the outliers without which it is so, from 1; none where it is so with all readings.
         outliers: Vec<usize>,
     },
-    /// A compliance comes out far below zero: the arm goes against the load.
+    /// The estimate of a compliance is far below zero: the arm moves against the load.
     #[error(
         "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
          urad/(N m): the joint turns against its load"
@@ -62,13 +62,13 @@ pub enum IdentifyError {
         /// Its standard deviation. urad/(N m)
         deviation_urad: f64,
     },
-    /// The compensator cannot be told.
+    /// The compensator is not identifiable.
     #[error("{0}")]
     Law(#[from] LawError),
     /// A compliance comes out at zero or below.
     #[error(
         "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
-         urad/(N m): it is not told by these readings"
+         urad/(N m): it is not identifiable from these readings"
     )]
     NotPositive {
         /// Number of the joint, from 1.

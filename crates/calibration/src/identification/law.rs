@@ -67,11 +67,11 @@ pub struct ArmFit {
     pub groups: Vec<(f64, DVector<f64>)>,
 }
 
-/// Why the compensator cannot be told from the compliances at the distinct angles.
+/// Why the compensator is not identifiable from the compliances at the distinct angles.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LawError {
     /// Fewer distinct angles than unknowns.
-    #[error("{found} distinct angles of joint {joint} do not tell the three unknowns of a compensator")]
+    #[error("{found} distinct angles of joint {joint} do not determine the three unknowns of a compensator")]
     TooFewAngles {
         /// How many there are.
         found: usize,
@@ -79,15 +79,17 @@ pub enum LawError {
         joint: usize,
     },
     /// The angles are too much alike.
-    #[error("the distinct angles of joint {joint} do not tell its own stiffness from its compensator's")]
+    #[error(
+        "at the distinct angles of joint {joint} its own stiffness and its compensator's are not identifiable separately"
+    )]
     Unidentifiable {
         /// Number of the joint, from 1.
         joint: usize,
     },
-    /// What fits best is no compensator.
+    /// The best fit is no compensator.
     #[error(
-        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the distinct angles do not tell the \
-         compensator; take more of them, wider apart, or leave out the table [compensator]"
+        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the compensator is not identifiable from \
+         the distinct angles; take more of them, wider apart, or leave out the table [compensator]"
     )]
     NoSpring {
         /// Number of the joint, from 1.
@@ -107,7 +109,7 @@ const STEPS: usize = 60;
 /// compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors
-/// [`LawError`] where the law is a spring that the angles do not tell.
+/// [`LawError`] where the law is a spring that is not identifiable from the angles.
 pub fn fit(
     normal: &NormalEquations,
     joints: [bool; 6],

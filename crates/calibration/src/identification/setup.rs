@@ -22,12 +22,12 @@ pub struct Setup {
     pub residual_rms: f64,
 }
 
-/// Why base transform and tool points cannot be told.
+/// Why base transform and reference points are not identifiable.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SetupError {
     /// Fewer equations than unknowns.
     #[error(
-        "{equations} unloaded coordinates do not tell the {unknowns} unknowns of base transform and reference points"
+        "{equations} unloaded coordinates do not determine the {unknowns} unknowns of base transform and reference points"
     )]
     TooFew {
         /// Coordinates read without load.
@@ -36,7 +36,7 @@ pub enum SetupError {
         unknowns: usize,
     },
     /// The configurations are too much alike.
-    #[error("the unloaded readings do not tell the base transform from the reference points")]
+    #[error("base transform and reference points are not identifiable separately from the unloaded readings")]
     Unidentifiable,
     /// The readings are not where any tracker and reference points would put them.
     #[error(
@@ -66,7 +66,7 @@ pub enum SetupError {
     },
 }
 
-/// How well base transform and reference points fit the unloaded readings, and how well those tell them.
+/// How well base transform and reference points fit the unloaded readings, and how well those determine them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetupFit {
     /// The reading farthest from where kinematics puts its point: line of the sheet from 1, distance in m.
@@ -97,7 +97,7 @@ const STEPS: usize = 60;
 /// the rotation of `tracker_from_base` the best of 24 orientations all round is taken.
 ///
 /// # Errors
-/// [`SetupError`] when the readings do not tell them.
+/// [`SetupError`] when the readings do not determine them.
 pub fn estimate(
     sheet: &Sheet,
     flanges: &[Pose<f64>],

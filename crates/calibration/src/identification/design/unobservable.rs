@@ -31,6 +31,7 @@ impl Unobservable {
 
 /// Why a compliance is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum UnobservableReason {
     /// Every load is along the axis of the joint.
     LoadsAlongAxis,
@@ -41,6 +42,7 @@ pub enum UnobservableReason {
     /// The joint turns, but every reference point is on its axis.
     PointsOnAxis,
     /// Several compliances change the readings in one way.
+    #[serde(rename = "not-apart")]
     Dependent,
 }
 
