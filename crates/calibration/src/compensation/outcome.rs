@@ -1,4 +1,4 @@
-//! What comes of a compensation: corrected points with what remains, or the points that cannot be corrected and why.
+//! Results of a compensation: corrected points with their remaining errors, or the points that cannot be corrected and why.
 
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -86,7 +86,7 @@ pub fn reduction([before, after]: [MeanAndMax; 2]) -> Option<f64> {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, thiserror::Error)]
 pub enum PointError {
     /// The correction leads out of reach.
-    #[error("the correction leads out of reach: {0}")]
+    #[error("the corrected pose is out of reach: {0}")]
     Reach(Unreachable),
     /// The corrected command is beyond a joint limit.
     #[error("corrected, joint {joint} would be {:.6} deg beyond its limit", by.to_degrees())]
@@ -97,18 +97,18 @@ pub enum PointError {
         by: f64,
     },
     /// The arm of the model has no equilibrium under the load.
-    #[error("the arm gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    #[error("the arm has no stable equilibrium beyond {share:.3} of the load")]
     Unstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
     /// The arm that stands for reality has none.
-    #[error("the arm of reality gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    #[error("the arm of reality has no stable equilibrium beyond {share:.3} of the load")]
     RealityUnstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
-    /// An iteration made the error larger.
+    /// An iteration increased the error.
     #[error(
         "iteration {iterations} diverges: the error goes from {:.3e} to {:.3e} mm; a smaller alpha may help",
         from * 1e3,
@@ -122,7 +122,7 @@ pub enum PointError {
         /// The error after it. m
         to: f64,
     },
-    /// All iterations were used up.
+    /// The iteration limit was reached.
     #[error("after {iterations} iterations the error is still {:.3e} mm; more iterations, or an alpha nearer to 1, may help", error * 1e3)]
     NotConverged {
         /// How many.
@@ -133,7 +133,7 @@ pub enum PointError {
 }
 
 impl PointError {
-    /// Whether two reasons are the same but for numbers.
+    /// Whether two errors differ in their numbers only.
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::JointLimit { joint: a, .. }, Self::JointLimit { joint: b, .. }) => a == b,

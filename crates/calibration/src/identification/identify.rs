@@ -13,18 +13,18 @@ use super::warnings::warnings;
 use nalgebra::Vector6;
 use stead_model::robot::Pose;
 
-/// Deflections may be this many times what the starting arm lets expect.
+/// Largest ratio of a deflection to the one predicted by the starting arm.
 const FAR: f64 = 50.0;
-/// Setup and outliers hardly depend on each other: two rounds settle them.
+/// Rounds of setup and outliers, which depend on each other only weakly: two usually suffice.
 const ROUNDS: usize = 4;
 
 /// Identifies the compliances of an arm.
 ///
-/// Outliers are left out of the deflections and then of the setup too, until both agree. Where the noise is not stated it is
-/// estimated from the residuals, with twice its variance in the difference of two readings.
+/// Outliers are left out of the deflections and then of the setup too, until both agree. Noise that is not stated is estimated
+/// from the residuals; a deflection is the difference of two readings and has twice their variance.
 ///
 /// # Errors
-/// [`IdentifyError`] when the sheet does not tell them.
+/// [`IdentifyError`] when they are not identifiable from the sheet.
 pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
         // The joint keeps the law that it has in the starting arm: there is none to fit.
@@ -91,7 +91,7 @@ fn unidentifiable_without_outliers(
     IdentifyError::Unidentifiable { unidentifiable, layout: layout.clone(), outliers: outliers.collect() }
 }
 
-/// Refuses a deflection that is far larger than the starting arm lets expect.
+/// Refuses a deflection far larger than the one predicted by the starting arm.
 fn check_lengths(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> {
     for configuration in &problem.sheet.configurations {
         let compliances = problem.robot.compliances_at(&configuration.theta);

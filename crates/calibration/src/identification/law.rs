@@ -1,5 +1,5 @@
-//! From the compliances seen to those of the arm: one constant for each joint, or joint, spring and its free length where a
-//! compensator stands beside one.
+//! From the compliances at distinct angles to the parameters of the arm: one constant compliance for each joint, or compliance,
+//! spring stiffness and free length where a compensator acts on a joint.
 //!
 //! The compliances at the distinct angles of a joint become stiffnesses, which are linear in (K_theta, K_GC, s_0 K_GC)
 //! (Klimchik et al. 2017, eq. 21 and 22, with the sign of its eq. 14 corrected), weighted by their covariance. From there
@@ -21,12 +21,12 @@ pub enum Law {
     Spring(Geometry),
 }
 
-/// A number of the arm that has been estimated.
+/// A parameter of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct ArmParameter {
     /// Which joint, from 0.
     pub joint: usize,
-    /// Which of its numbers.
+    /// Which of its quantities.
     pub quantity: Quantity,
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for ArmParameter {
     }
 }
 
-/// What a number of the arm is.
+/// Which quantity of a joint a parameter is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Quantity {
     /// Compliance of the joint, without its compensator. rad/(N m)
@@ -52,7 +52,7 @@ pub enum Quantity {
     FreeLength,
 }
 
-/// The arm's numbers.
+/// The parameters of the arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArmFit {
     /// What they are, joint by joint.
@@ -105,7 +105,7 @@ pub enum LawError {
 
 const STEPS: usize = 60;
 
-/// Fits the arm's numbers to the sums of the readings. `joints` says which joints are free, `by_angle` is the estimate with one
+/// Fits the parameters of the arm to the normal equations. `joints` says which joints are free, `by_angle` is the estimate with one
 /// compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors

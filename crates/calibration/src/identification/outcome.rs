@@ -1,4 +1,4 @@
-//! What an identification finds. SI units and radians, in its serialised form too.
+//! The result of an identification. SI units and radians, in its serialised form too.
 
 use super::cross_validation::Prediction;
 use super::law::ArmParameter;
@@ -12,7 +12,7 @@ use stead_numerics::message::Warning;
 /// An estimate with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate<P> {
-    /// What is estimated.
+    /// The parameter.
     pub parameter: P,
     /// The joint angle to which it belongs, where that matters. rad
     pub angle: Option<f64>,
@@ -24,7 +24,7 @@ pub struct Estimate<P> {
     pub interval: [f64; 2],
 }
 
-/// One reading beside the model.
+/// One reading and its prediction by the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RowResult {
     /// Line in the sheet, from 1.
@@ -61,7 +61,7 @@ pub enum HeldReason {
     Unidentifiable,
 }
 
-/// What an identification finds.
+/// The result of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identified {
     /// Base transform and reference points.
@@ -72,7 +72,7 @@ pub struct Identified {
     pub compliances: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.
     pub varying: Option<usize>,
-    /// The numbers of the arm, in the units of [`ArmParameter`].
+    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity).
     pub arm: Vec<Estimate<ArmParameter>>,
     /// Covariance of those, in their order; serialised row by row.
     #[serde(serialize_with = "rows_of")]
@@ -94,7 +94,7 @@ pub struct Identified {
     pub variance_ratio: f64,
     /// Equations less parameters.
     pub degrees_of_freedom: usize,
-    /// Whether there were equations enough to look for outliers.
+    /// Whether there were enough equations to look for outliers.
     pub are_outliers_searched: bool,
     /// Probability that a right law of the varying joint increases the residuals as much as this one does.
     pub law_probability: Option<f64>,

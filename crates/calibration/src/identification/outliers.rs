@@ -1,4 +1,4 @@
-//! Readings that do not belong with the others.
+//! Robust estimation: readings that deviate from the others by more than noise.
 //!
 //! A first estimate that outliers hardly move (Huber's weights, then Tukey's bisquare, both by iterated least squares with the
 //! median of the residuals as scale) tells which readings to leave out at first. Then the ordinary estimate from the others judges
@@ -11,7 +11,7 @@ use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::sheet::Sheet;
 use nalgebra::{Matrix6, Vector6};
 
-/// The estimate without outliers, and how each reading stands to it.
+/// The estimate without outliers, and the residual of each reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustEstimate {
     /// The estimate.
@@ -26,11 +26,11 @@ pub struct RobustEstimate {
     pub kept: Vec<bool>,
     /// Root of the mean square of the studentised residual of each reading: about 1.
     pub studentised: Vec<f64>,
-    /// Whether there are equations enough to look for outliers.
+    /// Whether there are enough equations to look for outliers.
     pub is_searched: bool,
 }
 
-/// What is to be estimated.
+/// Inputs of the robust estimate.
 pub struct OutlierSearch<'a> {
     /// The readings.
     pub sheet: &'a Sheet,
@@ -40,9 +40,9 @@ pub struct OutlierSearch<'a> {
     pub observations: &'a [Observation],
     /// Which parameters are free.
     pub free: &'a FreeParameters,
-    /// What the others are held at.
+    /// Values of the others.
     pub held: (&'a Vector6<f64>, &'a [f64]),
-    /// The scale of the residuals is not less than this: what the noise is known to be, or what no tracker resolves.
+    /// Lower limit of the scale of the residuals: the known noise, or the resolution of any tracker.
     pub min_scale: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct OutlierSearch<'a> {
 pub(super) const ROUNDING: f64 = 1e-10;
 /// One false outlier in so many sheets of ordinary noise.
 const SHEETS: f64 = 100.0;
-/// Rounds of reweighting, and of judging.
+/// Rounds of reweighting, and of testing for outliers.
 const ROUNDS: usize = 30;
 /// No weight is less in the robust start, so that no parameter is left without readings.
 const MIN_WEIGHT: f64 = 1e-6;
@@ -75,7 +75,7 @@ impl OutlierSearch<'_> {
     /// The estimate without outliers.
     ///
     /// # Errors
-    /// The readings that were kept when they did not tell all parameters any more.
+    /// The readings that were kept when not all parameters were identifiable from them any more.
     pub fn robust_estimate(&self) -> Result<RobustEstimate, Vec<bool>> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();

@@ -1,11 +1,11 @@
-//! What an identification starts from.
+//! Inputs of an identification.
 
 use super::law::Law;
 use super::sheet::Sheet;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Robot;
 
-/// What is to be identified, from what.
+/// Inputs of an identification: the starting arm, the measurements and what is known beside them. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// The arm to start from: geometry, limits, and compliances of about the right size.

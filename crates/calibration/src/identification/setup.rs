@@ -1,4 +1,4 @@
-//! Where the tracker stands and where the reference points sit: from the unloaded readings alone.
+//! Pose of the tracker and positions of the reference points, from the unloaded readings alone.
 //!
 //! Reading i of point p in configuration j is `R (R_j p_i + o_j) + t`, with the flange at (R_j, o_j) by the forward
 //! kinematics and the tracker at (R, t). Given R it is linear in t and the points: their least-squares estimate is the mean of
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use serde::Serialize;
 use stead_model::robot::Pose;
 
-/// Where things are in the measuring cell.
+/// Pose of the tracker and positions of the reference points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setup {
     /// The robot base in the tracker's frame.

@@ -1,4 +1,4 @@
-//! What an identification from a set will report: its standard deviations, foreseen by its own normal equations.
+//! The standard deviations that an identification from a set will report, predicted by its own normal equations.
 
 use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::model::{Layout, Noise, Parameter, observations};
@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, SVector, Vector6};
 use serde::Serialize;
 use stead_model::robot::{Compliance, Pose};
 
-/// A compliance and how well it will be known. rad/(N m)
+/// A compliance and its expected standard deviation. rad/(N m)
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedCompliance {
     /// The joint, from 0.
@@ -39,10 +39,10 @@ impl ExpectedCompliance {
     }
 }
 
-/// A number of the robot file beside which a compensator stands, and how well it will be known. SI units.
+/// A parameter of a compensator or of the joint beside it, and its expected standard deviation. SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedParameter {
-    /// Which number.
+    /// Which parameter.
     pub parameter: ArmParameter,
     /// As the starting robot has it.
     pub value: f64,
@@ -71,8 +71,8 @@ pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) 
     (layout, normal)
 }
 
-/// The compliances that `fit` will report from a sheet, each on its own, with their standard deviations; and what it will
-/// not see.
+/// The compliances that an identification will report from a sheet, each by itself, with their standard deviations; and the
+/// unidentifiable combinations.
 pub fn seen(
     layout: &Layout,
     normal: &NormalEquations,

@@ -1,11 +1,11 @@
-//! What is to be planned.
+//! Inputs of the choice of measurements.
 
 use super::super::law::Law;
 use super::super::sheet::LoadCase;
 use nalgebra::Vector3;
 use stead_model::robot::Robot;
 
-/// What a plan is made for. SI units, radians.
+/// Inputs of the choice of measurements. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The arm as far as it is known: geometry, limits, and compliances of about the right size.
@@ -50,7 +50,7 @@ pub struct Request {
     pub starts: usize,
     /// Random sets to compare with.
     pub random_sets: usize,
-    /// A compliance whose expected standard deviation is above this share of it is hardly seen.
+    /// A compliance whose expected standard deviation is above this share of it is weakly observed.
     pub max_relative_deviation: f64,
 }
 

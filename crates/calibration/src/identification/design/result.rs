@@ -38,7 +38,7 @@ pub struct Design {
     pub travel: f64,
     /// What the set leaves out on purpose, in sentences.
     pub notes: Vec<String>,
-    /// What an identification from this set will not tell, or hardly.
+    /// Unobservable and weakly observed compliances, in sentences.
     pub warnings: Vec<Warning>,
 }
 

@@ -1,4 +1,4 @@
-//! What a set of configurations and loads does not show, and why.
+//! Compliances that a set of configurations and loads leaves unobservable, and why.
 
 use super::super::model::{Layout, Parameter};
 use super::super::normal_equations::Unidentifiable;
@@ -8,7 +8,7 @@ use super::request::Request;
 use serde::Serialize;
 use stead_model::robot::Frames;
 
-/// A compliance, or a combination of several, that no reading shows.
+/// A compliance, or a combination of several, on which no reading depends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unobservable {
     /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up comes first.
@@ -29,7 +29,7 @@ impl Unobservable {
     }
 }
 
-/// Why a compliance is not seen.
+/// Why a compliance is unobservable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum UnobservableReason {
@@ -41,12 +41,12 @@ pub enum UnobservableReason {
     NoTorque,
     /// The joint turns, but every reference point is on its axis.
     PointsOnAxis,
-    /// Several compliances change the readings in one way.
+    /// Several compliances change the readings in proportion.
     #[serde(rename = "not-apart")]
     Dependent,
 }
 
-/// A compliance that is seen, but hardly.
+/// A compliance with a large expected standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WeaklyObserved {
     /// The joint, from 0.
@@ -62,7 +62,7 @@ pub struct WeaklyObserved {
 /// Lengths (m) and angles (rad) below this are rounding.
 const NOTHING: f64 = 1e-7;
 
-/// Names what is unseen by normal equations, with reasons from all the loads.
+/// The unidentifiable combinations of normal equations by joint and angle, with reasons from all the loads.
 pub fn unobservable(
     request: &Request,
     load_cases: &[LoadCase],

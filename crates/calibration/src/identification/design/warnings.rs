@@ -1,4 +1,4 @@
-//! What an identification from a chosen set will not tell, in sentences.
+//! Unobservable and weakly observed compliances of a chosen set, in sentences.
 
 use super::super::model::compliance_name;
 use super::expected::ExpectedCompliance;

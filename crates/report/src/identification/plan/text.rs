@@ -26,7 +26,11 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
     }
     let errors = &plan.errors;
     let millimetres = |value: f64| {
-        if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "does not tell everything".to_owned() }
+        if value.is_finite() {
+            format!("{} mm", figures(value * 1e3))
+        } else {
+            "not every compliance is identifiable".to_owned()
+        }
     };
     let tests = match &request.tests {
         TestCases::Given(tests) => format!("the {} tests", tests.len()),
@@ -43,10 +47,10 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         millimetres(errors.median_random)
     );
     if errors.unidentifiable_sets > 0 {
-        text += &format!("; sets that do not tell everything: {}", errors.unidentifiable_sets);
+        text += &format!("; sets from which not every compliance is identifiable: {}", errors.unidentifiable_sets);
     }
     if !plan.unobservable.is_empty() {
-        text += "\nall errors are without that of the compliances that are not seen (see below)";
+        text += "\nall errors leave out unobservable compliances (see below)";
     }
     let rejected = &plan.rejected;
     text += &format!(
