@@ -1,6 +1,7 @@
-//! What may be said on the command line.
+//! The arguments of the command line: subcommands, options, and which values are allowed.
 
-use clap::{Args, Parser, Subcommand};
+use super::help;
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE, Overrides};
@@ -11,7 +12,7 @@ use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
 #[derive(Debug, Parser)]
-#[command(name = "stead", version, about, arg_required_else_help = true)]
+#[command(name = "stead", version, about, arg_required_else_help = true, after_help = help::STEAD)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -19,25 +20,70 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Find the best and the worst placement of a workpiece, and write tables and pictures
+    /// Find the placement of the workpiece with the smallest deflection, and the largest to compare
+    #[command(after_long_help = help::PLACE)]
     Place(PlaceOptions),
-    /// Evaluate one given placement: its best and its worst redundancy plan
+    /// Evaluate a given placement: its best and its worst plan of the spindle angle
+    #[command(after_long_help = help::SCORE)]
     Score(ScoreOptions),
-    /// Tell for one placement, path point and beta what each of the eight postures gives
+    /// Show which constraints each posture satisfies at one path point of a given placement
+    #[command(after_long_help = help::EXPLAIN)]
     Explain(ExplainOptions),
-    /// Tell how good robots are for machining: maps of circularity, best zones, and which robot for which task
+    /// Compare robots by the circularity of a milled circle: maps, best zones, selection for a task
+    #[command(after_long_help = help::ASSESS)]
     Assess(AssessOptions),
-    /// Correct the path of a plan so that the loaded tool follows the path that is wanted
+    /// Correct a path so that the deflected tool follows the target path
+    #[command(after_long_help = help::COMPENSATE)]
     Compensate(CompensateOptions),
-    /// Joint compliances from measured deflections, with their uncertainty
+    /// Identify joint compliances from measured deflections: plan the measurements, fit the parameters
     #[command(subcommand)]
     Identify(IdentifyCommand),
-    /// Roundness of measured points: the four reference circles of ISO 12181
+    /// Compute the circularity of measured points about the four reference circles of ISO 12181
+    #[command(after_long_help = help::CIRCULARITY)]
     Circularity(CircularityOptions),
-    /// Simulate a milling pass with an arm that yields: forces, the wall that is left, and whether the cut stays calm
+    /// Simulate a milling pass with a flexible arm: forces, surface of the wall, chatter
+    #[command(after_long_help = help::SIMULATE)]
     Simulate(SimulateOptions),
-    /// Tell whether a cut chatters: modes of the arm, frequency response at the tip, stability lobes, verdict
+    /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
+    #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
+    /// Print the completion script of a shell
+    #[command(after_long_help = help::COMPLETIONS)]
+    Completions(CompletionsOptions),
+    /// Write the manual pages
+    #[command(after_long_help = help::MAN)]
+    Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsOptions {
+    /// Shell that the script is for
+    pub shell: Shell,
+}
+
+/// The shells that there is a completion script for.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Shell {
+    Bash,
+    Zsh,
+    Fish,
+}
+
+impl From<Shell> for clap_complete::Shell {
+    fn from(shell: Shell) -> Self {
+        match shell {
+            Shell::Bash => Self::Bash,
+            Shell::Zsh => Self::Zsh,
+            Shell::Fish => Self::Fish,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManOptions {
+    /// Folder for the pages; it is created where it is missing
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -50,10 +96,10 @@ pub(super) struct PlaceOptions {
     /// Seed of the random numbers, instead of the run file's
     #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
-    /// Bound how much better than the placement found any other can be, until it is no more than G per cent
+    /// Continue until it is proved that no placement is better, or worse, by more than G per cent
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
-    /// Number of threads [default: as many as processors]; it does not change the result
+    /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print one JSON document instead of tables
@@ -74,7 +120,7 @@ pub(super) struct AssessOptions {
     /// Cutting force in N for the wanted accuracy, instead of the list in the file
     #[arg(long, value_name = "F", value_parser = positive, allow_hyphen_values = true)]
     pub force_n: Option<f64>,
-    /// Number of threads [default: as many as processors]; it does not change the result
+    /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print one JSON document instead of tables
@@ -84,9 +130,11 @@ pub(super) struct AssessOptions {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum IdentifyCommand {
-    /// Fit compliances, compensator and their covariance to a filled measurement sheet, and write a robot file
+    /// Fit compliances, compensator and covariance to a filled measurement sheet; writes a robot file
+    #[command(after_long_help = help::IDENTIFY_FIT)]
     Fit(IdentifyFitOptions),
-    /// Choose the configurations and loads to measure, and write the sheet to be filled in
+    /// Choose the configurations and loads to measure; writes the sheet to fill in
+    #[command(after_long_help = help::IDENTIFY_PLAN)]
     Plan(IdentifyPlanOptions),
 }
 
@@ -100,7 +148,7 @@ pub(super) struct IdentifyPlanOptions {
     /// Seed of the random numbers, instead of the file's
     #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
-    /// Number of threads [default: as many as processors]; it does not change the result
+    /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print one JSON document instead of tables
@@ -152,7 +200,7 @@ pub(super) struct ExplainOptions {
 pub(super) struct CompensateOptions {
     /// Compensation file (TOML)
     pub config: PathBuf,
-    /// Robot file (TOML) to play the corrected path on, of the same geometry, instead of the file's `reality`
+    /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
     #[arg(long, value_name = "ROBOT")]
     pub reality: Option<PathBuf>,
     /// Folder for the results [default: results/<name of the compensation file>]
@@ -167,7 +215,7 @@ pub(super) struct CompensateOptions {
 pub(super) struct CircularityOptions {
     /// Measured points (CSV with x_mm,y_mm or x_mm,y_mm,z_mm)
     pub points: PathBuf,
-    /// Leave out points from angle A to B in degrees about the least-squares centre of all; may be repeated
+    /// Exclude points from angle A to B in degrees about the least-squares centre; may be repeated
     #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]
     pub exclude_deg: Vec<Sector>,
     /// Folder for circularity.json, deviations.csv and polar.svg [default: nothing is written]
@@ -204,7 +252,7 @@ pub(super) struct StabilityOptions {
     /// Folder for the results [default: results/<name of the simulation file>-stability]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of threads [default: as many as processors]; it does not change the result
+    /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print one JSON document instead of a text
@@ -216,13 +264,13 @@ pub(super) struct StabilityOptions {
 #[derive(Debug, Args)]
 #[group(skip)]
 pub(super) struct ModelArguments {
-    /// How much of the arm is modelled, instead of the file's
+    /// How much of the arm is modelled, instead of the file's: springs, gravity, orthogonal or backlash
     #[arg(long, value_name = "V", value_parser = variant)]
     pub variant: Option<Variant>,
-    /// All damping of the arm times S, instead of the file's
+    /// Factor on all damping of the arm, instead of the file's
     #[arg(long, value_name = "S", value_parser = damping_scale, allow_hyphen_values = true)]
     pub damping_scale: Option<f64>,
-    /// Spindle speed in turns a minute, instead of the file's
+    /// Spindle speed in rev/min, instead of the file's
     #[arg(long, value_name = "N", value_parser = rpm, allow_hyphen_values = true)]
     pub spindle_rpm: Option<f64>,
 }

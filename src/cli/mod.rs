@@ -9,8 +9,11 @@ mod assess;
 mod certify;
 mod circularity;
 mod compensate;
+mod completions;
 mod explain;
+mod help;
 mod identify;
+mod man;
 mod place;
 mod progress;
 mod score;
@@ -18,7 +21,7 @@ mod simulate;
 mod stability;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::FromArgMatches;
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Display, Path};
@@ -77,7 +80,7 @@ impl Failure {
 
 /// Parses the command line, runs the command, and says how it went.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::from_arg_matches(&help::command().get_matches()).unwrap_or_else(|error| error.exit());
     let result = match arguments.command {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
@@ -88,6 +91,8 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Completions(options) => completions::run(&options),
+        Command::Man(options) => man::run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,234 @@
+//! The words of the long help: examples, files written and exit codes of each command, and the overview of all commands by
+//! the question that they answer.
+
+use super::arguments::Arguments;
+use clap::CommandFactory;
+
+/// The commands by the question that they answer. Commands that stand in no group are listed last.
+const GROUPS: [(&str, &[&str]); 5] = [
+    ("Where to put the workpiece", &["place", "score", "explain"]),
+    ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
+    ("What the loaded tool does", &["compensate", "simulate", "stability"]),
+    ("How round a measured profile is", &["circularity"]),
+    ("Input files, shell and manual", &[]),
+];
+
+/// The command line with its overview. Every command is described by its own one-line summary.
+pub(super) fn command() -> clap::Command {
+    let command = Arguments::command();
+    let overview = overview(&command);
+    // The texts are laid out by hand: no wrapping.
+    command.term_width(0).help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"
+    ))
+}
+
+fn overview(command: &clap::Command) -> String {
+    let line = |command: &clap::Command| {
+        let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+        format!("  {:<12} {about}\n", command.get_name())
+    };
+    let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
+    let mut text = String::new();
+    for (question, names) in GROUPS {
+        let is_rest = names.is_empty();
+        let members = command.get_subcommands().filter(|member| {
+            let name = member.get_name();
+            names.contains(&name) || (is_rest && !is_grouped(name))
+        });
+        text.push_str(&format!("{question}:\n{}\n", members.map(line).collect::<String>()));
+    }
+    text
+}
+
+pub(super) const STEAD: &str = "\
+Start with: stead place configs/caro-2013.toml
+`stead COMMAND --help` shows examples, the files that a command writes and its exit codes.
+With --json a command prints one JSON document on standard output. Notes, warnings, progress and errors go to standard error.
+
+Exit codes: 0 done; 1 the job failed or nothing is feasible; 2 wrong usage or bad input.";
+
+pub(super) const PLACE: &str = "\
+Examples:
+  stead place configs/caro-2013.toml
+  stead place configs/caro-2013.toml --seed 7 --out results/seed-7
+  stead place configs/caro-2013.toml --certify 0.5
+
+Files written to the results folder:
+  placements.csv                     the four cases: pose, postures, mean and largest deflection
+  best.csv, worst.csv                plan of the best and of the worst placement, point by point
+  best-worst-plan.csv, worst-worst-plan.csv
+                                     the same placements with the worst plan of the spindle angle
+  deflection-map-{best,worst}.{csv,svg}
+                                     deflection over path point and spindle angle
+  convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
+  summary.json                       all of it for programs
+  stability-{best,worst}.csv, stability.svg
+                                     with a table [stability]: critical depth along the path
+  certificate.json, open-region.{csv,svg}, open-region-worst.svg
+                                     with --certify or a table [certificate]
+
+Exit codes:
+  0  done; also when a certificate did not reach its gap, or the search was ended by Ctrl-C with a feasible placement found
+  1  no feasible placement was found, or a file could not be written after the search
+  2  wrong usage, bad input, or a results folder that cannot be written to";
+
+pub(super) const SCORE: &str = "\
+Examples:
+  stead score configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258
+  stead score configs/caro-2013.toml --x-mm 0 --y-mm -1640 --z-mm -214 --yaw-deg 79 --json
+
+Files written: none.
+
+Exit codes:
+  0  done
+  1  the placement is infeasible; the message names the violated constraints and the path points
+  2  wrong usage or bad input";
+
+pub(super) const EXPLAIN: &str = "\
+Example:
+  stead explain configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258 --point 30 --beta-deg 40
+
+Files written: none.
+
+Exit codes:
+  0  done, whether or not any posture is feasible
+  2  wrong usage or bad input";
+
+pub(super) const ASSESS: &str = "\
+Examples:
+  stead assess configs/klimchik-2017.toml
+  stead assess configs/horizontal-slot.toml --accuracy-mm 0.2 --force-n 500
+
+Files written to the results folder:
+  map-<robot>.{csv,svg}              circularity over the plane
+  circularity.csv                    smallest, largest and middle circularity of each robot
+  optimal-zones.csv, middle-zones.csv
+                                     largest circularity in square zones
+  accuracy.csv, selection.csv        with forces and accuracies: which robots reach which accuracy
+  indicators.svg                     accuracy, reach, payload and price side by side
+  cutting.svg, cutting-*.csv         with a cutter and a cut: force and torque over a turn
+  summary.json                       all of it for programs
+
+Exit codes:
+  0  done
+  1  no robot can mill the circle anywhere on the map, or the command was interrupted
+  2  wrong usage, bad input, or a results folder that cannot be written to";
+
+pub(super) const COMPENSATE: &str = "\
+Examples:
+  stead compensate configs/compensate-caro-2013.toml
+  stead compensate configs/compensate-caro-2013.toml --reality configs/robots/kuka-kr270-2-k1-0.8.toml --out results/check
+
+Files written to the results folder:
+  corrected-path.csv                 target and commanded pose, joint angles, deflection before and after
+  compensation.svg                   deflection before and after along the path
+  summary.json                       all of it for programs
+
+Exit codes:
+  0  done
+  1  some points cannot be compensated; nothing is written, the message names them with the reason
+  2  wrong usage, bad input, a plan that does not fit its run, or a results folder that cannot be written to";
+
+pub(super) const IDENTIFY_FIT: &str = "\
+Examples:
+  stead identify fit configs/identify-example.toml
+  stead identify fit configs/identify-example.toml --json --out results/arm-17
+
+Files written to the results folder:
+  robot-identified.toml              the robot file with the identified values and their covariance
+  compliances.csv                    every estimate with standard deviation and 95 % interval
+  residuals.csv, deflections.svg     every reading beside what the identified arm gives
+  report.json                        all of it for programs
+
+Exit codes:
+  0  done
+  1  sound readings for which no spring or no positive compliance is found
+  2  wrong usage, bad input, or readings from which the parameters are not identifiable";
+
+pub(super) const IDENTIFY_PLAN: &str = "\
+Examples:
+  stead identify plan configs/identify-plan-example.toml
+  stead identify plan configs/identify-plan-example.toml --seed 2 --out results/plan-2
+
+Files written to the results folder:
+  sheet.csv                          the measurement sheet to be filled in; never overwritten once it holds a reading
+  expected.csv, plan.svg             the standard deviations that `identify fit` will report
+  plan.json                          all of it for programs
+
+Exit codes:
+  0  done
+  1  too few configurations or test poses are within the limits, no compliance is identifiable, or it was interrupted
+  2  wrong usage, bad input, or a sheet with readings in the results folder";
+
+pub(super) const CIRCULARITY: &str = "\
+Examples:
+  stead circularity tasks/measured-groove.csv
+  stead circularity tasks/measured-groove.csv --exclude-deg 354:7 --out results/measured-groove
+
+Files written with --out:
+  circularity.json                   the four reference circles with their circularity
+  deviations.csv                     angle, radii and deviations of every point
+  polar.svg                          the profile between its zone circles
+
+Exit codes:
+  0  done
+  1  a file could not be written
+  2  wrong usage, bad input, points that lie on no circle, or a folder that cannot be written to";
+
+pub(super) const SIMULATE: &str = "\
+Examples:
+  stead simulate configs/umons-aluminium.toml
+  stead simulate configs/umons-aluminium.toml --variant gravity --fast
+  stead simulate configs/umons-steel.toml --damping-scale 10 --out results/steel-damped
+
+Files written to the results folder:
+  series.csv                         forces and tool positions over time
+  wall.csv, wall.svg                 profile of the wall that is left, and its roughness
+  forces.svg, turns.svg              forces over the pass, and over three turns of the spindle
+  summary.json                       all of it for programs
+
+Exit codes:
+  0  done; an unstable cut is a result, too
+  1  the pass cannot be simulated, or a file could not be written
+  2  wrong usage, bad input, or a results folder that cannot be written to";
+
+pub(super) const STABILITY: &str = "\
+Examples:
+  stead stability configs/umons-steel.toml
+  stead stability configs/umons-steel.toml --damping-scale 10 --spindle-rpm 5000 --out results/steel-5000
+
+Files written to the results folder:
+  lobes.{csv,svg}                    critical depth over spindle speed
+  frequency-response.{csv,svg}       frequency response function of the tool tip
+  modes.csv                          natural frequencies, damping ratios and mode shapes
+  summary.json                       all of it for programs, with the verdict on the given cut
+
+Exit codes:
+  0  done, whether the cut is stable or not
+  1  the small motions of the arm cannot be computed there, or a file could not be written
+  2  wrong usage, bad input, or a results folder that cannot be written to";
+
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  stead completions bash > ~/.local/share/bash-completion/completions/stead
+  stead completions zsh > ~/.zfunc/_stead
+  stead completions fish > ~/.config/fish/completions/stead.fish
+
+Files written: none; the script goes to standard output.
+
+Exit codes:
+  0  done
+  2  wrong usage";
+
+pub(super) const MAN: &str = "\
+Examples:
+  stead man ~/.local/share/man/man1
+  man stead-place
+
+Files written to the folder: stead.1, and stead-COMMAND.1 for every command.
+
+Exit codes:
+  0  done
+  1  a page could not be written
+  2  wrong usage, or a folder that cannot be written to";

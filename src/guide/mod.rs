@@ -1,0 +1,71 @@
+//! The user guide.
+//!
+//! | question | page |
+//! |---|---|
+//! | How do I begin with my own cell? | [`starting`] |
+//! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
+//! | How far is that from the optimum? | [`certify`] |
+//! | How good is a robot for machining? | [`assess`] |
+//! | How stiff are the joints of my robot? | [`identify`] |
+//! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
+//! | Will the cut chatter? | [`stability`] |
+//! | What do forces and surface look like over time? | [`simulate`] |
+//! | How round is a measured profile? | [`circularity`] |
+//! | How do I use stead from Rust? | [`library`] |
+//! | Which direction is positive? | [`conventions`] |
+//! | What stands in which file? | [`files`], [`run_file`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
+//! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
+//! | What does this message mean? | [`troubleshooting`], [`glossary`] |
+//!
+//! The pages are the files `src/guide/*.md` of the repository. Their examples in Rust run as tests.
+
+#[doc = include_str!("assess.md")]
+pub mod assess {}
+#[doc = include_str!("assessment_file.md")]
+pub mod assessment_file {}
+#[doc = include_str!("certify.md")]
+pub mod certify {}
+#[doc = include_str!("circularity.md")]
+pub mod circularity {}
+#[doc = include_str!("compensate.md")]
+pub mod compensate {}
+#[doc = include_str!("compensation_file.md")]
+pub mod compensation_file {}
+#[doc = include_str!("conventions.md")]
+pub mod conventions {}
+#[doc = include_str!("explain.md")]
+pub mod explain {}
+#[doc = include_str!("files.md")]
+pub mod files {}
+#[doc = include_str!("glossary.md")]
+pub mod glossary {}
+#[doc = include_str!("identification_file.md")]
+pub mod identification_file {}
+#[doc = include_str!("identify.md")]
+pub mod identify {}
+#[doc = include_str!("library.md")]
+pub mod library {}
+#[doc = include_str!("method.md")]
+pub mod method {}
+#[doc = include_str!("place.md")]
+pub mod place {}
+#[doc = include_str!("robot_file.md")]
+pub mod robot_file {}
+#[doc = include_str!("run_file.md")]
+pub mod run_file {}
+#[doc = include_str!("score.md")]
+pub mod score {}
+#[doc = include_str!("simulate.md")]
+pub mod simulate {}
+#[doc = include_str!("simulation_file.md")]
+pub mod simulation_file {}
+#[doc = include_str!("stability.md")]
+pub mod stability {}
+#[doc = include_str!("starting.md")]
+pub mod starting {}
+#[doc = include_str!("tables.md")]
+pub mod tables {}
+#[doc = include_str!("troubleshooting.md")]
+pub mod troubleshooting {}
+#[doc = include_str!("validation.md")]
+pub mod validation {}

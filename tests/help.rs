@@ -1,0 +1,98 @@
+//! What the command line says of itself: long help, the overview, completion scripts, manual pages.
+
+use crate::common::Bench;
+
+/// Every command that does something, as it is typed.
+fn commands(bench: &Bench) -> Vec<Vec<String>> {
+    let overview = bench.stead(&["--help"]).stdout;
+    let mut all = Vec::new();
+    for name in overview.lines().filter_map(|line| line.strip_prefix("  ")).filter_map(|line| line.split(' ').next()) {
+        match name {
+            "" | "help" | "-h," | "-V," => {}
+            "identify" => ["fit", "plan"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()])),
+            _ => all.push(vec![name.to_owned()]),
+        }
+    }
+    all
+}
+
+fn long_help(bench: &Bench, command: &[String]) -> String {
+    let mut arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+    arguments.push("--help");
+    let ended = bench.stead(&arguments);
+    assert_eq!(ended.code, Some(0), "{command:?}");
+    ended.stdout
+}
+
+#[test]
+fn the_overview_groups_every_command_by_its_question() {
+    let bench = Bench::new();
+    let overview = bench.stead(&["--help"]).stdout;
+    for heading in ["Where to put the workpiece:", "How good a robot is", "What the loaded tool does:", "Exit codes:"] {
+        assert!(overview.contains(heading), "{heading} in {overview}");
+    }
+    // The parser's own list, which no group can leave a command out of.
+    let listed = bench.stead(&["nonsense"]).stderr;
+    assert!(listed.contains("unrecognized subcommand"), "{listed}");
+    let names = commands(&bench);
+    let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
+    for name in expected.into_iter().chain(["circularity", "completions", "man"]) {
+        assert_eq!(names.iter().filter(|command| command.last().is_some_and(|last| last == name)).count(), 1, "{name}");
+    }
+}
+
+#[test]
+fn every_command_shows_examples_files_and_exit_codes() {
+    let bench = Bench::new();
+    for command in commands(&bench) {
+        let help = long_help(&bench, &command);
+        let typed = format!("  stead {} ", command.join(" "));
+        for part in ["Example", &typed, "Files written", "Exit codes:\n  0  done", "\n  2  wrong usage"] {
+            assert!(help.contains(part), "{part} in the help of {command:?}: {help}");
+        }
+        assert!(help.lines().all(|line| line.len() <= 130), "{help}");
+    }
+}
+
+#[test]
+fn completions_know_every_command_and_its_options() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = bench.stead(&["completions", shell]);
+        assert_eq!(script.code, Some(0), "{}", script.stderr);
+        for name in commands(&bench).iter().filter_map(|command| command.last()) {
+            assert!(script.stdout.contains(name.as_str()), "{name} in the script of {shell}");
+        }
+        assert!(script.stdout.contains("certify"), "{shell}");
+    }
+    let refused = bench.stead(&["completions", "tcsh"]);
+    assert_eq!(refused.code, Some(2));
+    refused.assert_says(&["tcsh", "bash", "zsh", "fish"]);
+}
+
+#[test]
+fn the_manual_has_a_page_for_every_command() {
+    let bench = Bench::new();
+    let ended = bench.stead(&["man", "pages/man1"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned()];
+    expected.extend(commands(&bench).iter().map(|command| format!("stead-{}.1", command.join("-"))));
+    let mut written: Vec<String> = bench.tree("pages/man1").into_keys().collect();
+    expected.sort();
+    written.sort();
+    assert_eq!(written, expected);
+    let page = bench.read("pages/man1/stead-place.1");
+    for part in [".TH", "certify", "placements.csv", "Exit codes"] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+}
+
+#[test]
+fn a_manual_that_cannot_be_written_is_refused_at_its_folder() {
+    let bench = Bench::new();
+    bench.write("pages", "a file");
+    let ended = bench.stead(&["man", "pages"]);
+    assert_eq!(ended.code, Some(2));
+    ended.assert_says(&["error: pages: results cannot be written here"]);
+    assert_eq!(bench.read("pages"), "a file");
+}
