@@ -104,7 +104,7 @@ mod tests {
     use stead_format::read_compensation;
 
     fn outcome() -> CompensatedPath {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
         let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
         compensate(&run.job).unwrap()
