@@ -1,16 +1,16 @@
 //! How good robots are for machining.
 
 use crate::result::{Report, result};
-use crate::{Error, Monitor};
+use crate::{Error, Monitor, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::{self, Assessment};
 use stead_format as format;
+use stead_report::Folder;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
 use stead_report::document::Timing;
-use stead_report::{Folder, ReportError};
 
 /// An assessment file with the robots that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -37,8 +37,7 @@ impl AssessmentRun {
         selection.forces = force.map_or_else(|| std::mem::take(&mut selection.forces), |f| vec![f]);
         if selection.accuracies.is_empty() != selection.forces.is_empty() {
             return Err(Error::Argument(
-                "--accuracy-mm and --force-n: only one of the two is known; allowed: both, or a table [selection]"
-                    .to_owned(),
+                "only one of the two is known; allowed: both, or a table [selection]".to_owned(),
             ));
         }
         Ok(self)
@@ -64,6 +63,7 @@ impl AssessmentRun {
         });
         let context = AssessmentContext {
             inputs: run.inputs.clone(),
+            notes: run.notes.clone(),
             range_share: run.range_share,
             published,
             force_history: run.force_history.clone(),
@@ -94,8 +94,8 @@ impl RobotAssessment {
 }
 
 impl Report for RobotAssessment {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)?)
     }
 
     fn document(&self) -> Value {
@@ -104,6 +104,14 @@ impl Report for RobotAssessment {
 
     fn table(&self) -> String {
         assessment_text(&self.assessment, &self.context)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
     }
 }
 

@@ -1,14 +1,14 @@
 //! Roundness of measured points.
 
-use crate::Error;
 use crate::result::{Report, result};
+use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, Sector, assess};
 use stead_format::{PointFile, read_points};
+use stead_report::Folder;
 use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
-use stead_report::{Folder, ReportError};
 
 /// Measured points of a circular profile.
 #[derive(Debug, Clone)]
@@ -31,7 +31,8 @@ impl Profile {
     /// [`Error::Input`] for points on a line, or too few.
     pub fn circularity(&self, excluded: &[Sector]) -> Result<Circularity, Error> {
         let roundness = assess(&self.file.measured, excluded).map_err(|error| self.file.locate(error))?;
-        Ok(Circularity { file: Arc::clone(&self.file), roundness })
+        let warnings = roundness.warnings();
+        Ok(Circularity { file: Arc::clone(&self.file), roundness, warnings })
     }
 }
 
@@ -40,6 +41,7 @@ impl Profile {
 pub struct Circularity {
     file: Arc<PointFile>,
     roundness: Roundness,
+    warnings: Vec<Warning>,
 }
 
 impl Circularity {
@@ -50,8 +52,8 @@ impl Circularity {
 }
 
 impl Report for Circularity {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_circularity(folder, &self.file, &self.roundness)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_circularity(folder, &self.file, &self.roundness)?)
     }
 
     fn document(&self) -> Value {
@@ -60,6 +62,14 @@ impl Report for Circularity {
 
     fn table(&self) -> String {
         circularity_text(&self.file, &self.roundness)
+    }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 }
 

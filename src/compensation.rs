@@ -1,14 +1,14 @@
 //! Paths corrected so that the loaded tool follows the path that is wanted.
 
-use crate::Error;
 use crate::result::{Report, result};
+use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_calibration::compensation::{self, CompensatedPath as Outcome};
+use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_format as format;
-use stead_report::compensation::{compensation_json, compensation_text, write_compensation};
-use stead_report::{Folder, ReportError};
+use stead_report::Folder;
+use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
 
 /// A compensation file with the run and the plan that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -38,6 +38,11 @@ impl CompensationRun {
         &self.run.notes
     }
 
+    /// The JSON document in place of a result where some points cannot be compensated: which, and why.
+    pub fn not_compensated_json(&self, failure: &NotCompensated) -> Value {
+        not_compensated_json(&self.run, failure)
+    }
+
     /// Finds for every point the pose to command.
     ///
     /// # Errors
@@ -63,8 +68,8 @@ impl CompensatedPath {
 }
 
 impl Report for CompensatedPath {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_compensation(folder, &self.run, &self.outcome)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_compensation(folder, &self.run, &self.outcome)?)
     }
 
     fn document(&self) -> Value {
@@ -73,6 +78,14 @@ impl Report for CompensatedPath {
 
     fn table(&self) -> String {
         compensation_text(&self.run, &self.outcome)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
     }
 }
 

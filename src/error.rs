@@ -45,6 +45,15 @@ impl Error {
     }
 }
 
+impl From<stead_format::LocatedError> for Error {
+    fn from(error: stead_format::LocatedError) -> Self {
+        match error {
+            stead_format::LocatedError::Input(error) => Self::Input(error),
+            stead_format::LocatedError::Job(error) => Self::Failed(error),
+        }
+    }
+}
+
 impl From<stead_study::RunError> for Error {
     fn from(error: stead_study::RunError) -> Self {
         match error {

@@ -1,16 +1,16 @@
 //! Joint compliances from measurements, and which measurements to take.
 
 use crate::result::{Report, result};
-use crate::{Error, Monitor};
+use crate::{Error, Monitor, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::identification::design::{Design, design_experiment};
 use stead_calibration::identification::{Identified, identify};
 use stead_format as format;
-use stead_report::identification::plan::{plan_json, plan_text, write_plan};
+use stead_report::Folder;
+use stead_report::identification::plan::{keep_readings, plan_json, plan_text, write_plan};
 use stead_report::identification::{identify_json, identify_text, write_identified};
-use stead_report::{Folder, ReportError};
 
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -70,6 +70,14 @@ impl DesignRun {
         &self.run.notes
     }
 
+    /// Refuses a folder whose measurement sheet has readings in it, which [`MeasurementPlan::write`] would not write over either.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the sheet.
+    pub fn check_folder(&self, folder: impl AsRef<Path>) -> Result<(), Error> {
+        Ok(keep_readings(folder.as_ref())?)
+    }
+
     /// Chooses the configurations and loads to measure.
     ///
     /// # Errors
@@ -109,8 +117,8 @@ impl MeasurementPlan {
 }
 
 impl Report for IdentifiedRobot {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_identified(folder, &self.run, &self.identified)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_identified(folder, &self.run, &self.identified)?)
     }
 
     fn document(&self) -> Value {
@@ -120,11 +128,20 @@ impl Report for IdentifiedRobot {
     fn table(&self) -> String {
         identify_text(&self.run, &self.identified)
     }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.identified.warnings
+    }
 }
 
 impl Report for MeasurementPlan {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_plan(folder, &self.run, &self.design)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        keep_readings(folder.path())?;
+        Ok(write_plan(folder, &self.run, &self.design)?)
     }
 
     fn document(&self) -> Value {
@@ -133,6 +150,14 @@ impl Report for MeasurementPlan {
 
     fn table(&self) -> String {
         plan_text(&self.run, &self.design)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.design.warnings
     }
 }
 

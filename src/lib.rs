@@ -61,3 +61,4 @@ pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
 pub use stead_report::ReportError;
+pub use stead_report::document::Timing;

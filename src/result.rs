@@ -1,17 +1,23 @@
 //! What all results have in common: files, one JSON document, and a text.
 
+use crate::Error;
 use serde_json::Value;
 use std::path::PathBuf;
-use stead_report::{Folder, ReportError};
+use stead_numerics::message::Warning;
+use stead_report::Folder;
 
 /// A result as files, as a document and as a text; [`result!`] makes the public methods of it.
 pub(crate) trait Report {
     /// Writes the files that the command of the same name leaves.
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError>;
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error>;
     /// What the command prints with `--json`.
     fn document(&self) -> Value;
     /// What the command prints.
     fn table(&self) -> String;
+    /// What the result rests on.
+    fn notes(&self) -> &[String];
+    /// Why the result may not be what was wanted.
+    fn warnings(&self) -> &[Warning];
 }
 
 /// The public face of a [`Report`].
@@ -28,12 +34,23 @@ macro_rules! result {
                 folder: impl AsRef<std::path::Path>,
             ) -> Result<Vec<std::path::PathBuf>, crate::Error> {
                 let folder = stead_report::Folder::create(folder.as_ref())?;
-                Ok(crate::result::Report::files(self, &folder)?)
+                crate::result::Report::files(self, &folder)
             }
 
             /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
             pub fn to_json(&self) -> serde_json::Value {
                 crate::result::Report::document(self)
+            }
+
+            /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at their
+            /// defaults.
+            pub fn notes(&self) -> &[String] {
+                crate::result::Report::notes(self)
+            }
+
+            /// Why the result may not be what was wanted.
+            pub fn warnings(&self) -> &[crate::Warning] {
+                crate::result::Report::warnings(self)
             }
         }
 

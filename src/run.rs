@@ -1,21 +1,22 @@
 //! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
 
 use crate::result::{Report, result};
-use crate::{Error, Monitor};
+use crate::{Error, Monitor, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
+use stead_placement::certify::{self, Certificate};
 use stead_placement::feasibility::{self, Explanation};
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
+use stead_report::Folder;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
 use stead_report::document::Timing;
 use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
-use stead_report::{Folder, ReportError};
-use stead_study::{self as study, Placed, RunError, Scored};
+use stead_study::{self as study, Placed, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
 ///
@@ -85,10 +86,27 @@ impl Run {
     /// As [`Run::place`].
     pub fn search(&self, monitor: &Monitor) -> Result<Placements, Error> {
         let started = Instant::now();
-        let Placed { outcome, stability } = study::place(&self.run, monitor)?;
+        let Placed { outcome, stability, warnings } = study::place(&self.run, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
-        let context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        let context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
+    }
+
+    /// Why the run cannot be certified, where it asks for a certificate and that is so: to be said before a long search.
+    pub fn certificate_warning(&self) -> Option<Warning> {
+        self.run.certificate?;
+        certify::certifiable(self.problem()).err().map(|reason| certify::no_certificate(&reason))
+    }
+
+    /// A note on a placement outside the cell, which is evaluated all the same.
+    pub fn outside_cell(&self, placement: &Placement) -> Option<String> {
+        study::outside_cell(&self.run, placement)
+    }
+
+    /// The JSON document in place of a result where no placement satisfies the constraints: which constraint fails at which
+    /// points.
+    pub fn infeasible_json(&self, nothing: &Infeasible) -> Value {
+        evaluation::infeasible_json(nothing, &Context::new(&self.run, self.run.search))
     }
 
     /// Plans a given placement, best and worst.
@@ -96,8 +114,9 @@ impl Run {
     /// # Errors
     /// [`Error::Infeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
-        let Scored { score, stability } = study::score(&self.run, placement)?;
-        let context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        let Scored { score, stability, notes, warnings } = study::score(&self.run, placement)?;
+        let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        context.notes.extend(notes);
         Ok(PlacementScore { score, context })
     }
 
@@ -110,8 +129,12 @@ impl Run {
         if point > last {
             return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
         }
-        let postures = feasibility::explain(self.problem(), placement, point, beta);
-        let context = Context::new(&self.run, self.run.search);
+        let postures = {
+            let Placement { x, y, z, yaw } = *placement;
+            feasibility::explain(self.problem(), &[x, y, z, yaw], point, beta)
+        };
+        let mut context = Context::new(&self.run, self.run.search);
+        context.notes.extend(study::outside_cell(&self.run, placement));
         Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
 }
@@ -142,6 +165,34 @@ impl Placements {
         self.timing
     }
 
+    /// Bounds how far these placements are from the best and the worst possible, as the run file asks, or within the gap given when
+    /// it was read; does nothing where neither asks for it. What falls short is among the certificate's warnings.
+    pub fn certify(&mut self, monitor: &Monitor) -> Option<&Certificate> {
+        let settings = self.run.certificate?;
+        let Cases { best, worst, .. } = &self.outcome.cases;
+        let found = (&best.placement, best.plan.mean);
+        self.certificate = Some(certify::certify(&self.run.problem, found, &worst.placement, settings, monitor));
+        self.certificate.as_ref()
+    }
+
+    /// What the command prints of the certificate, if there is one.
+    pub fn certificate_text(&self) -> Option<String> {
+        self.certificate.as_ref().map(certificate_text)
+    }
+
+    /// Writes the files of the certificate alone, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Output`]: the folder or a file cannot be written.
+    pub fn write_certificate(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        self.certificate_files(&Folder::create(folder.as_ref())?)
+    }
+
+    fn certificate_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        let Some(certificate) = &self.certificate else { return Ok(Vec::new()) };
+        Ok(write_certificate(folder, &self.run.problem, certificate, &self.run.inputs)?)
+    }
+
     /// How far from the best and the worst possible these placements are, where that was asked for.
     pub fn certificate(&self) -> Option<&Certificate> {
         self.certificate.as_ref()
@@ -166,24 +217,31 @@ pub struct Explanations {
 }
 
 impl Report for Placements {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
-        if let Some(certificate) = &self.certificate {
-            files.extend(write_certificate(folder, &self.run.problem, certificate)?);
-        }
+        files.extend(self.certificate_files(folder)?);
         Ok(files)
     }
 
     fn document(&self) -> Value {
         let mut document = place_json(&self.outcome, &self.context, &self.timing);
         if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
-            entries.insert("certificate".to_owned(), certificate_json(certificate));
+            entries.insert("certificate".to_owned(), certificate_json(certificate, &self.run.inputs));
         }
         document
     }
 
     fn table(&self) -> String {
-        placement_text(&self.run.problem, &self.outcome, &self.context)
+        let table = placement_text(&self.run.problem, &self.outcome, &self.context);
+        self.certificate_text().map_or_else(|| table.clone(), |certificate| format!("{table}\n{certificate}"))
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
     }
 }
 
@@ -202,7 +260,7 @@ impl Explanations {
 }
 
 impl Report for PlacementScore {
-    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(Vec::new())
     }
 
@@ -213,10 +271,18 @@ impl Report for PlacementScore {
     fn table(&self) -> String {
         evaluation::score_text(&self.score, &self.context)
     }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
 }
 
 impl Report for Explanations {
-    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, ReportError> {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(Vec::new())
     }
 
@@ -226,6 +292,14 @@ impl Report for Explanations {
 
     fn table(&self) -> String {
         evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
     }
 }
 

@@ -1,16 +1,16 @@
 //! One milling pass of an arm that yields: simulated in time, and whether small motions die out.
 
-use crate::Error;
 use crate::result::{Report, result};
+use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_format::Overrides;
+use stead_report::Folder;
 use stead_report::simulation::{Making, simulation_text, timed_json, write_simulation};
 use stead_report::stability::{stability_json, stability_text, write_stability};
-use stead_report::{Folder, ReportError};
 use stead_simulation::coupled::Job;
 use stead_simulation::outcome::Simulation;
 use stead_simulation::stability_analysis::{self, StabilityAnalysis as Analysis};
@@ -66,8 +66,10 @@ impl SimulationRun {
         let start = Instant::now();
         let pass = if is_fast { job.run_fast() } else { job.run() };
         let making = Making { is_fast, wall: start.elapsed().as_secs_f64() };
-        let simulation =
-            pass.map_err(Into::into).and_then(|pass| Simulation::of(&job, &run.look, pass)).map_err(Error::failed)?;
+        let simulation = pass
+            .map_err(Into::into)
+            .and_then(|pass| Simulation::of(&job, &run.evaluation, pass))
+            .map_err(Error::failed)?;
         Ok(SimulatedPass { run: Arc::clone(run), simulation, making })
     }
 }
@@ -131,8 +133,8 @@ impl StabilityAnalysis {
 }
 
 impl Report for SimulatedPass {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_simulation(folder, &self.run, &self.simulation, &self.making)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_simulation(folder, &self.run, &self.simulation, &self.making)?)
     }
 
     fn document(&self) -> Value {
@@ -142,11 +144,19 @@ impl Report for SimulatedPass {
     fn table(&self) -> String {
         simulation_text(&self.run, &self.simulation, &self.making)
     }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
 }
 
 impl Report for StabilityAnalysis {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, ReportError> {
-        write_stability(folder, &self.run, &self.analysis)
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_stability(folder, &self.run, &self.analysis)?)
     }
 
     fn document(&self) -> Value {
@@ -155,6 +165,14 @@ impl Report for StabilityAnalysis {
 
     fn table(&self) -> String {
         stability_text(&self.run, &self.analysis)
+    }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
     }
 }
 

@@ -8,4 +8,4 @@ mod path_stability;
 mod run;
 
 pub use path_stability::PathStability;
-pub use run::{Placed, RunError, Scored, place, score};
+pub use run::{Placed, RunError, Scored, outside_cell, place, score};

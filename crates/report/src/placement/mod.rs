@@ -16,6 +16,7 @@ use crate::picture;
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::{InputFile, Reference};
+use stead_numerics::message::Warning;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
@@ -28,6 +29,8 @@ pub struct Context {
     pub inputs: Vec<InputFile>,
     /// What the result rests on: assumptions made and values left at their defaults.
     pub notes: Vec<String>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
     /// How hard the search was, and its seed.
     pub search: SearchSettings,
     /// The assumptions behind the times of the moves.
@@ -44,6 +47,7 @@ impl Context {
         Self {
             inputs: run.inputs.clone(),
             notes: run.notes.clone(),
+            warnings: Vec::new(),
             search,
             transfer: run.transfer,
             reference: run.reference.clone(),
@@ -53,7 +57,7 @@ impl Context {
 
     /// A JSON document on what was computed from the run file.
     pub fn document(&self) -> Document {
-        Document::new(&self.inputs).notes(&self.notes)
+        Document::new(&self.inputs).notes(&self.notes).warnings(&self.warnings)
     }
 }
 
