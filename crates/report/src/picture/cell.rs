@@ -6,8 +6,9 @@ use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::fixed;
 use nalgebra::Vector3;
-use stead_placement::outcome::{Case, Outcome};
+use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::problem::Problem;
+use stead_placement::sense::Sense;
 
 const SIZE: Pixel = (1110, 1180);
 /// Left edges of the two columns of panels.
@@ -22,7 +23,7 @@ const BASE: f64 = 300.0;
 /// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
 /// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
-    let [best, _, worst, _] = &outcome.cases;
+    let Cases { best, worst, .. } = &outcome.cases;
     picture(SIZE, |canvas| {
         canvas.title("The cell from above, in the robot base frame", (COLUMNS[0], 24));
         let near = Region::near(problem, [best, worst]);
@@ -53,7 +54,10 @@ fn overview(canvas: &mut Canvas, problem: &Problem, [best, worst]: [&Case; 2], n
 
 /// One placement with its surroundings.
 fn placement(canvas: &mut Canvas, problem: &Problem, case: &Case, colour: Colour, panel: Panel) {
-    let kind = if case.number <= 2 { "Best" } else { "Worst" };
+    let kind = match case.placement_sense {
+        Sense::Min => "Best",
+        Sense::Max => "Worst",
+    };
     let title = format!("{kind} placement: mean {} mm", fixed(case.plan.mean * 1e3, 4));
     let (left, top) = (panel.x.start, panel.y.end);
     canvas.text(&title, (left, top - 38), TextStyle::new(13.0).bold().coloured(colour));

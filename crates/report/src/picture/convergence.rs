@@ -5,28 +5,29 @@ use super::canvas::{Canvas, TextStyle, picture};
 use super::colour::{BLACK, BLUE, GREEN, GREY, RED, WHITE};
 use super::line_chart::{LineChart, Mark};
 use crate::units::fixed;
-use stead_placement::outcome::{Generation, Goal, Outcome};
+use stead_placement::outcome::{Cases, Generation, Outcome};
+use stead_placement::sense::Sense;
 
 /// Best and average mean deflection over the generations: the search for the best placement above, for the worst below.
 /// Dashed lines are the means after refinement.
 pub fn convergence(outcome: &Outcome) -> String {
     picture((900, 820), |canvas| {
         canvas.title("Convergence of the genetic search", (85, 26));
-        let [best, _, worst, _] = &outcome.cases;
-        for (goal, refined, top, bottom) in
-            [(Goal::Best, best.plan.mean, 72, 375), (Goal::Worst, worst.plan.mean, 460, 763)]
+        let Cases { best, worst, .. } = &outcome.cases;
+        for (sense, refined, top, bottom) in
+            [(Sense::Min, best.plan.mean, 72, 375), (Sense::Max, worst.plan.mean, 460, 763)]
         {
-            let generations = outcome.convergence.iter().filter(|generation| generation.goal == goal);
-            search(canvas, goal, &generations.collect::<Vec<_>>(), refined, (top, bottom));
+            let generations = outcome.convergence.iter().filter(|generation| generation.sense == sense);
+            search(canvas, sense, &generations.collect::<Vec<_>>(), refined, (top, bottom));
         }
     })
 }
 
 /// One search; `refined` is the mean deflection in the end, in m.
-fn search(canvas: &mut Canvas, goal: Goal, generations: &[&Generation], refined: f64, (top, bottom): (i32, i32)) {
-    let (title, colour, least) = match goal {
-        Goal::Best => ("Best placement: smallest mean deflection under the best plan", GREEN, 0.0),
-        Goal::Worst => ("Worst placement: largest mean deflection under the best plan", RED, f64::INFINITY),
+fn search(canvas: &mut Canvas, sense: Sense, generations: &[&Generation], refined: f64, (top, bottom): (i32, i32)) {
+    let (title, colour, least) = match sense {
+        Sense::Min => ("Best placement: smallest mean deflection under the best plan", GREEN, 0.0),
+        Sense::Max => ("Worst placement: largest mean deflection under the best plan", RED, f64::INFINITY),
     };
     let values = generations.iter().flat_map(|generation| [generation.best, generation.average]).flatten();
     let [low, high] = extent([least, 0.0], values.chain([refined]).map(|value| value * 1e3));
@@ -45,7 +46,7 @@ fn search(canvas: &mut Canvas, goal: Goal, generations: &[&Generation], refined:
     }
     chart.draw(canvas);
     // At the end of the curves and away from them.
-    let corner = if goal == Goal::Best { y.end + 10 } else { y.start - 84 };
+    let corner = if sense == Sense::Min { y.end + 10 } else { y.start - 84 };
     let refined = format!("after refinement: {} mm", fixed(refined * 1e3, 4));
     let entries = [("best so far", colour), ("average of the feasible", BLUE), (&refined, BLACK)];
     legend(canvas, (x.end - 262, corner), entries);

@@ -80,7 +80,7 @@ impl<'a> Picture<'a> {
     }
 
     fn title(&self, canvas: &mut Canvas) {
-        let kind = names::case(self.best.number).0;
+        let kind = names::sense(self.best.placement_sense);
         let title = format!("Deflection at the {kind} placement");
         canvas.title(&title, (LEFT, 24));
         let place = &self.best.placement;
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn plan_is_cut_at_segment_ends_and_where_beta_wraps() {
-        let mut plan = outcome().cases[0].plan.clone();
+        let mut plan = outcome().cases.best.plan.clone();
         plan.points.truncate(4);
         for (k, (segment, beta_deg)) in [(1, 150.0), (1, 170.0), (1, -170.0), (2, 0.0)].into_iter().enumerate() {
             (plan.points[k].segment, plan.points[k].beta) = (segment, f64::to_radians(beta_deg));

@@ -6,18 +6,18 @@ use super::colour::{BLUE, GREEN, RED};
 use super::line_chart::{LineChart, Mark, Sign, legend};
 use crate::units::fixed;
 use std::f64::consts::PI;
-use stead_simulation::milling::Cut;
+use stead_simulation::milling::PassCut;
 use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Critical depth of cut over spindle speed by both methods, and the cut at hand: green if it is stable, red if it is not. Where
 /// all depths up to `max_depth` (m) are stable a curve leaves the picture at the top.
-pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> String {
+pub fn lobes(analysis: &StabilityAnalysis, cut: &PassCut, max_depth: f64) -> String {
     let rpm = |speed: f64| speed * 30.0 / PI;
     let ends =
         [analysis.lobes.first(), analysis.lobes.last()].map(|lobe| lobe.map_or(0.0, |lobe| rpm(lobe.spindle_speed)));
     let found = analysis.lobes.iter().flat_map(|lobe| [lobe.semi_discretisation, lobe.zero_order]).flatten();
-    let highest = found.fold(1.5 * cut.axial_depth, f64::max).min(max_depth.max(1.5 * cut.axial_depth));
+    let highest = found.fold(1.5 * cut.section.axial_depth, f64::max).min(max_depth.max(1.5 * cut.section.axial_depth));
     let (colour, word) = if analysis.cut_stability.verdict.is_stable() { (GREEN, "stable") } else { (RED, "chatters") };
     picture((1000, 520), |canvas| {
         canvas.title("How deep may be cut", (95, 26));
@@ -31,7 +31,7 @@ pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> String 
         }
         let speed = rpm(cut.spindle_speed);
         if (ends[0]..=ends[1]).contains(&speed) {
-            chart.marks.push(Mark::Dot([speed, cut.axial_depth * 1e3], 5, colour));
+            chart.marks.push(Mark::Dot([speed, cut.section.axial_depth * 1e3], 5, colour));
         }
         chart.draw(canvas);
         let entries = [
@@ -40,7 +40,7 @@ pub fn lobes(analysis: &StabilityAnalysis, cut: &Cut, max_depth: f64) -> String 
         ];
         legend(canvas, 52, &entries);
         canvas.dot((600.0, 52.0), 5, colour);
-        let label = format!("this cut, {} mm: {word}", fixed(cut.axial_depth * 1e3, 2));
+        let label = format!("this cut, {} mm: {word}", fixed(cut.section.axial_depth * 1e3, 2));
         canvas.text(&label, (612, 52), TextStyle::new(12.0));
     })
 }

@@ -14,7 +14,7 @@ const RIGHT: i32 = 970;
 /// Critical depth of cut over the points of the path, for the best and for the worst placement, and the depth of the cut at hand.
 /// Where every depth examined is stable the curve runs along the top.
 pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> String {
-    let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.axial_depth);
+    let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.section.axial_depth);
     let depths = stability
         .plans
         .each_ref()
