@@ -38,7 +38,9 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
             let error = figures(tabled.accuracy.rms * 100.0);
             line(
                 &mut text,
-                &format!("most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)"),
+                &format!(
+                    "most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)"
+                ),
             );
         }
         Some(Err(unsuited @ Unsuited::Misleading)) => {
