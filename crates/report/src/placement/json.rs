@@ -67,10 +67,10 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
     document
 }
 
-/// Errors of a table, relative.
+/// Errors of a lookup table, relative.
 const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
 
-/// The table that the search looked through, or why there is none.
+/// The lookup table that the search used, or why there is none.
 fn tabled(tabled: &Result<Tabled, Unsupported>) -> Value {
     match tabled {
         Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),

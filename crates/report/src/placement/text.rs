@@ -38,13 +38,15 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
             let error = figures(tabled.accuracy.rms * 100.0);
             line(
                 &mut text,
-                &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
+                &format!(
+                    "most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)"
+                ),
             );
         }
         Some(Err(rejected @ Unsupported::Rejected)) => {
-            line(&mut text, &format!("searched again without a table: {rejected}"));
+            line(&mut text, &format!("searched again without a lookup table: {rejected}"));
         }
-        Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
+        Some(Err(unsuited)) => line(&mut text, &format!("none of them from a lookup table: {unsuited}")),
         None => {}
     }
     if outcome.interrupted {
