@@ -18,32 +18,26 @@ use super::unobservable::{Unobservable, unobservable, weakly_observed};
 use super::warnings::{unused_angles, warnings};
 use nalgebra::{Matrix3, Vector6};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Frames, Pose};
+use stead_numerics::monitor::Monitor;
 
-/// Chooses the configurations and loads to measure. `progress` is told how many starts of how many are done, and says whether to
-/// go on.
+/// Chooses the configurations and loads to measure, start by start of the exchange.
 ///
 /// The chosen set is at least as good as the best of the random sets: that is one of the starts.
 ///
 /// # Errors
 /// [`DesignError`] when no set could be chosen.
-pub fn design_experiment(
-    request: &Request,
-    progress: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Design, DesignError> {
+pub fn design_experiment(request: &Request, monitor: &Monitor) -> Result<Design, DesignError> {
     if request.varying.is_some_and(|(joint, _)| request.hold[joint]) {
         // The joint keeps the law of the starting arm, as in an identification that holds it.
-        return design_experiment(&Request { varying: None, ..request.clone() }, progress);
+        return design_experiment(&Request { varying: None, ..request.clone() }, monitor);
     }
     check_counts(request)?;
     let size = request.configurations;
     let pool = Pool::new(request)?;
     let random = RandomSets::new(&pool);
     let starts = random.starts(request.starts.saturating_sub(1));
-    let (done, of) = (AtomicUsize::new(0), starts.len() + 1);
-    let watch = |more: usize| progress(done.fetch_add(more, Ordering::Relaxed) + more, of);
-    let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(DesignError::Stopped)?;
+    let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, monitor).ok_or(DesignError::Stopped)?;
     let planned = pool.covariance(&chosen.set).filter(|_| chosen.value.is_finite());
     let planned = planned.ok_or(DesignError::NoIdentifyingSet(size))?;
 
