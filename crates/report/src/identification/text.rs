@@ -82,7 +82,7 @@ fn arm_rows(found: &Identified) -> Vec<Vec<String>> {
 fn outlier(run: &IdentifyRun, row: &RowResult) -> String {
     let sheet = &run.problem.sheet;
     format!(
-        "outlier left out: line {}, configuration {}, point {}: {} mm beside the model\n",
+        "outlier left out: line {}, configuration {}, point {}: {} mm from the model\n",
         row.line,
         sheet.configurations[row.configuration].name,
         sheet.points[row.point],

@@ -17,6 +17,7 @@ mod hold;
 mod refusals;
 mod setups;
 mod validation;
+mod warnings;
 
 const COMPENSATOR: Compensator =
     Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha: -0.35, free_length: 0.6 };

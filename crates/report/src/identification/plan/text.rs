@@ -62,7 +62,7 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         figures(request.max_deflection * 1e3)
     );
     text += &format!(
-        "the way through them, in turns of the joint that turns furthest: {} deg\n",
+        "total motion through them, by the joint that moves furthest in each move: {} deg\n",
         fixed(plan.travel.to_degrees(), 0)
     );
     for note in &plan.notes {
