@@ -10,12 +10,13 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead_format::read_run;
+use stead_placement::candidate::{Candidate, rank};
 use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::Interval;
 use stead_placement::redundancy::Planner;
 use stead_placement::refine::refine;
-use stead_placement::search::{Candidate, distinct, rank};
+use stead_placement::search::distinct;
 use stead_placement::sense::Sense;
 
 /// Basins of the grid that are refined, for each sense.

@@ -2,10 +2,11 @@
 //!
 //! Whatever goes on from the search is looked at by the planner in any case.
 
+use super::candidate::Objective;
+use super::candidate::{Candidate, rank};
 use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::Generation;
-use super::redundancy::{self, Objective, Planner};
-use super::search::{Candidate, rank};
+use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};

@@ -1,5 +1,6 @@
 //! The placement job: search, refine, plan, map.
 
+use super::candidate::Candidate;
 use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
@@ -8,7 +9,7 @@ use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
-use super::search::{self, Candidate, Found};
+use super::search::{self, Found};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
 use super::transfer::cycle;

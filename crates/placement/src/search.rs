@@ -11,10 +11,10 @@
 //! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
 
+use super::candidate::{Candidate, Objective, rank};
 use super::evaluator::Evaluator;
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
-use super::redundancy::Objective;
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
@@ -24,17 +24,6 @@ use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
-
-/// One candidate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
-    /// x, y, z (m) and yaw (rad).
-    pub pose: [f64; 4],
-    /// One posture per segment, in the genetic mode.
-    pub scheme: Option<Vec<Posture>>,
-    /// What it is worth under its best plan.
-    pub objective: Objective,
-}
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,21 +55,6 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 
 /// Basins kept in mind during the search.
 const ARCHIVE: usize = 64;
-
-/// Order of two candidates, better first.
-pub fn rank(sense: Sense, a: Objective, b: Objective) -> Ordering {
-    match (a, b) {
-        (Objective::Feasible(a), Objective::Feasible(b)) => match sense {
-            Sense::Min => a.total_cmp(&b),
-            Sense::Max => b.total_cmp(&a),
-        },
-        (Objective::Feasible(_), Objective::Infeasible { .. }) => Ordering::Less,
-        (Objective::Infeasible { .. }, Objective::Feasible(_)) => Ordering::Greater,
-        (Objective::Infeasible { points: p, segments: s }, Objective::Infeasible { points: q, segments: t }) => {
-            (p, s).cmp(&(q, t))
-        }
-    }
-}
 
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> Found {
@@ -348,16 +322,5 @@ mod tests {
                 assert_eq!(candidate.scheme.is_some(), postures == PostureSearch::Genetic);
             }
         }
-    }
-
-    #[test]
-    fn feasible_ranks_before_infeasible() {
-        let (a, b) = (Objective::Feasible(1.0), Objective::Feasible(2.0));
-        let (c, d) =
-            (Objective::Infeasible { points: 1, segments: 5 }, Objective::Infeasible { points: 2, segments: 0 });
-        assert_eq!(rank(Sense::Min, a, b), Ordering::Less);
-        assert_eq!(rank(Sense::Max, a, b), Ordering::Greater);
-        assert_eq!(rank(Sense::Max, a, c), Ordering::Less);
-        assert_eq!(rank(Sense::Min, d, c), Ordering::Greater);
     }
 }

@@ -4,9 +4,9 @@
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
 
 use super::{BetaGrid, LookupTable, Workspace};
+use crate::candidate::Objective;
+use crate::candidate::rank;
 use crate::problem::Placement;
-use crate::redundancy::Objective;
-use crate::search::rank;
 use crate::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;

@@ -4,7 +4,7 @@
 
 use super::interpolate::{PlacedPath, PolarPoint, Rows};
 use super::{BetaGrid, LookupTable};
-use crate::redundancy::Objective;
+use crate::candidate::Objective;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 

@@ -1,9 +1,9 @@
 //! The table against the ordinary evaluator and the planner, and with parts of the formula broken on purpose.
 
+use super::super::candidate::Objective;
+use super::super::candidate::rank;
 use super::super::feasibility::explain;
 use super::super::problem::{Interval, Placement, Redundancy};
-use super::super::redundancy::Objective;
-use super::super::search::rank;
 use super::super::sense::Sense;
 use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;

@@ -1,8 +1,9 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
-use super::super::evaluate::reference;
-use super::super::problem::Problem;
-use super::{STEP_ROUNDING, SegmentPlan};
+use super::SegmentPlan;
+use crate::constraints::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+use crate::evaluate::reference::State;
+use crate::problem::Problem;
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
@@ -183,21 +184,15 @@ pub(super) fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
 
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
-    problem
-        .robot
-        .joints()
-        .iter()
-        .zip(joints)
-        .all(|(joint, q)| *q >= joint.min - ANGLE_ROUNDING && *q <= joint.max + ANGLE_ROUNDING)
+    on_joints(problem, joints).iter().all(Measured::holds)
 }
 
 /// Whether every joint's step is within its limit. rad
 pub(super) fn inside_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
-    (0..6).all(|j| (to[j] - from[j]).abs() <= limits[j] + STEP_ROUNDING)
+    on_joint_steps(from, to, limits).iter().all(Measured::holds)
 }
 
 /// Whether a state satisfies everything but joint limits and steps.
-pub(super) fn is_allowed(problem: &Problem, state: &reference::State<f64>) -> bool {
-    state.inverse_condition >= problem.constraints.min_inverse_condition
-        && problem.constraints.max_deflection.is_none_or(|limit| state.score() <= limit)
+pub(super) fn is_allowed(problem: &Problem, state: &State<f64>) -> bool {
+    on_state(problem, state).all(|measured| measured.holds())
 }

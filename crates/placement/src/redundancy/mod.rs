@@ -21,6 +21,7 @@ mod reference_dp;
 mod segment;
 pub mod transition;
 
+use super::candidate::Objective;
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Problem, Redundancy};
 use super::sense::Sense;
@@ -41,30 +42,6 @@ pub struct SegmentPlan {
     pub joints: Vec<[f64; 6]>,
     /// Sum of the scores. m
     pub cost: f64,
-}
-
-/// The objective value of a placement: the mean score under its best (or worst) plan on the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Objective {
-    /// The mean score under the plan asked for. m
-    Feasible(f64),
-    /// Nothing to plan: number of path points that no posture allows, and of segments that no one posture gets through.
-    Infeasible {
-        /// Path points without an allowed state.
-        points: usize,
-        /// Segments without a plan; not counted when there are such points.
-        segments: usize,
-    },
-}
-
-impl Objective {
-    /// The mean score, where there is one. m
-    pub fn mean(self) -> Option<f64> {
-        match self {
-            Objective::Feasible(mean) => Some(mean),
-            Objective::Infeasible { .. } => None,
-        }
-    }
 }
 
 /// Why a placement has no plan.
@@ -104,9 +81,6 @@ pub struct Workspace {
     now: StateGrid,
     record: forward_pass::Record,
 }
-
-/// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
-const STEP_ROUNDING: f64 = 1e-9;
 
 impl<'a> Planner<'a> {
     /// Prepares the planning of a problem on its grid of beta: for the search.

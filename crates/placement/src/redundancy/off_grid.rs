@@ -8,6 +8,7 @@ use super::super::evaluate::reference;
 use super::super::problem::{Problem, Redundancy};
 use super::joint_turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
+use crate::constraints::STEP_ROUNDING;
 use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
@@ -88,16 +89,13 @@ pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<
         if place > 0 {
             let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
             let steps = inside_steps(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
-            if turned > problem.beta_step_limit(point) + BETA_ROUNDING || !steps {
+            if turned > problem.beta_step_limit(point) + STEP_ROUNDING || !steps {
                 return None;
             }
         }
     }
     Some(replayed)
 }
-
-/// Steps of beta are compared with their limit up to this. rad
-const BETA_ROUNDING: f64 = 1e-9;
 
 fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, place: usize, beta: f64) -> Option<Node> {
     let state = reference::state(problem, point, pose, beta, plan.posture).ok()?;
@@ -135,7 +133,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
         let (done, open) = layers.split_at_mut(place);
         let before = done.last().map(|layer| &layer.states);
         let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
-        let beta_limit = if place > 0 { problem.beta_step_limit(point) + BETA_ROUNDING } else { f64::INFINITY };
+        let beta_limit = if place > 0 { problem.beta_step_limit(point) + STEP_ROUNDING } else { f64::INFINITY };
         for node in open[0].states.iter_mut().flatten() {
             let best = match before {
                 None => Some((0.0, 0)),

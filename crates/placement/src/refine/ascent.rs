@@ -4,6 +4,7 @@
 //! stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model inside the cell
 //! and a trust region, again by clarabel, and leads to a pose where everything is planned anew.
 
+use super::super::outcome::RefinementStatus;
 use super::super::problem::Problem;
 use super::super::redundancy::{Planner, Workspace, off_grid};
 use super::linearise::{Curvature, UNITS, linearise};
@@ -28,23 +29,23 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
     let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = start.clone();
     let mut iterations = 0;
-    let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
+    let ended = |solution, iterations, status| Run { solution, iterations, status };
     let Some(mut gradient) = pose_gradient(problem, &best) else {
-        return ended(best, iterations, "the subproblem could not be solved");
+        return ended(best, iterations, RefinementStatus::SubproblemFailed);
     };
     let mut trust = TRUST.0;
     let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
     while trust >= TRUST.2 {
         if iterations == MAX_ITERATIONS {
-            return ended(best, iterations, "stopped at the largest number of iterations");
+            return ended(best, iterations, RefinementStatus::MaxIterations);
         }
         iterations += 1;
         let Some(step) = pose_step(problem, &best.pose, &gradient, &curvature, trust) else {
-            return ended(best, iterations, "the subproblem could not be solved");
+            return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
         if promised < MIN_PROMISE * best.mean() {
-            return ended(best, iterations, "converged: no first-order gain");
+            return ended(best, iterations, RefinementStatus::NoFirstOrderGain);
         }
         let pose = inside(problem, std::array::from_fn(|k| best.pose[k] + step[k] * UNITS[k]));
         let candidate = planned(planner, &pose, scheme, spacing, workspace);
@@ -57,12 +58,12 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
         }
         best = next;
         let Some(there) = pose_gradient(problem, &best) else {
-            return ended(best, iterations, "the subproblem could not be solved");
+            return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         learn(&mut curvature, &step, &(gradient - there));
         gradient = there;
     }
-    ended(best, iterations, "converged: no gain in the smallest trust region")
+    ended(best, iterations, RefinementStatus::SmallestTrustRegion)
 }
 
 /// Damped BFGS (Powell 1978): keeps the curvature positive definite whatever the change of gradient says.

@@ -23,7 +23,7 @@ pub mod solver;
 pub mod subproblem;
 
 use super::evaluator::{self, Evaluator};
-use super::outcome::{CANCELLATION, Refinement};
+use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
 use super::sense::Sense;
@@ -98,7 +98,7 @@ pub fn refine(
     };
     let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLATION;
     if is_cancelled(&best) {
-        report.statuses.push("converged: the deflection is cancelled".to_owned());
+        report.statuses.push(RefinementStatus::Cancelled);
     }
     while report.rounds < ROUNDS && !is_cancelled(&best) {
         report.rounds += 1;

@@ -43,6 +43,11 @@ pub struct Answer {
     pub pose_gradient: [f64; 4],
 }
 
+/// clarabel refused a subproblem or found no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the subproblem could not be solved")]
+pub struct Unsolved;
+
 /// Coefficients of one inequality `row . x <= bound`.
 struct Rows {
     row: Vec<usize>,
@@ -76,8 +81,8 @@ impl Rows {
 /// Solves the subproblem at a solution with its linearisation.
 ///
 /// # Errors
-/// The status of clarabel, in words, when it found no solution.
-pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, String> {
+/// [`Unsolved`] when clarabel refused it or found no solution.
+pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
     let n = locals.len();
     let (beta, epigraph, margins) = (4, 4 + n, 4 + 2 * n);
     let kinked: Vec<usize> = (0..n).filter(|i| !locals[*i].changes.is_empty()).collect();
@@ -183,14 +188,13 @@ fn programme(
     matrix: &CscMatrix<f64>,
     bound: &[f64],
     cones: &[SupportedConeT<f64>],
-) -> Result<DefaultSolution<f64>, String> {
+) -> Result<DefaultSolution<f64>, Unsolved> {
     let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings)
-        .map_err(|e| format!("clarabel refused the subproblem: {e}"))?;
+    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings).map_err(|_| Unsolved)?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
-        status => Err(format!("clarabel: {status:?}")),
+        _ => Err(Unsolved),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Colours.
 
 use plotters::style::RGBColor;
-use stead_placement::outcome::Blocked;
+use stead_placement::constraints::ConstraintKind;
 
 /// Frames, ticks and their labels.
 pub(super) const INK: RGBColor = RGBColor(60, 60, 60);
@@ -61,16 +61,16 @@ pub(super) fn contrast(RGBColor(red, green, blue): RGBColor) -> RGBColor {
 }
 
 /// The pale ground of states that are not allowed.
-pub(super) fn ground(blocked: Blocked) -> RGBColor {
+pub(super) fn ground(blocked: ConstraintKind) -> RGBColor {
     match blocked {
-        Blocked::Reach => RGBColor(255, 255, 255),
-        Blocked::JointLimit(1) => RGBColor(240, 240, 215),
-        Blocked::JointLimit(2) => RGBColor(221, 230, 245),
-        Blocked::JointLimit(3) => RGBColor(246, 224, 222),
-        Blocked::JointLimit(4) => RGBColor(232, 224, 244),
-        Blocked::JointLimit(5) => RGBColor(222, 222, 222),
-        Blocked::JointLimit(_) => RGBColor(222, 240, 228),
-        Blocked::Conditioning | Blocked::Deflection => RGBColor(248, 248, 248),
+        ConstraintKind::Reach => RGBColor(255, 255, 255),
+        ConstraintKind::JointLimit(1) => RGBColor(240, 240, 215),
+        ConstraintKind::JointLimit(2) => RGBColor(221, 230, 245),
+        ConstraintKind::JointLimit(3) => RGBColor(246, 224, 222),
+        ConstraintKind::JointLimit(4) => RGBColor(232, 224, 244),
+        ConstraintKind::JointLimit(5) => RGBColor(222, 222, 222),
+        ConstraintKind::JointLimit(_) => RGBColor(222, 240, 228),
+        _ => RGBColor(248, 248, 248),
     }
 }
 

@@ -9,7 +9,9 @@ use crate::output::ReportError;
 use crate::units::fixed;
 use plotters::style::{RGBColor, WHITE};
 use std::collections::BTreeSet;
-use stead_placement::outcome::{Blocked, Case, DeflectionMap, MapCell, Plan};
+use stead_placement::constraints::ConstraintKind;
+use stead_placement::feasibility::{DeflectionMap, MapCell};
+use stead_placement::outcome::{Case, Plan};
 use stead_placement::problem::Problem;
 
 const SIZE: Pixel = (1120, 710);
@@ -59,7 +61,7 @@ struct Picture<'a> {
 #[derive(Clone, Copy, PartialEq)]
 enum Look {
     Level(usize),
-    Blocked(Blocked),
+    Blocked(ConstraintKind),
 }
 
 impl<'a> Picture<'a> {
@@ -83,8 +85,8 @@ impl<'a> Picture<'a> {
     fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
         self.title(canvas)?;
         self.cells(canvas)?;
-        self.hatching(canvas, Blocked::Conditioning, Slope::Up)?;
-        self.hatching(canvas, Blocked::Deflection, Slope::Down)?;
+        self.hatching(canvas, ConstraintKind::Conditioning, Slope::Up)?;
+        self.hatching(canvas, ConstraintKind::MaxDeflection, Slope::Down)?;
         self.segments(canvas)?;
         self.plan(canvas, &self.worst.plan, RED)?;
         self.plan(canvas, &self.best.plan, GREEN)?;
@@ -135,7 +137,7 @@ impl<'a> Picture<'a> {
         Ok(())
     }
 
-    fn hatching(&self, canvas: &Canvas<'_>, blocked: Blocked, slope: Slope) -> Drawn {
+    fn hatching(&self, canvas: &Canvas<'_>, blocked: ConstraintKind, slope: Slope) -> Drawn {
         if !self.reasons().contains(&blocked) {
             return Ok(());
         }
@@ -148,7 +150,7 @@ impl<'a> Picture<'a> {
         })
     }
 
-    fn reasons(&self) -> BTreeSet<Blocked> {
+    fn reasons(&self) -> BTreeSet<ConstraintKind> {
         self.map.rows.iter().flatten().filter_map(|cell| cell.err()).collect()
     }
 
@@ -245,7 +247,7 @@ impl<'a> Picture<'a> {
         canvas.text("not allowed:", (LEFT, y), lettering)?;
         x = indent;
         for blocked in reasons {
-            let label = names::reason_in_legend(blocked);
+            let label = names::constraint_in_legend(blocked);
             let width = 33 + lettering.width(&label);
             if x + width > SIZE.0 {
                 (x, y) = (indent, y + 26);
@@ -253,9 +255,9 @@ impl<'a> Picture<'a> {
             let corners = ((x, y - 8), (x + 26, y + 8));
             canvas.fill(corners.0, corners.1, ground(blocked))?;
             match blocked {
-                Blocked::Conditioning => hatch(canvas, corners, Slope::Up, GREY, |_| true)?,
-                Blocked::Deflection => hatch(canvas, corners, Slope::Down, GREY, |_| true)?,
-                Blocked::Reach | Blocked::JointLimit(_) => {}
+                ConstraintKind::Conditioning => hatch(canvas, corners, Slope::Up, GREY, |_| true)?,
+                ConstraintKind::MaxDeflection => hatch(canvas, corners, Slope::Down, GREY, |_| true)?,
+                _ => {}
             }
             canvas.outline(corners.0, corners.1, GREY)?;
             canvas.text(&label, (x + 33, y), lettering)?;
