@@ -1,7 +1,7 @@
 //! `stead place`: search, then files, then a table, and then, where it is asked for, a certificate with its own files.
 
 use super::arguments::PlaceOptions;
-use super::certify::{certified, warn_unfit};
+use super::certify::{certified, warn_unsupported};
 use super::progress::Terminal;
 use super::score::{mention_cancellation, path_stability};
 use super::{Failure, files_written, on_threads, out_folder, print, say};
@@ -20,7 +20,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     search.seed = options.seed.unwrap_or(search.seed);
     let out = out_folder(options.out.as_deref(), &options.config)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    warn_unfit(&run);
+    warn_unsupported(&run);
 
     let terminal = Terminal::start();
     let shown = terminal.show(None);
@@ -66,10 +66,10 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
     if let Some(settings) = run.certificate {
-        let certificate = certified(&run, settings, &outcome, options.threads, &terminal)?;
-        shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate)));
+        let certificate = certified(&run, settings, &outcome.cases, options.threads, &terminal)?;
+        shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate, &run.inputs)));
         if let Value::Object(entries) = &mut document {
-            entries.insert("certificate".to_owned(), certificate_json(&certificate));
+            entries.insert("certificate".to_owned(), certificate_json(&certificate, &run.inputs));
         }
         if !options.json {
             let wall = certificate.wall;

@@ -30,6 +30,7 @@ pub mod refine;
 pub mod search;
 pub mod sense;
 pub mod settings;
+pub mod symmetry;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

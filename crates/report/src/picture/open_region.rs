@@ -5,12 +5,13 @@ use super::canvas::{Canvas, Drawn, Lettering, picture};
 use super::colour::{GREY, INK, LEVELS, RED, viridis};
 use super::patches::patches;
 use super::scene::Scene;
-use crate::certificate::{OpenBox, Proof, open_boxes};
 use crate::output::ReportError;
 use crate::units::fixed;
 use stead_model::robot::angles::wrap;
+use stead_placement::certify::{OpenBox, Proof};
 use stead_placement::problem::Problem;
 use stead_placement::sense::Sense;
+use stead_placement::symmetry::about_axis_1;
 
 /// Pixels between panels, and the side of a panel.
 const LEFT: [i32; 2] = [85, 635];
@@ -28,7 +29,7 @@ const LEAST: f64 = 10.0;
 /// [`ReportError::Format`] when the drawing fails.
 pub fn open_region(problem: &Problem, proof: &Proof) -> Result<String, ReportError> {
     picture("the picture of the open region", (1110, 690), |canvas| {
-        let boxes = open_boxes(problem, proof);
+        let boxes = proof.open_boxes(problem);
         let colours = Colours::new(proof, &boxes);
         heading(canvas, proof, boxes.len())?;
         from_above(canvas, problem, proof, &boxes, &colours)?;
@@ -99,9 +100,8 @@ fn from_above(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[Op
 /// Distance from axis 1 over the yaw less the azimuth.
 fn turned(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) -> Drawn {
     let root = problem.robot.geometry().root_in_base;
-    let (dx, dy) = (proof.placement.x - root.x, proof.placement.y - root.y);
-    let own = libm::hypot(dx, dy) * 1e3;
-    let turn = wrap(proof.placement.yaw - libm::atan2(dy, dx)).to_degrees();
+    let [own, _, turn] = about_axis_1(problem, &proof.placement);
+    let (own, turn) = (own * 1e3, wrap(turn).to_degrees());
     let [x, y, _] = problem.cell.position;
     let distance = |x: f64, y: f64| libm::hypot(x - root.x, y - root.y) * 1e3;
     let far = [(x.min, y.min), (x.min, y.max), (x.max, y.min), (x.max, y.max)].map(|(x, y)| distance(x, y));
