@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cell = &run.problem.cell;
     let [x, y, z] = cell.position;
     let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
-    let poses: Vec<[f64; 4]> = (0..counts.iter().product())
+    let poses: Vec<Placement> = (0..counts.iter().product())
         .map(|mut index| {
             std::array::from_fn(|k| {
                 let value = axes[k][index % counts[k]];
@@ -53,10 +53,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .par_iter()
         .map_init(
             || evaluator.workspace(),
-            |workspace, pose| Candidate {
-                pose: *pose,
+            |workspace, placement| Candidate {
+                placement: *placement,
                 scheme: None,
-                objective: evaluator.objective(pose, None, workspace),
+                objective: evaluator.objective(placement, None, workspace),
             },
         )
         .collect();
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sorted: Vec<Candidate> = scanned.iter().filter(|i| i.objective.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(sense, a.objective, b.objective));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.pose, sense, None));
+        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.placement, sense, None));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
         reports.sort_by(|a, b| match sense {
             Sense::Min => a.end_mean.total_cmp(&b.end_mean),

@@ -22,8 +22,7 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     mention_cell(&run.problem, &placement);
     let beta = options.beta_deg.to_radians();
-    let pose = [placement.x, placement.y, placement.z, placement.yaw];
-    let postures = explain(&run.problem, &pose, options.point, beta);
+    let postures = explain(&run.problem, &placement, options.point, beta);
     let context = Context::new(&run, run.search);
     if options.json {
         print(&document::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures, &context)));

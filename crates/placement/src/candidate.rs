@@ -1,6 +1,7 @@
 //! A candidate of the search: a placement, perhaps with a posture scheme, and its objective value.
 
 use super::sense::Sense;
+use crate::problem::Placement;
 use std::cmp::Ordering;
 use stead_model::robot::Posture;
 
@@ -32,7 +33,7 @@ impl Objective {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
     /// x, y, z (m) and yaw (rad).
-    pub pose: [f64; 4],
+    pub placement: Placement,
     /// One posture per segment, in the genetic mode.
     pub scheme: Option<Vec<Posture>>,
     /// What it is worth under its best plan.

@@ -2,7 +2,7 @@
 
 use super::constraints::{ConstraintKind, Measured, on_joints, on_state};
 use super::evaluate::reference::{State, state};
-use super::problem::Problem;
+use super::problem::{Placement, Problem};
 use super::redundancy::NoFeasiblePlan;
 use rayon::prelude::*;
 use std::fmt;
@@ -35,10 +35,10 @@ impl Explanation {
     }
 }
 
-/// What each of the eight postures gives at path point `point`, workpiece at `pose` (x, y, z in m, yaw in rad), free angle
+/// What each of the eight postures gives at path point `point`, workpiece at a placement, free angle
 /// `beta` (rad), in the order of their numbers.
-pub fn explain(problem: &Problem, pose: &[f64; 4], point: usize, beta: f64) -> [Explanation; 8] {
-    Posture::ALL.map(|posture| match state(problem, point, pose, beta, posture) {
+pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
+    Posture::ALL.map(|posture| match state(problem, point, placement, beta, posture) {
         Err(unreachable) => Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)] },
         Ok(mut found) => {
             for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
@@ -72,10 +72,10 @@ pub struct MapCell {
 }
 
 /// The smallest score over the allowed postures for every path point and grid value of beta (Caro 2013, Fig. 7 and 9).
-pub fn deflection_map(problem: &Problem, pose: &[f64; 4]) -> DeflectionMap {
+pub fn deflection_map(problem: &Problem, placement: &Placement) -> DeflectionMap {
     let beta_count = problem.redundancy.beta_count;
     let cell = |point: usize, k: usize| {
-        let all = explain(problem, pose, point, problem.redundancy.beta(k));
+        let all = explain(problem, placement, point, problem.redundancy.beta(k));
         let allowed = all
             .iter()
             .filter(|e| e.is_allowed())
@@ -150,13 +150,18 @@ impl fmt::Display for Finding {
 
 /// Which constraint fails at which points of a placement that has no plan, in any posture or in a given scheme (one
 /// posture per segment).
-pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, none: &NoFeasiblePlan) -> Vec<Finding> {
+pub fn diagnose(
+    problem: &Problem,
+    placement: &Placement,
+    scheme: Option<&[Posture]>,
+    none: &NoFeasiblePlan,
+) -> Vec<Finding> {
     let beta_count = problem.redundancy.beta_count;
     let nearest_of = |point: usize| {
         let only = scheme.map(|postures| postures[problem.task.path().segment_of(point)]);
         let states = (0..beta_count).flat_map(|k| {
             let beta = problem.redundancy.beta(k);
-            explain(problem, pose, point, beta).map(|e| (beta, e))
+            explain(problem, placement, point, beta).map(|e| (beta, e))
         });
         let states = states.filter(|(_, e)| only.is_none_or(|posture| e.posture == posture));
         states.min_by(|a, b| a.1.severity().total_cmp(&b.1.severity()))
@@ -204,8 +209,8 @@ mod tests {
     #[test]
     fn explains_the_eight_postures_at_the_check_point() {
         let problem = five_segments();
-        let pose = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
-        let all = explain(&problem, &pose, 30, 40.0_f64.to_radians());
+        let placement = Placement::from([2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]);
+        let all = explain(&problem, &placement, 30, 40.0_f64.to_radians());
         assert!(all[2].is_allowed() && all[3].is_allowed());
         for e in &all {
             let Some(s) = &e.state else { continue };
@@ -220,11 +225,11 @@ mod tests {
     fn map_agrees_with_the_planner_on_what_is_allowed() {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
-        let pose = [0.1, -1.9, -0.4, 1.0];
-        let map = deflection_map(&problem, &pose);
+        let placement = Placement::from([0.1, -1.9, -0.4, 1.0]);
+        let map = deflection_map(&problem, &placement);
         let blocked = map.rows.iter().filter(|row| row.iter().all(Result::is_err)).count();
         let planner = Planner::new(&problem);
-        let none = planner.plan(&pose, Sense::Min, None, &mut planner.workspace());
+        let none = planner.plan(&placement, Sense::Min, None, &mut planner.workspace());
         assert_eq!(none.err().map_or(0, |n| n.blocked_points.len()), blocked);
         assert_eq!((map.rows.len(), map.rows[0].len()), (105, 24));
     }
@@ -234,7 +239,7 @@ mod tests {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
         let planner = Planner::new(&problem);
-        let far = [0.0, -4.0, -0.4, 0.0];
+        let far = Placement::from([0.0, -4.0, -0.4, 0.0]);
         let none = planner.plan(&far, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let findings = diagnose(&problem, &far, None, &none);
         assert_eq!(findings.first().map(|f| f.points), Some((0, 20)));
@@ -242,7 +247,7 @@ mod tests {
         assert!(text.contains("segment 1, points 0 to 20") && text.contains("beyond the stretched arm"), "{text}");
         problem.constraints.min_inverse_condition = 0.95;
         let planner = Planner::new(&problem);
-        let near = [0.0, -1.8, -0.4, 0.0];
+        let near = Placement::from([0.0, -1.8, -0.4, 0.0]);
         let none = planner.plan(&near, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let text = diagnose(&problem, &near, None, &none)[0].to_string();
         assert!(text.contains("1/kappa") && text.contains("below 0.95"), "{text}");

@@ -117,9 +117,8 @@ struct Grid {
 
 impl Grid {
     fn new(placement: Placement) -> Self {
-        let pose = [placement.x, placement.y, placement.z, placement.yaw];
         let betas = 0..problem().redundancy.beta_count;
-        let at = |point: usize, k: usize| Posture::ALL.map(|posture| allowed(point, &pose, k, posture));
+        let at = |point: usize, k: usize| Posture::ALL.map(|posture| allowed(point, &placement, k, posture));
         let states = (0..problem().task.points().len()).map(|point| betas.clone().map(|k| at(point, k)).collect());
         Self { placement, states: states.collect() }
     }
@@ -205,9 +204,9 @@ impl Grid {
     }
 }
 
-fn allowed(point: usize, pose: &[f64; 4], k: usize, posture: Posture) -> Result<State<f64>, ConstraintKind> {
+fn allowed(point: usize, placement: &Placement, k: usize, posture: Posture) -> Result<State<f64>, ConstraintKind> {
     let mut found =
-        state(problem(), point, pose, problem().redundancy.beta(k), posture).map_err(|_| ConstraintKind::Reach)?;
+        state(problem(), point, placement, problem().redundancy.beta(k), posture).map_err(|_| ConstraintKind::Reach)?;
     for (angle, joint) in found.joints.iter_mut().zip(problem().robot.joints()) {
         *angle = Range::of(joint).nearest(*angle).0;
     }

@@ -3,7 +3,7 @@
 use super::SegmentPlan;
 use crate::constraints::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
 use crate::evaluate::reference::State;
-use crate::problem::Problem;
+use crate::problem::{Placement, Problem};
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
@@ -43,7 +43,7 @@ pub(super) struct JointPath {
 pub(super) fn unwind(
     problem: &Problem,
     span: &Span<usize>,
-    pose: &[f64; 4],
+    placement: &Placement,
     betas: &[f64],
     postures: &[Posture],
     cost: f64,
@@ -52,7 +52,7 @@ pub(super) fn unwind(
     let mut joint_paths = Vec::new();
     for posture in postures {
         let solve = |(point, beta): (usize, &f64)| {
-            problem.robot.inverse(&problem.base_from_flange(point, pose, *beta), *posture).ok()
+            problem.robot.inverse(&problem.base_from_flange(point, placement, *beta), *posture).ok()
         };
         let Some(wrapped) = span.clone().zip(betas).map(solve).collect::<Option<Vec<[f64; 6]>>>() else { continue };
         let steps = &steps[span.clone()];

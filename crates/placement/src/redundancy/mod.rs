@@ -23,7 +23,7 @@ pub mod transition;
 
 use super::candidate::Objective;
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use super::problem::{Problem, Redundancy};
+use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, turns::Range};
@@ -146,11 +146,11 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best or worst plan on the grid, with
+    /// The mean score of the workpiece at a placement under the best or worst plan on the grid, with
     /// the posture scheme found exactly or given (one posture per segment).
     pub fn objective(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
@@ -159,8 +159,14 @@ impl<'a> Planner<'a> {
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let found =
-                self.segment(span.clone(), pose, sense, only, workspace, if points > 0 { None } else { Some(0.0) });
+            let found = self.segment(
+                span.clone(),
+                placement,
+                sense,
+                only,
+                workspace,
+                if points > 0 { None } else { Some(0.0) },
+            );
             points += found.blocked.len();
             if points > 0 {
                 continue;
@@ -185,12 +191,12 @@ impl<'a> Planner<'a> {
     /// [`NoFeasiblePlan`] when some point or segment has none.
     pub fn plan(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(pose, sense, scheme, workspace, 0.0)?;
+        let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
         Ok(joint_turns::select_joint_paths(
             self.problem,
             choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect(),
@@ -206,18 +212,18 @@ impl<'a> Planner<'a> {
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
     pub fn plan_fine(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(pose, sense, scheme, workspace, CLOSE)?;
+        let choices = self.choices(placement, sense, scheme, workspace, CLOSE)?;
         let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
                 let mut plan = joint_turns::select_joint_paths(self.problem, vec![choice]).pop()?;
-                off_grid::refine(self.problem, pose, sense, spacing, &mut plan);
+                off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
                 Some(plan)
             });
             let sign = sense.sign();
@@ -228,7 +234,8 @@ impl<'a> Planner<'a> {
                 None => self.alike(plan.posture),
             };
             let span = plan.points.clone();
-            let again = joint_turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
+            let again =
+                joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
             Some(again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan)))
         });
         Ok(joint_turns::select_joint_paths(self.problem, refined.collect()))
@@ -238,7 +245,7 @@ impl<'a> Planner<'a> {
     /// cheapest, cheapest first.
     fn choices(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
@@ -248,7 +255,7 @@ impl<'a> Planner<'a> {
         let mut all = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let found = self.segment(span.clone(), pose, sense, only, workspace, Some(margin));
+            let found = self.segment(span.clone(), placement, sense, only, workspace, Some(margin));
             if !found.choices.is_empty() {
                 all.push(found.choices);
             } else if found.blocked.is_empty() {

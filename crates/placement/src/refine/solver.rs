@@ -6,8 +6,8 @@
 use super::super::outcome::RefinementStatus;
 use super::linearise::{Curvature, Local, linearise};
 use super::subproblem::{Question, solve};
-use super::{Solution, inside, moved};
-use crate::problem::Problem;
+use super::{Solution, moved};
+use crate::problem::{Placement, Problem};
 use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
 };
@@ -128,11 +128,12 @@ impl SequentialConvex<'_> {
                 return None;
             }
             self.status = None;
-            let pose = inside(self.problem, std::array::from_fn(|k| known.pose[k] + answer.pose[k]));
+            let placement = Placement::from(std::array::from_fn(|k| known.placement[k] + answer.placement[k]));
+            let placement = self.problem.cell.clamp(&placement);
             let betas = known.plans.iter().flat_map(|plan| &plan.betas).zip(&answer.betas);
             let betas: Vec<f64> = betas.map(|(beta, step)| beta + step).collect();
             let gained = |candidate: &Solution| mean - candidate.mean();
-            match moved(self.problem, known, pose, &betas) {
+            match moved(self.problem, known, placement, &betas) {
                 Some(candidate) if gained(&candidate) > 0.1 * answer.promised => {
                     if gained(&candidate) > 0.7 * answer.promised {
                         self.trust = (2.0 * self.trust).min(MAX_TRUST);

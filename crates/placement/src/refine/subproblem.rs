@@ -7,7 +7,7 @@
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
 
-use super::super::problem::{Interval, Problem};
+use super::super::problem::{Interval, Placement, Problem};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::{LENGTH_UNIT, Solution};
 use clarabel::algebra::CscMatrix;
@@ -33,8 +33,8 @@ pub struct Question {
 /// What it answers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Pose step: m, m, m, rad.
-    pub pose: [f64; 4],
+    /// Step of x, y, z (m) and yaw (rad).
+    pub placement: [f64; 4],
     /// Steps of all betas. rad
     pub betas: Vec<f64>,
     /// Decrease of the mean score that the model promises, not negative. m
@@ -137,7 +137,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
             }
         }
     }
-    for (k, bounds) in pose_bounds(problem, &solution.pose).into_iter().enumerate() {
+    for (k, bounds) in pose_bounds(problem, &solution.placement).into_iter().enumerate() {
         let trust = question.trust;
         rows.add([(k, 1.0)], bounds.max.min(trust));
         rows.add([(k, -1.0)], (-bounds.min).min(trust));
@@ -174,7 +174,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
         }
     }
     Ok(Answer {
-        pose,
+        placement: pose,
         betas: found.x[beta..beta + n].to_vec(),
         promised: ((1.0 - found.obj_val) * unit).max(0.0),
         pose_gradient,
@@ -202,7 +202,7 @@ fn programme(
 /// clarabel found none.
 pub fn pose_step(
     problem: &Problem,
-    pose: &[f64; 4],
+    placement: &Placement,
     gradient: &Vector4<f64>,
     curvature: &Matrix4<f64>,
     trust: f64,
@@ -215,7 +215,7 @@ pub fn pose_step(
     let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
     let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
     let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
-    let bounds = pose_bounds(problem, pose);
+    let bounds = pose_bounds(problem, placement);
     for (k, bound) in bounds.iter().enumerate() {
         rows.add([(k, 1.0)], bound.max.min(trust));
         rows.add([(k, -1.0)], (-bound.min).min(trust));
@@ -257,17 +257,17 @@ pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
 }
 
 /// How far each pose variable may move inside the cell, in scaled variables.
-pub fn pose_bounds(problem: &Problem, pose: &[f64; 4]) -> [Interval; 4] {
+pub fn pose_bounds(problem: &Problem, placement: &Placement) -> [Interval; 4] {
     let cell = &problem.cell;
     std::array::from_fn(|k| {
         if k < 3 {
             let Interval { min, max } = cell.position[k];
-            Interval { min: (min - pose[k]) / LENGTH_UNIT, max: (max - pose[k]) / LENGTH_UNIT }
+            Interval { min: (min - placement[k]) / LENGTH_UNIT, max: (max - placement[k]) / LENGTH_UNIT }
         } else if cell.is_yaw_free() {
             Interval { min: f64::NEG_INFINITY, max: f64::INFINITY }
         } else {
             let middle = (cell.yaw.min + cell.yaw.max) / 2.0;
-            let yaw = middle + wrap(pose[3] - middle);
+            let yaw = middle + wrap(placement.yaw - middle);
             Interval { min: cell.yaw.min - yaw, max: cell.yaw.max - yaw }
         }
     })
