@@ -14,6 +14,7 @@ use stead_placement::candidate::{Candidate, rank};
 use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::Interval;
+use stead_placement::problem::Placement;
 use stead_placement::redundancy::Planner;
 use stead_placement::refine::refine;
 use stead_placement::search::distinct;
@@ -42,11 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
     let poses: Vec<Placement> = (0..counts.iter().product())
         .map(|mut index| {
-            std::array::from_fn(|k| {
+            Placement::from(std::array::from_fn(|k| {
                 let value = axes[k][index % counts[k]];
                 index /= counts[k];
                 value
-            })
+            }))
         })
         .collect();
     let scanned: Vec<Candidate> = poses

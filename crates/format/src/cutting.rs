@@ -2,16 +2,20 @@
 
 use super::reader::{Field, Table};
 use crate::input::InputError;
-use stead_model::cutting::{CuttingModel, MillingDirection, Rotation, Side};
+use stead_model::cutting::{Coefficients, Cut, Cutter, MillingDirection, PathForces, Rotation, Side};
 
 /// The words for the senses of rotation of a cutter.
 pub(super) const ROTATIONS: [(&str, Rotation); 2] =
     [("clockwise", Rotation::Clockwise), ("counterclockwise", Rotation::Counterclockwise)];
 
+/// The words for the directions of milling.
+pub(super) const DIRECTIONS: [(&str, MillingDirection); 2] =
+    [("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)];
+
 /// Reads the table: the cutter (`cutter_diameter_mm`, `teeth`, `rotation`), the cut (`milling`, `radial_depth_mm`,
 /// `axial_depth_mm`, `feed_per_tooth_mm`, `concave_corners`) and the coefficients (`kt_mpa`, `kr`, `kte_n_per_mm`,
-/// `kre_n_per_mm`) of [`CuttingModel`].
-pub(super) fn cutting_from(table: &Table<'_>) -> Result<CuttingModel, InputError> {
+/// `kre_n_per_mm`) of [`PathForces`].
+pub(super) fn cutting_from(table: &Table<'_>) -> Result<PathForces, InputError> {
     let [diameter, teeth, rotation, milling, radial_depth, axial_depth, feed_per_tooth, kt, kr, kte, kre, corners] =
         table.fields([
             "cutter_diameter_mm",
@@ -28,22 +32,29 @@ pub(super) fn cutting_from(table: &Table<'_>) -> Result<CuttingModel, InputError
             "concave_corners",
         ])?;
     let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |value| value >= 0.0);
-    let millings = [("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)];
     let sides = [("left", Some(Side::Left)), ("right", Some(Side::Right)), ("none", None)];
     let diameter_mm = diameter.positive()?;
     let slot = format!("a number above 0 and not above cutter_diameter_mm = {diameter_mm}");
-    Ok(CuttingModel {
-        diameter: diameter_mm / 1e3,
-        teeth: teeth.integer(1..=100)? as u32,
-        rotation: rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise),
-        milling: milling.one_of(&millings)?,
-        radial_depth: radial_depth.number_where(&slot, |depth| depth > 0.0 && depth <= diameter_mm)? / 1e3,
-        axial_depth: axial_depth.positive()? / 1e3,
-        feed_per_tooth: feed_per_tooth.positive()? / 1e3,
-        tangential_pressure: kt.positive()? * 1e6,
-        radial_ratio: not_negative(&kr)?,
+    let count = teeth.integer(1..=100)? as usize;
+    let rotation = rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise);
+    let tangential = kt.positive()? * 1e6;
+    let coefficients = Coefficients {
+        tangential,
+        radial: not_negative(&kr)? * tangential,
+        axial: 0.0,
         tangential_edge: not_negative(&kte)? * 1e3,
         radial_edge: not_negative(&kre)? * 1e3,
+    };
+    let cutter = Cutter::even(count, diameter_mm / 2e3, 0.0, rotation, coefficients)
+        .map_err(|error| kt.error(format!("makes no cutter: {error}"), "values whose forces are finite"))?;
+    Ok(PathForces {
+        cut: Cut {
+            direction: milling.one_of(&DIRECTIONS)?,
+            radial_depth: radial_depth.number_where(&slot, |depth| depth > 0.0 && depth <= diameter_mm)? / 1e3,
+            axial_depth: axial_depth.positive()? / 1e3,
+        },
+        cutter,
+        feed_per_tooth: feed_per_tooth.positive()? / 1e3,
         concave_corners: corners.optional(|field| field.one_of(&sides))?.flatten(),
     })
 }
@@ -70,7 +81,7 @@ kre_n_per_mm = 0
 concave_corners = 'right'
 ";
 
-    fn read(text: &str) -> Result<CuttingModel, InputError> {
+    fn read(text: &str) -> Result<PathForces, InputError> {
         let source = Source::new(Path::new("run.toml"), text.as_bytes().to_vec())?;
         let document = source.parse()?;
         cutting_from(&Table::root(&document).field("cutting").table()?)
@@ -79,26 +90,19 @@ concave_corners = 'right'
     #[test]
     fn units_become_si_and_defaults_are_filled_in() {
         let model = read(TEXT).unwrap();
-        let expected = CuttingModel {
-            diameter: 0.016,
-            teeth: 4,
-            rotation: Rotation::Counterclockwise,
-            milling: MillingDirection::Climb,
-            radial_depth: 0.002,
-            axial_depth: 0.005,
+        let coefficients =
+            Coefficients { tangential: 800e6, radial: 320e6, axial: 0.0, tangential_edge: 20e3, radial_edge: 0.0 };
+        let cutter = |rotation| Cutter::even(4, 0.008, 0.0, rotation, coefficients).unwrap();
+        let expected = PathForces {
+            cutter: cutter(Rotation::Counterclockwise),
+            cut: Cut { direction: MillingDirection::Climb, radial_depth: 0.002, axial_depth: 0.005 },
             feed_per_tooth: 0.05e-3,
-            tangential_pressure: 800e6,
-            radial_ratio: 0.4,
-            tangential_edge: 20e3,
-            radial_edge: 0.0,
             concave_corners: Some(Side::Right),
         };
         assert_eq!(model, expected);
         let bare = TEXT.replace("rotation = 'counterclockwise'\n", "").replace("concave_corners = 'right'\n", "");
-        assert_eq!(
-            read(&bare).unwrap(),
-            CuttingModel { rotation: Rotation::Clockwise, concave_corners: None, ..expected }
-        );
+        let expected = PathForces { cutter: cutter(Rotation::Clockwise), concave_corners: None, ..expected };
+        assert_eq!(read(&bare).unwrap(), expected);
     }
 
     #[test]

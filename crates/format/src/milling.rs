@@ -3,7 +3,8 @@
 use super::cutting::ROTATIONS;
 use super::reader::{Field, Table};
 use crate::input::InputError;
-use stead_model::cutting::{Engagement, MillingTool, Rotation};
+use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
+use stead_model::task::Wrench;
 
 /// The ways of milling that the field `engagement` names.
 #[derive(Clone, Copy, PartialEq)]
@@ -15,15 +16,33 @@ enum Way {
     OpenSlot,
 }
 
+/// A cutter in the work.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EngagedCutter {
+    cutter: Cutter,
+    axial_depth: f64,
+    feed_per_tooth: f64,
+    engagement: Engagement,
+}
+
+impl EngagedCutter {
+    /// The forces over the engagement and over a turn.
+    pub fn force_history(&self) -> ForceHistory {
+        let Self { cutter, axial_depth, feed_per_tooth, engagement } = self;
+        let force = CuttingForce { cutter, axial_depth: *axial_depth, feed_per_tooth: *feed_per_tooth };
+        ForceHistory::new(&force, engagement)
+    }
+}
+
 /// Reads the table: the cutter (`cutter_diameter_mm`, `teeth`, `rotation`, `entering_angle_deg`, `helix_deg`, `rake_deg`), its
-/// coefficients (`friction`, `kn_mpa`) and the cut (`feed_per_tooth_mm`, `axial_depth_mm`) of [`MillingTool`], and the
+/// coefficients (`friction`, `kn_mpa`) and the cut (`feed_per_tooth_mm`, `axial_depth_mm`) of [`EngagedCutter`], and the
 /// [`Engagement`] (`engagement`, with `radial_depth_mm` for up, down and centred, `open_width_mm` for open-slot). Left out,
 /// the rotation is clockwise, the entering angle 90 deg, and helix, rake and friction are 0.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a missing or unknown key, a value of the wrong kind or out of range, a width that
 /// the engagement does not have.
-pub(super) fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement), InputError> {
+pub(super) fn milling_from(table: &Table<'_>) -> Result<EngagedCutter, InputError> {
     let [
         diameter,
         teeth,
@@ -57,24 +76,29 @@ pub(super) fn milling_from(table: &Table<'_>) -> Result<(MillingTool, Engagement
     let inclined = |field: &Field<'_>| field.number_where("a number above -90 and below 90", |v| v.abs() < 90.0);
     let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |v| v >= 0.0);
     let diameter_mm = diameter.positive()?;
-    let tool = MillingTool {
-        radius: diameter_mm / 2e3,
-        teeth: teeth.integer(1..=100)? as u32,
-        rotation: rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise),
-        entering_angle: entering_angle.optional(entering)?.unwrap_or(90.0).to_radians(),
-        helix: helix.optional(inclined)?.unwrap_or_default().to_radians(),
+    let count = teeth.integer(1..=100)? as usize;
+    let rotation = rotation.optional(|field| field.one_of(&ROTATIONS))?.unwrap_or(Rotation::Clockwise);
+    let entering_angle = entering_angle.optional(entering)?.unwrap_or(90.0).to_radians();
+    let helix = helix.optional(inclined)?.unwrap_or_default().to_radians();
+    let face = RakeFace {
+        entering_angle,
         rake: rake.optional(inclined)?.unwrap_or_default().to_radians(),
         friction: friction.optional(not_negative)?.unwrap_or_default(),
         normal_pressure: kn.positive()? * 1e6,
-        feed_per_tooth: feed_per_tooth.positive()? / 1e3,
-        axial_depth: axial_depth.positive()? / 1e3,
     };
+    let (feed_per_tooth, axial_depth) = (feed_per_tooth.positive()? / 1e3, axial_depth.positive()? / 1e3);
     let engagement = engagement_from(&way, &radial_depth, &open_width, diameter_mm)?;
-    let mean = tool.mean_wrench(&engagement);
-    if mean.force.iter().chain(mean.moment.iter()).all(|part| part.is_finite()) {
-        Ok((tool, engagement))
-    } else {
-        Err(kn.error("gives, with the other values of the table, no finite force", "values whose forces are finite"))
+    let cutter = Cutter::even(count, diameter_mm / 2e3, helix, rotation, face.coefficients(helix)).ok();
+    let is_finite = |cutter: &Cutter| {
+        let Wrench { force, moment } = CuttingForce { cutter, axial_depth, feed_per_tooth }.mean_wrench(&engagement);
+        force.iter().chain(moment.iter()).all(|part| part.is_finite())
+    };
+    match cutter.filter(is_finite) {
+        Some(cutter) => Ok(EngagedCutter { cutter, axial_depth, feed_per_tooth, engagement }),
+        None => {
+            Err(kn
+                .error("gives, with the other values of the table, no finite force", "values whose forces are finite"))
+        }
     }
 }
 
@@ -138,7 +162,7 @@ engagement = 'up'
 radial_depth_mm = 2.5
 ";
 
-    fn read(text: &str) -> Result<(MillingTool, Engagement), InputError> {
+    fn read(text: &str) -> Result<EngagedCutter, InputError> {
         let source = Source::new(Path::new("run.toml"), text.as_bytes().to_vec())?;
         let document = source.parse()?;
         milling_from(&Table::root(&document).field("milling").table()?)
@@ -146,33 +170,29 @@ radial_depth_mm = 2.5
 
     #[test]
     fn units_become_si_and_defaults_are_filled_in() {
-        let (tool, engagement) = read(TEXT).unwrap();
-        let expected = MillingTool {
-            radius: 0.005,
-            teeth: 3,
-            rotation: Rotation::Counterclockwise,
+        let face = RakeFace {
             entering_angle: 45_f64.to_radians(),
-            helix: -30_f64.to_radians(),
             rake: 7_f64.to_radians(),
             friction: 0.4,
             normal_pressure: 750e6,
-            feed_per_tooth: 0.08e-3,
-            axial_depth: 0.005,
         };
-        assert_eq!(tool, expected);
-        assert_eq!(engagement, Engagement::up(0.0025, 0.01).unwrap());
+        let helix = -30_f64.to_radians();
+        let cutter = |rotation, helix, face: RakeFace| {
+            Cutter::even(3, 0.005, helix, rotation, face.coefficients(helix)).unwrap()
+        };
+        let expected = EngagedCutter {
+            cutter: cutter(Rotation::Counterclockwise, helix, face),
+            axial_depth: 0.005,
+            feed_per_tooth: 0.08e-3,
+            engagement: Engagement::up(0.0025, 0.01).unwrap(),
+        };
+        assert_eq!(read(TEXT).unwrap(), expected);
         let kept =
             |line: &&str| !["rotation", "entering", "helix", "rake", "friction"].iter().any(|k| line.starts_with(k));
         let bare = TEXT.lines().filter(kept).collect::<Vec<_>>().join("\n");
-        let expected = MillingTool {
-            rotation: Rotation::Clockwise,
-            entering_angle: 90_f64.to_radians(),
-            helix: 0.0,
-            rake: 0.0,
-            friction: 0.0,
-            ..expected
-        };
-        assert_eq!(read(&bare).unwrap().0, expected);
+        let plain = RakeFace { entering_angle: 90_f64.to_radians(), rake: 0.0, friction: 0.0, ..face };
+        let expected = EngagedCutter { cutter: cutter(Rotation::Clockwise, 0.0, plain), ..expected };
+        assert_eq!(read(&bare).unwrap(), expected);
     }
 
     #[test]
@@ -185,7 +205,7 @@ radial_depth_mm = 2.5
             ("engagement = 'centred'\nradial_depth_mm = 7.5\n", Engagement::centred(0.0075, 0.01)),
             ("engagement = 'open-slot'\nopen_width_mm = 4\n", Engagement::open_slot(0.004, 0.01)),
         ] {
-            assert_eq!(read(&TEXT.replace(up, text)).unwrap().1, expected.unwrap(), "{text}");
+            assert_eq!(read(&TEXT.replace(up, text)).unwrap().engagement, expected.unwrap(), "{text}");
         }
     }
 

@@ -4,7 +4,7 @@
 use crate::placement::Context;
 use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
-use stead_model::cutting::{Engagement, ForceHistory, MillingTool, Rotation};
+use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
@@ -237,17 +237,9 @@ pub fn assert_well_formed(svg: &str) {
 
 /// The force of a cutter on both sides of a slot that is open over half its width.
 pub fn force_history() -> ForceHistory {
-    let tool = MillingTool {
-        radius: 0.005,
-        teeth: 3,
-        rotation: Rotation::Clockwise,
-        entering_angle: 90_f64.to_radians(),
-        helix: 20_f64.to_radians(),
-        rake: 5_f64.to_radians(),
-        friction: 0.4,
-        normal_pressure: 750e6,
-        feed_per_tooth: 8e-5,
-        axial_depth: 5e-3,
-    };
-    ForceHistory::new(&tool, &Engagement::open_slot(0.005, 0.01).unwrap())
+    let (helix, rake) = (20_f64.to_radians(), 5_f64.to_radians());
+    let face = RakeFace { entering_angle: std::f64::consts::FRAC_PI_2, rake, friction: 0.4, normal_pressure: 750e6 };
+    let cutter = Cutter::even(3, 0.005, helix, Rotation::Clockwise, face.coefficients(helix)).unwrap();
+    let force = CuttingForce { cutter: &cutter, axial_depth: 5e-3, feed_per_tooth: 8e-5 };
+    ForceHistory::new(&force, &Engagement::open_slot(0.005, 0.01).unwrap())
 }

@@ -66,7 +66,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let plane = plane.optional(|field| plane_from(&field.table()?))?.unwrap_or(Plane::XOZ);
     let mounted = spindle.optional(|field| spindle_from(&field.table()?))?;
     let cut = milling.optional(|field| milling_from(&field.table()?))?;
-    let force_history = cut.map(|(tool, engagement)| ForceHistory::new(&tool, &engagement));
+    let force_history = cut.map(|cut| cut.force_history());
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
     let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let setting = Setting {

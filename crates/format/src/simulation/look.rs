@@ -2,7 +2,7 @@
 
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
-use stead_simulation::milling::Cut;
+use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::{EvaluationSettings, Published, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
@@ -31,16 +31,17 @@ const DAMPED: f64 = 0.5;
 pub(super) fn look_from(
     fields: &LookFields<'_, '_>,
     setup: &Setup,
-    cut: &Cut,
+    cut: &PassCut,
 ) -> Result<EvaluationSettings, InputError> {
-    let mut look = EvaluationSettings { window: None, height: cut.axial_depth / 2.0, cutoff: CUTOFF, published: None };
+    let mut look =
+        EvaluationSettings { window: None, height: cut.section.axial_depth / 2.0, cutoff: CUTOFF, published: None };
     if let Some([window, height, cutoff]) = fields.keys {
         let duration = setup.motion.duration();
         let allowed =
             format!("two times [from, to] from 0 to {duration:.4}, the duration of the pass, the first below");
         let within = |value: f64| (0.0..=duration).contains(&value);
         look.window = window.optional(|field| field.wide_interval_where(&allowed, within))?;
-        let depth_mm = cut.axial_depth * 1e3;
+        let depth_mm = cut.section.axial_depth * 1e3;
         let on_wall = format!("a number from 0 to axial_depth_mm = {depth_mm}");
         let inside = |value: f64| (0.0..=depth_mm).contains(&value);
         if let Some(mm) = height.optional(|field| field.number_where(&on_wall, inside))? {
@@ -91,7 +92,7 @@ fn statistics_from(field: &Field<'_>) -> Result<Statistics, InputError> {
 ///
 /// # Errors
 /// [`InputError`] at the field that says how many steps there are.
-pub(super) fn check_step(setup: &Setup, cut: &Cut, field: &Field<'_>) -> Result<(), InputError> {
+pub(super) fn check_step(setup: &Setup, cut: &PassCut, field: &Field<'_>) -> Result<(), InputError> {
     let Ok(modes) = linear_at(setup, 0.0).and_then(|linear| linear.modes()) else { return Ok(()) };
     let swinging = modes.iter().filter(|mode| mode.damping_ratio < DAMPED);
     let fastest = swinging.fold(0.0_f64, |max, mode| max.max(mode.frequency));
@@ -114,7 +115,7 @@ const LONGEST: f64 = 2e4;
 ///
 /// # Errors
 /// [`InputError`] at the feed.
-pub(super) fn check_duration(setup: &Setup, cut: &Cut, feed: &Field<'_>) -> Result<(), InputError> {
+pub(super) fn check_duration(setup: &Setup, cut: &PassCut, feed: &Field<'_>) -> Result<(), InputError> {
     let duration = setup.motion.duration();
     let longest = LONGEST.min(MOST_STEPS * cut.step());
     if duration <= longest {

@@ -1,10 +1,11 @@
 //! The cutter and its cut in a simulation file.
 
+use super::super::cutting::DIRECTIONS;
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
 use std::f64::consts::TAU;
-use stead_model::cutting::MillingDirection;
-use stead_simulation::milling::{Coefficients, Cut, CutError, Cutter, CutterError, Tooth};
+use stead_model::cutting::{Coefficients, Cut, Cutter, CutterError, Rotation, Tooth};
+use stead_simulation::milling::{CutError, PassCut};
 
 /// The keys of a cutter and its cut.
 pub(crate) const KEYS: [&str; 13] = [
@@ -37,7 +38,7 @@ pub(crate) fn milling_from(
     length: f64,
     slices: usize,
     steps_per_turn: usize,
-) -> Result<(Cutter, Cut), InputError> {
+) -> Result<(Cutter, PassCut), InputError> {
     let [diameter, teeth, pitch, runout, helix, flute, kt, kr, ka, milling, radial, axial, rpm] =
         KEYS.map(|key| table.field(key));
     let count = teeth.integer(1..=100)? as usize;
@@ -60,13 +61,12 @@ pub(crate) fn milling_from(
     });
     let angle = |field: &Field<'_>| field.number_where("a number above -90 and below 90", |v| v.abs() < 90.0);
     let pressure = |field: &Field<'_>| field.number().map(|mpa| mpa * 1e6);
-    let coefficients = Coefficients {
-        tangential: kt.positive()? * 1e6,
-        radial: pressure(&kr)?,
-        axial: ka.optional(pressure)?.unwrap_or_default(),
-    };
+    let tangential = kt.positive()? * 1e6;
+    let coefficients = Coefficients::new(tangential, pressure(&kr)?, ka.optional(pressure)?.unwrap_or_default());
     let helix_angle = helix.optional(angle)?.unwrap_or_default().to_radians();
-    let cutter = Cutter::new(edges.collect(), helix_angle, flute.positive()? / 1e3, coefficients).map_err(|error| {
+    let flute_length = Some(flute.positive()? / 1e3);
+    let made = Cutter::new(edges.collect(), helix_angle, flute_length, Rotation::Clockwise, coefficients);
+    let cutter = made.map_err(|error| {
         let field = match error {
             CutterError::Toothless => &teeth,
             CutterError::Pitch { .. } => &pitch,
@@ -80,11 +80,8 @@ pub(crate) fn milling_from(
     // With runout the cutter cuts wider or less wide than its diameter: a cut of the whole diameter is a slot all the same.
     let (width, mean) = (radial.positive()? / 1e3, 2.0 * cutter.radius());
     let radial_depth = if (2.0 * radius.min(cutter.radius())..=2.0 * radius).contains(&width) { mean } else { width };
-    let cut = Cut {
-        milling: milling
-            .one_of(&[("conventional", MillingDirection::Conventional), ("climb", MillingDirection::Climb)])?,
-        radial_depth,
-        axial_depth: axial.positive()? / 1e3,
+    let cut = PassCut {
+        section: Cut { direction: milling.one_of(&DIRECTIONS)?, radial_depth, axial_depth: axial.positive()? / 1e3 },
         length,
         spindle_speed: rpm_from(&rpm)?,
         slices,
@@ -102,6 +99,9 @@ pub(crate) fn milling_from(
                 axial.error("is deeper than the flutes of the cutter", allowed)
             }
             CutError::Positive { .. } => rpm.error(format!("makes no cut: {error}"), "finite numbers above 0"),
+            CutError::Coefficient { .. } | CutError::EdgeForces => {
+                kt.error(format!("makes no cut: {error}"), "a number above 0")
+            }
             CutError::Slices => rpm.error("makes no cut without slices", "at least one slice"),
             CutError::Steps { min, .. } => {
                 let problem = format!("has teeth so close that {steps_per_turn} steps a turn do not tell them apart");

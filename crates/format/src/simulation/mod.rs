@@ -20,7 +20,8 @@ pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use stability::analysis_from;
 pub(super) use stability::max_depth_from;
 use std::path::Path;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::EvaluationSettings;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
@@ -33,7 +34,7 @@ pub struct SimulationRun {
     /// The cutter.
     pub cutter: Cutter,
     /// What it cuts.
-    pub cut: Cut,
+    pub cut: PassCut,
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
     /// How to look at the simulated pass.

@@ -4,7 +4,8 @@ use super::super::reader::Field;
 use super::FASTEST_RPM;
 use crate::input::InputError;
 use std::f64::consts::TAU;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
 
@@ -15,13 +16,13 @@ pub(super) fn analysis_from(
     field: &Field<'_>,
     setup: &Setup,
     cutter: &Cutter,
-    cut: &Cut,
+    cut: &PassCut,
 ) -> Result<AnalysisSettings, InputError> {
     let mut settings = AnalysisSettings {
         distance: 0.0,
         speeds: [cut.spindle_speed / 3.0, cut.spindle_speed * 3.0],
         points: 60,
-        max_depth: cutter.flute(),
+        max_depth: cutter.flute_length().unwrap_or(cutter.diameter()),
         frequencies: [1.0, 250.0],
     };
     let Some(table) = field.optional(Field::table)? else { return Ok(settings) };
@@ -49,10 +50,11 @@ pub(super) fn analysis_from(
     Ok(settings)
 }
 
-/// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
+/// The largest depth (m) that is examined; the length of the flutes where the file does not say.
 pub(crate) fn max_depth_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
-    let flute_mm = cutter.flute() * 1e3;
+    let flute = cutter.flute_length().unwrap_or(cutter.diameter());
+    let flute_mm = flute * 1e3;
     let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
     let depth = field.optional(|field| field.number_where(&within, |value| value > 0.0 && value <= flute_mm))?;
-    Ok(depth.map_or(cutter.flute(), |mm| mm / 1e3))
+    Ok(depth.map_or(flute, |mm| mm / 1e3))
 }

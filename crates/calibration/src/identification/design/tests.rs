@@ -19,6 +19,7 @@ use std::f64::consts::PI;
 use stead_model::robot::testing::{kr270, odd_arms};
 use stead_model::robot::{Compliance, Frames, Robot};
 use stead_model::stiffness::equilibrium::{Load, displaced};
+use stead_numerics::monitor::Monitor;
 
 /// The arm to be found, not known well: every compliance is off by a quarter or more.
 fn guess() -> Robot {

@@ -1,5 +1,7 @@
-//! The end mill: teeth, helix, unequal pitch, runout, cutting coefficients.
+//! The end mill: teeth with unequal pitch and runout, helix, sense of rotation, cutting coefficients.
 
+use super::coefficients::Coefficients;
+use super::rotation::Rotation;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// One tooth of a cutter.
@@ -11,27 +13,17 @@ pub struct Tooth {
     pub radius: f64,
 }
 
-/// Coefficients of the cutting force: force = coefficient x chip thickness x slice height (UMONS paper, eq. 13). Pa
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coefficients {
-    /// K_t, against the motion of the tooth.
-    pub tangential: f64,
-    /// K_r, from the edge to the cutter's axis.
-    pub radial: f64,
-    /// K_a, on the tool along its axis from the work to the spindle.
-    pub axial: f64,
-}
-
 /// An end mill with straight sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cutter {
     teeth: Vec<Tooth>,
     helix: f64,
-    flute: f64,
+    flute_length: Option<f64>,
+    rotation: Rotation,
     coefficients: Coefficients,
 }
 
-/// Why numbers make no cutter.
+/// Why numbers do not describe a cutter.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum CutterError {
     /// No tooth.
@@ -61,21 +53,27 @@ pub enum CutterError {
         /// The length. m
         flute: f64,
     },
-    /// A coefficient that is no number, or a tangential one that is not above 0.
-    #[error("cutting coefficients must be finite and K_t above 0, but one is {coefficient} Pa")]
+    /// A coefficient that is not finite.
+    #[error("cutting coefficients must be finite numbers, but one is {coefficient}")]
     Coefficient {
-        /// The coefficient. Pa
+        /// The coefficient. Pa or N/m
         coefficient: f64,
     },
 }
 
 impl Cutter {
-    /// A cutter of teeth in the order in which they pass, with a helix angle (rad; above 0: higher parts of a tooth lag) and
-    /// flutes of a length (m).
+    /// A cutter of teeth in the order in which they pass, with a helix angle (rad; positive: higher parts of a tooth lag behind
+    /// its tip), flutes of a length (m), where known, a sense of rotation, and cutting coefficients.
     ///
     /// # Errors
-    /// [`CutterError`] for whatever makes no cutter.
-    pub fn new(teeth: Vec<Tooth>, helix: f64, flute: f64, coefficients: Coefficients) -> Result<Self, CutterError> {
+    /// [`CutterError`] for the first number that is out of range.
+    pub fn new(
+        teeth: Vec<Tooth>,
+        helix: f64,
+        flute_length: Option<f64>,
+        rotation: Rotation,
+        coefficients: Coefficients,
+    ) -> Result<Self, CutterError> {
         if teeth.is_empty() {
             return Err(CutterError::Toothless);
         }
@@ -94,17 +92,28 @@ impl Cutter {
         if !is_below_a_quarter {
             return Err(CutterError::Helix { helix });
         }
-        if !is_length(flute) {
+        if let Some(flute) = flute_length.filter(|flute| !is_length(*flute)) {
             return Err(CutterError::Flute { flute });
         }
-        let Coefficients { tangential, radial, axial } = coefficients;
-        if !is_length(tangential) {
-            return Err(CutterError::Coefficient { coefficient: tangential });
-        }
-        match [tangential, radial, axial].into_iter().find(|coefficient| !coefficient.is_finite()) {
+        match coefficients.parts().into_iter().find(|coefficient| !coefficient.is_finite()) {
             Some(coefficient) => Err(CutterError::Coefficient { coefficient }),
-            None => Ok(Self { teeth, helix, flute, coefficients }),
+            None => Ok(Self { teeth, helix, flute_length, rotation, coefficients }),
         }
+    }
+
+    /// A cutter of equal teeth at equal pitches: how many, and its radius (m); otherwise as [`Cutter::new`].
+    ///
+    /// # Errors
+    /// [`CutterError`] for the first number that is out of range.
+    pub fn even(
+        teeth: usize,
+        radius: f64,
+        helix: f64,
+        rotation: Rotation,
+        coefficients: Coefficients,
+    ) -> Result<Self, CutterError> {
+        let tooth = Tooth { pitch: TAU / teeth as f64, radius };
+        Self::new(vec![tooth; teeth], helix, None, rotation, coefficients)
     }
 
     /// The teeth, in the order in which they pass.
@@ -117,12 +126,17 @@ impl Cutter {
         self.helix
     }
 
-    /// Length of the flutes. m
-    pub fn flute(&self) -> f64 {
-        self.flute
+    /// Length of the flutes, where known. m
+    pub fn flute_length(&self) -> Option<f64> {
+        self.flute_length
     }
 
-    /// What the force is to the chip.
+    /// Sense of rotation.
+    pub fn rotation(&self) -> Rotation {
+        self.rotation
+    }
+
+    /// Force over chip thickness and depth of cut.
     pub fn coefficients(&self) -> Coefficients {
         self.coefficients
     }
@@ -130,6 +144,11 @@ impl Cutter {
     /// The mean radius of the teeth. m
     pub fn radius(&self) -> f64 {
         self.teeth.iter().map(|tooth| tooth.radius).sum::<f64>() / self.teeth.len() as f64
+    }
+
+    /// Twice the mean radius. m
+    pub fn diameter(&self) -> f64 {
+        2.0 * self.radius()
     }
 
     /// The largest radius of a tooth. m
