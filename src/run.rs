@@ -129,10 +129,7 @@ impl Run {
         if point > last {
             return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
         }
-        let postures = {
-            let Placement { x, y, z, yaw } = *placement;
-            feasibility::explain(self.problem(), &[x, y, z, yaw], point, beta)
-        };
+        let postures = feasibility::explain(self.problem(), placement, point, beta);
         let mut context = Context::new(&self.run, self.run.search);
         context.notes.extend(study::outside_cell(&self.run, placement));
         Ok(Explanations { placement: *placement, point, beta, postures, context })

@@ -3,6 +3,10 @@
 //! Whatever evaluates states or plans by a shortcut declares which kinds it evaluates; what it relaxes are the constraints in
 //! force less these.
 
+mod measured;
+
+pub use measured::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+
 use super::problem::Problem;
 use serde::Serialize;
 
@@ -28,6 +32,23 @@ pub enum ConstraintKind {
     CellPosition,
     /// The bounds of the cell on the yaw.
     CellYaw,
+}
+
+impl ConstraintKind {
+    /// A short code, as tables state it.
+    pub fn code(self) -> String {
+        match self {
+            Self::JointStep => "joint_step".to_owned(),
+            Self::JointTurn => "joint_turn".to_owned(),
+            Self::Reach => "reach".to_owned(),
+            Self::JointLimit(joint) => format!("joint_{joint}"),
+            Self::Conditioning => "conditioning".to_owned(),
+            Self::BetaRate => "beta_rate".to_owned(),
+            Self::MaxDeflection => "deflection".to_owned(),
+            Self::CellPosition => "cell_position".to_owned(),
+            Self::CellYaw => "cell_yaw".to_owned(),
+        }
+    }
 }
 
 impl Problem {

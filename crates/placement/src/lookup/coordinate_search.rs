@@ -4,9 +4,9 @@
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
 
 use super::{BetaGrid, LookupTable, Workspace};
+use crate::candidate::Objective;
+use crate::candidate::rank;
 use crate::problem::Placement;
-use crate::redundancy::Objective;
-use crate::search::rank;
 use crate::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;
@@ -28,12 +28,12 @@ impl LookupTable<'_> {
     /// objective by the table, and the number of placements evaluated; never worse than the start.
     pub fn coordinate_search(
         &self,
-        start: &[f64; 4],
+        start: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         grid: &BetaGrid,
         workspace: &mut Workspace,
-    ) -> ([f64; 4], Objective, usize) {
+    ) -> (Placement, Objective, usize) {
         let mut best = *start;
         let mut worth = self.objective(start, grid, scheme, workspace);
         let mut evaluations = 1;
@@ -41,15 +41,15 @@ impl LookupTable<'_> {
         while evaluations < MAX_EVALUATIONS && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
             for k in 0..3 {
                 let found = [1.0, -1.0].into_iter().any(|side| {
-                    let pose = self.moved(&best, k, side * steps[k]);
-                    if pose == best {
+                    let placement = self.moved(&best, k, side * steps[k]);
+                    if placement == best {
                         return false;
                     }
                     evaluations += 1;
-                    let there = self.objective(&pose, grid, scheme, workspace);
+                    let there = self.objective(&placement, grid, scheme, workspace);
                     let better = rank(sense, there, worth) == Ordering::Less;
                     if better {
-                        (best, worth) = (pose, there);
+                        (best, worth) = (placement, there);
                         // The next step goes the same way first.
                         steps[k] *= side;
                     }
@@ -61,10 +61,10 @@ impl LookupTable<'_> {
         (best, worth, evaluations)
     }
 
-    /// A pose moved along one direction, inside the cell.
-    fn moved(&self, pose: &[f64; 4], direction: usize, step: f64) -> [f64; 4] {
+    /// A placement moved along one direction, inside the cell.
+    fn moved(&self, placement: &Placement, direction: usize, step: f64) -> Placement {
         let root = self.problem.robot.geometry().root_in_base;
-        let [mut x, mut y, mut z, mut yaw] = *pose;
+        let Placement { mut x, mut y, mut z, mut yaw } = *placement;
         match direction {
             0 => {
                 let away = Vector2::new(x - root.x, y - root.y);
@@ -79,8 +79,7 @@ impl LookupTable<'_> {
         let inside = cell.clamp(&Placement { x, y, z, yaw });
         // The yaw follows the azimuth.
         let azimuth = |x: f64, y: f64| libm::atan2(y - root.y, x - root.x);
-        let turned = azimuth(inside.x, inside.y) - azimuth(pose[0], pose[1]);
-        let inside = cell.clamp(&Placement { yaw: inside.yaw + turned, ..inside });
-        [inside.x, inside.y, inside.z, inside.yaw]
+        let turned = azimuth(inside.x, inside.y) - azimuth(placement.x, placement.y);
+        cell.clamp(&Placement { yaw: inside.yaw + turned, ..inside })
     }
 }

@@ -5,7 +5,8 @@
 use super::interpolate::Scratch;
 use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
-use crate::redundancy::Objective;
+use crate::candidate::Objective;
+use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 
@@ -34,16 +35,16 @@ impl LookupTable<'_> {
         }
     }
 
-    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best plan on a grid of beta, with the
+    /// The mean score of the workpiece at a placement under the best plan on a grid of beta, with the
     /// posture scheme found exactly or given (one posture per segment), to the accuracy of the table.
     pub fn objective(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         grid: &BetaGrid,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
-        let placed = self.place(pose);
+        let placed = self.place(placement);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Path points as the lookup table sees them: about axis 1.
 
 use super::LookupTable;
-use crate::problem::{Problem, base_from_workpiece};
+use crate::problem::{Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
 
 /// A path point in the workpiece frame.
@@ -59,8 +59,8 @@ pub(super) struct PolarPoint {
 }
 
 impl LookupTable<'_> {
-    pub(super) fn place(&self, pose: &[f64; 4]) -> PlacedPath {
-        let base_from_workpiece = base_from_workpiece(pose);
+    pub(super) fn place(&self, placement: &Placement) -> PlacedPath {
+        let base_from_workpiece = placement.base_from_workpiece();
         let root = self.problem.robot.geometry().root_in_base;
         PlacedPath {
             rotation: self.root_from_base * base_from_workpiece.rotation,

@@ -153,7 +153,7 @@ fn refinement(refinement: &Refinement) -> Value {
         "rounds": refinement.rounds,
         "iterations": refinement.iterations,
         "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
-        "status": refinement.statuses.join("; "),
+        "status": names::statuses(&refinement.statuses),
     })
 }
 

@@ -64,11 +64,10 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
         for k in 0..CORNERS {
             let place = corner(&region, k);
             let p = placed(&problem, place);
-            let pose = [p.x, p.y, p.z, p.yaw];
             let chi = model.points[point].over(&Region { middle: place, half: [0.0; 3] }).unwrap().chi;
             let costs: Vec<f64> = (0..=40)
                 .map(|k| heading + half_cell * (f64::from(k) / 20.0 - 1.0) - chi)
-                .map(|beta| score(&problem, &pose, point, class, beta))
+                .map(|beta| score(&problem, &p, point, class, beta))
                 .collect();
             let (least, most) = costs.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(*c), b.max(*c)));
             // A zero between two of the headings is not met: what neighbours differ by.
@@ -121,9 +120,8 @@ fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     let planner = Planner::new(&problem);
     for yaw in [-2.6, 1.4] {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
-        let pose = [placement.x, placement.y, placement.z, placement.yaw];
         let relaxed = relaxed_value(&problem, &placement);
-        let plan = planner.objective(&pose, Sense::Min, None, &mut planner.workspace()).mean();
+        let plan = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean();
         match (relaxed, plan) {
             (Some(relaxed), Some(plan)) => assert!(relaxed <= plan && plan < 1.05 * relaxed, "{relaxed} {plan}"),
             (relaxed, plan) => assert!(plan.is_none(), "{relaxed:?} {plan:?}"),
