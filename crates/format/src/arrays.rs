@@ -90,7 +90,7 @@ impl<'a> Field<'a> {
         let DeValue::Array(array) = self.required(&allowed)? else {
             return Err(self.error("is not an array of tables", allowed));
         };
-        array.iter().enumerate().map(|(index, value)| self.element(index, value).table()).collect()
+        array.iter().enumerate().map(|(index, value)| self.row(index, value).table()).collect()
     }
 
     /// The elements of an array, as many as there are but at least one.
@@ -104,7 +104,7 @@ impl<'a> Field<'a> {
         if array.is_empty() {
             return Err(self.error("is empty", allowed));
         }
-        Ok(array.iter().enumerate().map(|(index, value)| self.element(index, value)).collect())
+        Ok(array.iter().enumerate().map(|(index, value)| self.row(index, value)).collect())
     }
 
     /// As many finite numbers as there are, at least one, that all pass a test.
@@ -121,15 +121,15 @@ impl<'a> Field<'a> {
             return Err(self.error("is not an array", allowed));
         };
         match <&[Spanned<DeValue<'a>>; N]>::try_from(&array[..]) {
-            Ok(values) => Ok(std::array::from_fn(|index| self.element(index, &values[index]))),
+            Ok(values) => Ok(std::array::from_fn(|index| self.row(index, &values[index]))),
             Err(_) => Err(self.error(format!("has {} elements and not {N}", array.len()), allowed)),
         }
     }
 
     /// The element of an array at an index from 0, named by its number from 1.
-    fn element(&self, index: usize, value: &'a Spanned<DeValue<'a>>) -> Field<'a> {
+    fn row(&self, index: usize, value: &'a Spanned<DeValue<'a>>) -> Field<'a> {
         let path = format!("{}[{}]", self.path, index + 1);
-        Field { source: self.source, path, table_line: self.line(), value: Some(value) }
+        Field { file: self.file, path, parent_line: self.line(), value: Some(value) }
     }
 }
 

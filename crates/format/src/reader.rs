@@ -6,9 +6,9 @@
 //!
 //! ```
 //! use stead_format::reader::Table;
-//! use stead_format::source::Source;
+//! use stead_format::toml_file::TomlFile;
 //! # fn main() -> Result<(), stead_format::input::InputError> {
-//! let source = Source::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall = 'lefft'".to_vec())?;
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall = 'lefft'".to_vec())?;
 //! let document = source.parse()?;
 //! let [x, wall, gap] = Table::root(&document).fields(["x_mm", "wall", "gap_mm"])?;
 //! assert_eq!(x.interval()?, [-300.0, 300.0]);
@@ -19,46 +19,38 @@
 //! # }
 //! ```
 
-use super::source::{Document, Source};
+use super::toml_file::{Document, TomlFile};
 use crate::input::InputError;
+use crate::place::Place;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::sync::OnceLock;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+static EMPTY: OnceLock<DeTable<'static>> = OnceLock::new();
 
 /// A table of a TOML file.
 #[derive(Debug, Clone)]
 pub struct Table<'a> {
-    source: &'a Source,
+    source: &'a TomlFile,
     entries: &'a DeTable<'a>,
     path: String,
     line: usize,
 }
 
-/// A key of a table, with its value if there is one.
-#[derive(Debug, Clone)]
-pub struct Field<'a> {
-    pub(super) source: &'a Source,
-    pub(super) path: String,
-    pub(super) table_line: usize,
-    pub(super) value: Option<&'a Spanned<DeValue<'a>>>,
-}
-
-/// A file that a field names, read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NamedFile {
-    /// The name as given in the field, with forward slashes.
-    pub name: String,
-    /// The name with the folder of the naming file before it.
-    pub file: PathBuf,
-    /// What is in it.
-    pub bytes: Vec<u8>,
-}
+/// A key of a table.
+pub type Field<'a> = Place<'a>;
+pub use crate::place::NamedFile;
 
 impl<'a> Table<'a> {
     /// The table of a whole document.
     pub fn root(document: &'a Document<'a>) -> Self {
-        Self { source: document.source, entries: document.tree.get_ref(), path: String::new(), line: 1 }
+        let root = document.root();
+        let empty = Table { source: root.file, entries: EMPTY.get_or_init(DeTable::new), path: String::new(), line: 1 };
+        match root.value.map(Spanned::get_ref) {
+            Some(DeValue::Table(entries)) => Table { entries, ..empty },
+            _ => empty,
+        }
     }
 
     /// Opens the table: its fields for all the keys it may have, in the order asked for.
@@ -83,7 +75,7 @@ impl<'a> Table<'a> {
 
     /// One field, without a check for unknown keys.
     pub fn field(&self, key: &str) -> Field<'a> {
-        Field { source: self.source, path: self.path_of(key), table_line: self.line, value: self.entries.get(key) }
+        Field { file: self.source, path: self.path_of(key), parent_line: self.line, value: self.entries.get(key) }
     }
 
     fn path_of(&self, key: &str) -> String {
@@ -92,30 +84,6 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// Whether the file has this key.
-    pub fn is_given(&self) -> bool {
-        self.value.is_some()
-    }
-
-    /// Line of the value, or of the table that lacks it, from 1.
-    pub fn line(&self) -> usize {
-        self.value.map_or(self.table_line, |value| self.source.line(value.span().start))
-    }
-
-    /// The value as written, on one line; nothing where there is none.
-    pub fn written(&self) -> String {
-        self.value.map(|value| self.source.quote(value.span())).unwrap_or_default()
-    }
-
-    /// An error at this field, with the value found.
-    pub fn error(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
-        let error = InputError::new(self.source.file(), problem).at_line(self.line()).in_field(&self.path);
-        match self.value {
-            Some(_) => error.found(self.written()).allowed(allowed),
-            None => error.allowed(allowed),
-        }
-    }
-
     /// Reads the value if there is one.
     ///
     /// # Errors
@@ -208,27 +176,10 @@ impl<'a> Field<'a> {
         let allowed = format!("a table [{}]", self.path);
         match self.required(&allowed)? {
             DeValue::Table(entries) => {
-                Ok(Table { source: self.source, entries, path: self.path.clone(), line: self.line() })
+                Ok(Table { source: self.file, entries, path: self.path.clone(), line: self.line() })
             }
             _ => Err(self.error("is not a table", allowed)),
         }
-    }
-
-    /// A file named by a path relative to the folder of this one, read.
-    ///
-    /// # Errors
-    /// [`InputError`] at this field when the key is missing, its value is no text, or the file cannot be read.
-    pub fn named_file(&self) -> Result<NamedFile, InputError> {
-        let name = self.string()?;
-        let file = match self.source.file().parent() {
-            Some(folder) => folder.join(name),
-            None => PathBuf::from(name),
-        };
-        let bytes = std::fs::read(&file).map_err(|e| {
-            let problem = format!("names a file that cannot be read, {}: {e}", file.display());
-            self.error(problem, "a readable file, its path relative to the folder of the file that names it")
-        })?;
-        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
     }
 
     pub(super) fn required(&self, allowed: &str) -> Result<&'a DeValue<'a>, InputError> {

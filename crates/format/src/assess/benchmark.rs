@@ -74,12 +74,12 @@ pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result
     let wrench = match setting.force_history {
         Some(force_history) => {
             if let Some(given) = [&force, &moment].into_iter().find(|field| field.is_given()) {
-                return Err(given.error("is given beside a table [milling]", "force_n and moment_nm, or [milling]"));
+                return Err(given.error("is given beside a table [tool]", "force_n and moment_nm, or [tool] and [cut]"));
             }
             turning_wrench(&force_history.mean, &tool_axis, &normal).ok_or_else(|| {
                 axis.error(
                     "does not stand on the plane of the circle",
-                    "with [milling]: the normal of the plane, or none",
+                    "with [tool] and [cut]: the normal of the plane, or none",
                 )
             })?
         }

@@ -6,13 +6,14 @@ mod tests;
 
 use benchmark::{Setting, benchmark_from, direction, yield_from};
 
-use super::milling::milling_from;
-use super::printed::printed_from;
+use super::published_tables::published_tables_from;
 use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
-use super::source::{Source, input_file};
-use super::tables::spindle_from;
+use super::spindle::SpindleTable;
+use super::toml_file::TomlFile;
+use crate::input::input_file;
 use crate::input::{InputError, InputFile};
+use crate::tool::Cutting;
 use std::path::Path;
 use stead_assessment::benchmark::Plane;
 use stead_assessment::comparison::Comparison;
@@ -40,22 +41,23 @@ pub struct AssessRun {
 }
 
 /// Reads an assessment file and the robot files that it names. Top-level keys: `robots` (paths relative to the folder of
-/// the file), `[benchmark]` and `[map]`; optionally `[zones]`, `[plane]`, `[spindle]`, `[milling]`, `[stiffness]`, `[load]`,
+/// the file), `[benchmark]` and `[map]`; optionally `[zones]`, `[plane]`, `[spindle]`, `[tool]`, `[cut]`, `[stiffness]`, `[load]`,
 /// `[selection]` and `[reference]`. The shipped files explain each field.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
 /// wrong kind or out of range, two robots of one name, a zone larger than the map, a load without a force in the plane.
 pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let [robots, benchmark, plane, spindle, milling, map, zones, stiffness, load, selection, reference] =
+    let [robots, benchmark, plane, spindle, tool, cut, map, zones, stiffness, load, selection, reference] =
         Table::root(&document).fields([
             "robots",
             "benchmark",
             "plane",
             "spindle",
-            "milling",
+            "tool",
+            "cut",
             "map",
             "zones",
             "stiffness",
@@ -64,8 +66,10 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
             "reference",
         ])?;
     let plane = plane.optional(|field| plane_from(&field.table()?))?.unwrap_or(Plane::XOZ);
-    let mounted = spindle.optional(|field| spindle_from(&field.table()?))?;
-    let cut = milling.optional(|field| milling_from(&field.table()?))?;
+    let mounted = spindle.optional(|field| field.read::<SpindleTable>()?.spindle(field))?;
+    let (tool_table, cut_table) = (tool.read()?, cut.read()?);
+    let cutting = Cutting::of(&tool_table, &cut_table, &document.root())?;
+    let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
     let force_history = cut.map(|cut| cut.force_history());
     let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
     let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
@@ -74,7 +78,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         flange_from_tool,
         yields,
         force_history: force_history.as_ref(),
-        milling: &milling,
+        milling: &tool,
         spindle: &spindle,
     };
     let (benchmark, elbow_names) = benchmark_from(&benchmark.table()?, &setting)?;
@@ -91,7 +95,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         let [tables] = field.table()?.fields(["tables"])?;
         let named = tables.named_file()?;
         inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
-        printed_from(&Source::new(&named.file, named.bytes)?)
+        published_tables_from(&TomlFile::new(&named.file, named.bytes)?)
     })?;
     let asked = !selection.forces.is_empty();
     let notes = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten()).collect();
@@ -114,7 +118,7 @@ fn robots_from(
     for entry in field.list("the paths of one or more robot files, relative to the folder of this file")? {
         let NamedFile { name, file, bytes } = entry.named_file()?;
         inputs.push(input_file("robot", name, &bytes));
-        let robot = robot_from(&Source::new(&file, bytes)?)?;
+        let robot = robot_from(&TomlFile::new(&file, bytes)?)?;
         if robots.iter().any(|other| other.name() == robot.name()) {
             let problem = format!("names a second robot called '{}'", robot.name());
             return Err(entry.error(problem, "robot files with different names in them"));

@@ -8,7 +8,8 @@ mod tests;
 use super::reader::{Field, Table};
 use super::robot::robot_from;
 use super::run::read_run;
-use super::source::{Source, input_file};
+use super::toml_file::TomlFile;
+use crate::input::input_file;
 use crate::input::{InputError, InputFile};
 use rows::rows_from;
 use stations::placed;
@@ -44,7 +45,7 @@ pub struct CompensateRun {
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key or column, a value
 /// of the wrong kind or out of range, a plan that does not fit the run, a reality of another geometry than the run's robot.
 pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<CompensateRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
     let [run, plan, reality_field, settings] =
         Table::root(&document).fields(["run", "plan", "reality", "compensation"])?;
@@ -65,10 +66,10 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));
 
     let real = match reality {
-        Some(path) => Some((path.to_string_lossy().replace('\\', "/"), Source::read(path)?)),
+        Some(path) => Some((path.to_string_lossy().replace('\\', "/"), TomlFile::read(path)?)),
         None => reality_field.optional(|field| {
             let named = field.named_file()?;
-            Ok((named.name, Source::new(&named.file, named.bytes)?))
+            Ok((named.name, TomlFile::new(&named.file, named.bytes)?))
         })?,
     };
     let has_reality = real.is_some();
@@ -106,7 +107,7 @@ fn settings_from(table: &Table<'_>) -> Result<Settings, InputError> {
 }
 
 /// The robot that stands for reality, which must have the geometry of the run's.
-fn reality_from(source: &Source, robot: &Robot) -> Result<Robot, InputError> {
+fn reality_from(source: &TomlFile, robot: &Robot) -> Result<Robot, InputError> {
     let reality = robot_from(source)?;
     let Some(other) = other_geometry(robot, &reality) else { return Ok(reality) };
     let key = match other.field {

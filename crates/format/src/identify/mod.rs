@@ -9,7 +9,8 @@ pub use plan::{PlanRun, read_plan};
 use super::reader::{Field, Table};
 use super::robot::robot_from;
 use super::sheet::sheet_from;
-use super::source::{Document, Source, input_file};
+use super::toml_file::{Document, TomlFile};
+use crate::input::input_file;
 use crate::input::{InputError, InputFile};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -46,7 +47,7 @@ pub struct IdentifyRun {
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
 /// wrong kind or out of range, or a sheet that is not in order.
 pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
     let Shared {
         robot, robot_input, robot_text, sheet, load_point, noise, noise_deg, fit, varying, note, start, ..
@@ -109,7 +110,7 @@ impl<'a> Shared<'a> {
                 "plan",
             ])?;
         let robot_file = robot.named_file()?;
-        let robot_source = Source::new(&robot_file.file, robot_file.bytes)?;
+        let robot_source = TomlFile::new(&robot_file.file, robot_file.bytes)?;
         let robot = robot_from(&robot_source)?;
         let fit = fit.optional(|field| fit_from(&field.table()?))?.unwrap_or(PLAIN);
         let given = compensator.optional(|field| compensator_from(&field.table()?, &robot))?;
@@ -117,7 +118,7 @@ impl<'a> Shared<'a> {
         Ok(Self {
             robot,
             robot_input: input_file("robot", &robot_file.name, robot_source.bytes()),
-            robot_text: String::from_utf8_lossy(robot_source.bytes()).into_owned(),
+            robot_text: robot_source.without_schema().to_owned(),
             sheet,
             load_point: load_point.vector3()? / 1e3,
             noise,

@@ -3,7 +3,7 @@
 use super::Shared;
 use crate::input::{InputError, InputFile};
 use crate::reader::{Field, Table};
-use crate::source::Source;
+use crate::toml_file::TomlFile;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ const LEVELS: usize = 5;
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
 /// wrong kind or out of range.
 pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
     let shared = Shared::new(&document)?;
     let table = shared.plan.table()?;

@@ -2,9 +2,14 @@
 
 use super::super::reader::{Field, Table};
 use super::super::robot::moving_robot_from;
-use super::super::source::{Source, input_file};
-use super::super::tables::moving_spindle_from;
+use super::super::spindle::SpindleTable;
+use super::super::toml_file::TomlFile;
+use crate::input::input_file;
 use crate::input::{InputError, InputFile};
+use crate::scalars::{Word, Words};
+use crate::units::Number;
+use crate::units::ranges;
+use std::ops::Bound::Included;
 use stead_model::robot::{Robot, Spindle};
 use stead_simulation::arm::Variant;
 use stead_simulation::motion::{Motion, MotionError, Pass, Ramp};
@@ -43,29 +48,28 @@ pub(super) fn setup_from(
     overrides: &Overrides,
     inputs: &mut Vec<InputFile>,
 ) -> Result<Setup, InputError> {
-    let (variant, damping_scale) = (variant_from(&fields.variant)?, damping_scale_from(&fields.damping_scale)?);
-    let variant = overrides.variant.unwrap_or(variant);
-    let damping_scale = overrides.damping_scale.unwrap_or(damping_scale);
-    let spindle = moving_spindle_from(&fields.spindle.table()?)?;
+    let variant: Option<Word<Variant>> = fields.variant.read()?;
+    let damping_scale: Option<Number<DampingScale>> = fields.damping_scale.read()?;
+    let variant = overrides.variant.or(variant.map(|word| word.0)).unwrap_or(Variant::Springs);
+    let damping_scale = overrides.damping_scale.or(damping_scale.map(|scale| scale.si())).unwrap_or(1.0);
+    let spindle = fields.spindle.read::<SpindleTable>()?.moving_spindle(&fields.spindle)?;
     let named = fields.robot.named_file()?;
-    let source = Source::new(&named.file, named.bytes)?;
+    let source = TomlFile::new(&named.file, named.bytes)?;
     let robot = moving_robot_from(&source, variant >= Variant::Orthogonal)?;
     inputs.push(input_file("robot", named.name, source.bytes()));
     let motion = motion_from(&fields.pass.table()?, &robot, &spindle)?;
     Ok(Setup { robot, spindle, variant, damping_scale, motion })
 }
 
-/// How much of the arm is modelled; the least where the file does not say.
-pub(crate) fn variant_from(field: &Field<'_>) -> Result<Variant, InputError> {
-    let words = Variant::ALL.map(|variant| (variant.word(), variant));
-    Ok(field.optional(|field| field.one_of(&words))?.unwrap_or(Variant::Springs))
+ranges! {
+    /// A factor on all damping.
+    DampingScale: Included(0.0), Included(MOST_DAMPING_SCALE);
 }
 
-/// What all damping is multiplied with; 1 where the file does not say.
-pub(crate) fn damping_scale_from(field: &Field<'_>) -> Result<f64, InputError> {
-    let allowed = format!("a number from 0 to {MOST_DAMPING_SCALE}");
-    let scale = |field: &Field<'_>| field.number_where(&allowed, |value| (0.0..=MOST_DAMPING_SCALE).contains(&value));
-    Ok(field.optional(scale)?.unwrap_or(1.0))
+impl Words for Variant {
+    fn words() -> Vec<(&'static str, Self)> {
+        Variant::ALL.map(|variant| (variant.word(), variant)).to_vec()
+    }
 }
 
 /// The key of the feed.

@@ -2,23 +2,21 @@
 
 mod arm;
 mod look;
-mod milling;
 mod stability;
 #[cfg(test)]
 mod tests;
 
 pub use arm::{MOST_DAMPING_SCALE, Overrides};
-pub use milling::FASTEST_RPM;
 
 use super::reader::{Field, Table};
-use super::source::Source;
+use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile};
+use crate::tool::Cutting;
+pub(crate) use arm::DampingScale;
 use arm::{ArmFields, FEED, setup_from};
-pub(super) use arm::{damping_scale_from, variant_from};
 use look::{LookFields, check_duration, check_step, look_from};
-pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use stability::analysis_from;
-pub(super) use stability::max_depth_from;
+pub(crate) use stability::max_depth;
 use std::path::Path;
 use stead_model::cutting::Cutter;
 use stead_simulation::milling::PassCut;
@@ -50,7 +48,7 @@ const SLICES: u64 = 32;
 const STEPS_PER_TURN: u64 = 360;
 
 /// Reads a simulation file and the robot file that it names. Top-level keys: `robot` (its path relative to the folder of the
-/// file), `[spindle]`, with mass, `[pass]`, `[work]` and `[milling]`; optionally `variant`, `damping_scale`, `[simulation]`,
+/// file), `[spindle]`, with mass, `[pass]`, `[work]`, `[tool]` and `[cut]`; optionally `variant`, `damping_scale`, `[simulation]`,
 /// `[stability]` and `[published]`. The shipped files explain each field.
 ///
 /// # Errors
@@ -70,9 +68,9 @@ pub fn read_stability(file: &Path, overrides: &Overrides) -> Result<SimulationRu
 }
 
 fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<SimulationRun, InputError> {
-    let source = Source::read(file)?;
+    let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let [robot, variant, damping_scale, spindle, pass, work, milling, simulation, stability, published] =
+    let [robot, variant, damping_scale, spindle, pass, work, tool, cut, simulation, stability, published] =
         Table::root(&document).fields([
             "robot",
             "variant",
@@ -80,7 +78,8 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
             "spindle",
             "pass",
             "work",
-            "milling",
+            "tool",
+            "cut",
             "simulation",
             "stability",
             "published",
@@ -100,9 +99,14 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
         Ok::<_, InputError>(found.unwrap_or(default) as usize)
     };
     let (slices, steps) = (whole(0, 1024, SLICES)?, whole(1, 100_000, STEPS_PER_TURN)?);
-    let table = milling.table()?;
-    table.fields(MILLING_KEYS)?;
-    let (cutter, mut cut) = milling_from(&table, length, slices, steps)?;
+    let (tool, cut) = (Some(tool.read()?), Some(cut.read()?));
+    let root = document.root();
+    let cutting = Cutting::of(&tool, &cut, &root)?;
+    let cutting = Cutting::required(cutting.as_ref(), &root)?;
+    if steps_are_made {
+        cutting.without_edge_forces()?;
+    }
+    let (cutter, mut cut) = cutting.cutter_and_cut(length, slices, steps)?;
     slot.optional(|field| fits(field, &cutter))?;
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;

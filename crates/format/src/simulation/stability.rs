@@ -1,8 +1,11 @@
 //! The `[stability]` table of a simulation file.
 
 use super::super::reader::Field;
-use super::FASTEST_RPM;
 use crate::input::InputError;
+use crate::place::Place;
+use crate::quantity::Quantity;
+use crate::tool::FASTEST_RPM;
+use crate::units::{Mm, Positive};
 use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_simulation::milling::PassCut;
@@ -43,7 +46,7 @@ pub(super) fn analysis_from(
     if let Some(count) = points.optional(|field| field.integer(2..=10_000))? {
         settings.points = count as usize;
     }
-    settings.max_depth = max_depth_from(&max_depth, cutter)?;
+    settings.max_depth = self::max_depth(max_depth.read()?, cutter, field)?;
     if let Some(ends) = frequencies.optional(|field| from_to(field, 0.0, 1e5))? {
         settings.frequencies = ends;
     }
@@ -51,10 +54,16 @@ pub(super) fn analysis_from(
 }
 
 /// The largest depth (m) that is examined; the length of the flutes where the file does not say.
-pub(crate) fn max_depth_from(field: &Field<'_>, cutter: &Cutter) -> Result<f64, InputError> {
+///
+/// # Errors
+/// [`InputError`] at `max_depth_mm` of the table that is here where it is more than that.
+pub(crate) fn max_depth(depth: Option<Mm<Positive>>, cutter: &Cutter, at: &Place<'_>) -> Result<f64, InputError> {
     let flute = cutter.flute_length().unwrap_or(cutter.diameter());
     let flute_mm = flute * 1e3;
-    let within = format!("a number above 0 and not above flute_length_mm = {flute_mm}");
-    let depth = field.optional(|field| field.number_where(&within, |value| value > 0.0 && value <= flute_mm))?;
-    Ok(depth.map_or(flute, |mm| mm / 1e3))
+    match depth {
+        Some(depth) if depth.written() > flute_mm => Err(at
+            .key("max_depth_mm")
+            .out_of_range(format!("a number above 0 and not above flute_length_mm = {flute_mm}"))),
+        depth => Ok(depth.map_or(flute, Quantity::si)),
+    }
 }

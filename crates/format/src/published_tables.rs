@@ -1,7 +1,7 @@
 //! Published tables of an assessment, to set beside ours.
 
 use super::reader::{Field, Table};
-use super::source::Source;
+use super::toml_file::TomlFile;
 use crate::input::InputError;
 use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
@@ -11,7 +11,7 @@ use stead_assessment::published::{PublishedTables, Quantity, Reading};
 /// `name`, `accuracy_mm` (by force), `largest_force_n` (by accuracy: the largest of the forces at which the robot is
 /// listed) and the tables `[robots.up]` and `[robots.down]` with `test_mm` and `rated_mm` (smallest, largest, middle),
 /// `optimal_mm` and `middle_mm` (by side). Rows by force or side may be shorter than their head: the rest are dashes.
-pub(super) fn printed_from(source: &Source) -> Result<PublishedTables, InputError> {
+pub(super) fn published_tables_from(source: &TomlFile) -> Result<PublishedTables, InputError> {
     let document = source.parse()?;
     let [origin, sides, forces, accuracies, robots] =
         Table::root(&document).fields(["source", "sides_mm", "forces_n", "accuracies_mm", "robots"])?;
