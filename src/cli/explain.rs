@@ -1,10 +1,10 @@
 //! `stead explain`: one placement, one path point, one beta, eight postures.
 
 use super::arguments::ExplainOptions;
-use super::score::mention_cell;
-use super::{Failure, print, say};
+use super::{Failure, print, say, warn};
 use stead_format::read_run;
 use stead_placement::feasibility::explain;
+use stead_placement::place::outside_cell;
 use stead_report::document;
 use stead_report::placement::{Context, evaluation};
 
@@ -20,7 +20,7 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     }
     let placement = options.place.placement();
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    mention_cell(&run.problem, &placement);
+    warn(outside_cell(&run.problem, &placement).as_slice());
     let beta = options.beta_deg.to_radians();
     let postures = explain(&run.problem, &placement, options.point, beta);
     let context = Context::new(&run, run.search);

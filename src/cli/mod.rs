@@ -29,6 +29,7 @@ use std::process::ExitCode;
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
+use stead_numerics::message::Warning;
 use stead_placement::place::Infeasible;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
@@ -102,6 +103,11 @@ fn print(text: &[u8]) {
 /// Writes a line to standard error.
 fn say(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Tells warnings on standard error.
+fn warn(warnings: &[Warning]) {
+    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
 }
 
 /// Runs a job on so many threads, or on as many as there are processors.

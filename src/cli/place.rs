@@ -3,8 +3,8 @@
 use super::arguments::PlaceOptions;
 use super::certify::{certified, warn_unsupported};
 use super::progress::Terminal;
-use super::score::{mention_cancellation, path_stability};
-use super::{Failure, files_written, on_threads, out_folder, print, say};
+use super::score::path_stability;
+use super::{Failure, files_written, on_threads, out_folder, print, say, warn};
 use serde_json::Value;
 use std::time::Instant;
 use stead_format::read_run_to_certify;
@@ -61,10 +61,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             },
         ),
     };
-    mention_cancellation(&run.problem, outcome.cases.best.plan.mean);
-    if outcome.interrupted {
-        say("interrupted: the results are the best found so far, not the end of the search");
-    }
+    warn(&outcome.warnings);
     if let Some(settings) = run.certificate {
         let certificate = certified(&run, settings, &outcome.cases, options.threads, &terminal)?;
         shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate, &run.inputs)));

@@ -1,11 +1,11 @@
 //! `stead score`: one given placement.
 
 use super::arguments::ScoreOptions;
-use super::{Failure, on_threads, print, say};
+use super::{Failure, on_threads, print, say, warn};
 use stead_format::read_run;
-use stead_placement::outcome::{CANCELLATION, Plan, PlanPoint};
-use stead_placement::place::score;
-use stead_placement::problem::{Criterion, Placement, Problem};
+use stead_placement::outcome::{Plan, PlanPoint};
+use stead_placement::place::{outside_cell, score};
+use stead_placement::problem::{Placement, Problem};
 use stead_report::document;
 use stead_report::placement::{Context, evaluation};
 use stead_report::stability::PathStability;
@@ -15,8 +15,11 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = read_run(&options.config)?;
     let placement = options.place.placement();
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    mention_cell(&run.problem, &placement);
     let scored = score(&run.problem, &placement);
+    match &scored {
+        Ok(score) => warn(&score.warnings),
+        Err(_) => warn(outside_cell(&run.problem, &placement).as_slice()),
+    }
     let stability = match (&run.path_stability, &scored) {
         (Some(analysis), Ok(score)) => {
             let plans = [(&score.placement, &score.best), (&score.placement, &score.worst)];
@@ -33,7 +36,6 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         };
         print(&document::bytes(&document));
     } else if let Ok(score) = &scored {
-        mention_cancellation(&run.problem, score.best.mean);
         print(evaluation::score_text(score, &context).as_bytes());
     }
     scored?;
@@ -55,21 +57,4 @@ pub(super) fn path_stability(
     };
     let [best, worst] = plans;
     Ok(PathStability { analysis: analysis.clone(), plans: [along(best)?, along(worst)?] })
-}
-
-/// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
-pub(super) fn mention_cancellation(problem: &Problem, mean: f64) {
-    if mean <= CANCELLATION && problem.criterion == Criterion::default() {
-        say(
-            "note: the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
-             makes the score the worst case over force errors",
-        );
-    }
-}
-
-/// A placement outside the cell is evaluated all the same, but not silently.
-pub(super) fn mention_cell(problem: &Problem, placement: &Placement) {
-    if !problem.cell.contains(placement) {
-        say("note: this placement is outside the cell of the run file");
-    }
 }

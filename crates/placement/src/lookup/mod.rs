@@ -31,6 +31,8 @@ pub use shape::{Axis, Shape};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+use crate::constraints::ConstraintKind;
+use crate::evaluate::batch::BatchEvaluator;
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
@@ -79,6 +81,13 @@ impl BetaGrid {
 }
 
 impl<'a> LookupTable<'a> {
+    /// The kinds of constraint that an objective by the table evaluates: all but the steps and turns of the joints.
+    pub fn evaluated() -> Vec<ConstraintKind> {
+        let mut kinds = BatchEvaluator::evaluated();
+        kinds.extend([ConstraintKind::BetaRate, ConstraintKind::CellPosition, ConstraintKind::CellYaw]);
+        kinds
+    }
+
     /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
     ///
     /// # Errors

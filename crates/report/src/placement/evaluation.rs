@@ -36,7 +36,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
     if let Some(stability) = &context.stability {
         entries["stability"] = stability.document(true);
     }
-    context.document().with(entries)
+    context.document().warnings(&score.warnings).with(entries)
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.

@@ -22,7 +22,7 @@ pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Valu
     entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
     entries.insert("states_per_second".to_owned(), rate);
-    context.document().with(Value::Object(entries))
+    context.document().warnings(&outcome.warnings).with(Value::Object(entries))
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
@@ -41,7 +41,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("cases", cases(outcome, false)),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
-    context.document().with(Value::Object(entries))
+    context.document().warnings(&outcome.warnings).with(Value::Object(entries))
 }
 
 fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {

@@ -20,6 +20,7 @@ mod wrist;
 
 pub use states::StateGrid;
 
+use crate::constraints::ConstraintKind;
 use crate::problem::{Placement, Problem, Redundancy};
 use laws::Laws;
 use limit::Limit;
@@ -126,6 +127,16 @@ impl<'a> BatchEvaluator<'a> {
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
             instructions: Instructions::best(),
         }
+    }
+
+    /// The kinds of constraint that it evaluates. Joint limits are seen joint by joint, in either flip of the wrist.
+    pub fn evaluated() -> Vec<ConstraintKind> {
+        let limits = (1..=6).map(ConstraintKind::JointLimit);
+        [ConstraintKind::Reach]
+            .into_iter()
+            .chain(limits)
+            .chain([ConstraintKind::Conditioning, ConstraintKind::MaxDeflection])
+            .collect()
     }
 
     /// Which of the two postures of a class are evaluated.
