@@ -163,7 +163,7 @@ fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(
-        ended.stdout.contains("none of them through a table: a moment acts on the tool at point 4"),
+        ended.stdout.contains("none of them from a lookup table: a moment acts on the tool at point 4"),
         "{}",
         ended.stdout
     );
@@ -381,7 +381,7 @@ mod interrupt {
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let said = "warning: interrupted: the results are the best found so far, not the end of the search\n";
+        let said = "interrupted: the results are the best found so far, not the end of the search\n";
         assert_eq!(ended.stderr, said);
         assert_eq!(names(&bench, "out"), FILES);
         let document = ended.json();

@@ -90,7 +90,7 @@ fn score_out_of_reach_says_which_constraint_fails_where() {
     assert_eq!((&finding["segment"], &finding["first_point"]), (&1.into(), &0.into()));
     assert!(number(&finding["last_point"]) >= 20.0);
     let parts =
-        ["warning: this placement is outside the cell", "error: nothing is feasible at x = 0.0 mm, y = -4000.0 mm"];
+        ["note: this placement is outside the cell", "error: nothing is feasible at x = 0.0 mm, y = -4000.0 mm"];
     ended.assert_says(&parts);
     ended.assert_says(&["segment 1, points 0 to 20: no allowed state", " mm beyond the stretched arm"]);
 

@@ -5,10 +5,10 @@ use crate::input::table::{Row, Table};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
-use stead_calibration::identification::rotation::{rotation_from_vector, vector_from_rotation};
 use stead_calibration::identification::{Configuration, Reading, Sheet};
 use stead_model::robot::Robot;
 use stead_model::robot::angles::ANGLE_ROUNDING;
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 const THETA: [&str; 6] = ["theta1_deg", "theta2_deg", "theta3_deg", "theta4_deg", "theta5_deg", "theta6_deg"];
 const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
@@ -123,44 +123,6 @@ pub(super) fn sheet_from(file: &Path, bytes: &[u8], robot: &Robot) -> Result<She
     Ok(sheet)
 }
 
-/// Readings that are there more than once, whose errors therefore hang together, in sentences.
-pub(super) fn repeated(sheet: &Sheet) -> Vec<String> {
-    let mut unloaded: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
-    let mut turns = 0;
-    for configuration in &sheet.configurations {
-        let own = &sheet.readings[configuration.readings.clone()];
-        turns += (1..own.len()).filter(|k| own[*k].turn.is_some_and(|turn| own[k - 1].turn == Some(turn))).count();
-        for reading in own {
-            let bits: [u64; 3] = std::array::from_fn(|axis| reading.unloaded[axis].to_bits());
-            unloaded.entry(bits).or_default().push(reading.line);
-        }
-    }
-    let mut notes = Vec::new();
-    let shared = || unloaded.values().filter(|lines| lines.len() > 1);
-    // Where several are as long as the longest, the one that comes first.
-    if let Some(lines) = shared().min_by_key(|lines| (std::cmp::Reverse(lines.len()), lines[0])) {
-        // Differences to one common reading: a variance of one and a covariance of a half, at worst all alike.
-        let factor = libm::sqrt((1.0 + lines.len() as f64) / 2.0);
-        let listed: Vec<String> = lines.iter().map(usize::to_string).collect();
-        let more = match shared().count() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more such groups)"),
-        };
-        notes.push(format!(
-            "lines {}{more} have one unloaded reading in common: standard deviations and intervals take all readings for \
-             independent and may be {factor:.2} times too small; read anew without load before every load",
-            listed.join(", ")
-        ));
-    }
-    if turns > 0 {
-        notes.push(format!(
-            "{turns} rows repeat the orientation of another point of their configuration: it counts every time, which makes \
-             standard deviations too small; give orientations with one point alone"
-        ));
-    }
-    notes
-}
-
 fn name(row: &Row<'_>, column: usize) -> Result<String, InputError> {
     match row.text(column) {
         "" => Err(row.fail(column, "is blank", "a name")),
@@ -207,7 +169,7 @@ fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize)
         None => None,
         Some([before, after]) => {
             let rotation = |columns| vector(row, columns).map(|v| rotation_from_vector(&v.map(f64::to_radians)));
-            Some(vector_from_rotation(&(rotation(after)? * rotation(before)?.transpose())))
+            Some(rotation_vector(&(rotation(after)? * rotation(before)?.transpose())))
         }
     };
     Ok(Reading { line: row.line(), configuration, point, unloaded, loaded, turn })

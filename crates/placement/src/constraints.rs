@@ -107,7 +107,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::batch::BatchEvaluator;
+    use crate::evaluate::batch::{BatchEvaluator, Flips};
     use crate::lookup::LookupTable;
     use crate::testing::five_segments;
 
@@ -132,9 +132,9 @@ mod tests {
     fn shortcuts_declare_what_they_relax() {
         let mut problem = five_segments();
         problem.constraints.max_deflection = Some(1e-3);
-        let batch = relaxed(&problem, &BatchEvaluator::evaluated());
         use ConstraintKind::*;
-        assert_eq!(batch, [JointStep, JointTurn, BetaRate, CellPosition]);
-        assert_eq!(relaxed(&problem, &LookupTable::evaluated()), [JointStep, JointTurn]);
+        let batch = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
+        assert_eq!(batch.relaxed(), [JointStep, JointTurn, BetaRate, CellPosition]);
+        assert_eq!(LookupTable::new(&problem).unwrap().relaxed(), [JointStep, JointTurn]);
     }
 }

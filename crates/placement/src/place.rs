@@ -163,18 +163,12 @@ fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
     (mean <= CANCELLATION && problem.criterion == Criterion::default()).then(|| {
         let message = "the best plan cancels the deflection to nothing, which no real force will; \
                        criterion.force_uncertainty makes the score the worst case over force errors";
-        Warning::new("cancelled-deflection", message)
+        Warning::new("cancellation", message)
     })
 }
 
 fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
-}
-
-/// Warns of a placement outside the cell, which is evaluated all the same.
-pub fn outside_cell(problem: &Problem, placement: &Placement) -> Option<Warning> {
-    let is_outside = !problem.cell.contains(placement);
-    is_outside.then(|| Warning::new("outside-cell", "this placement is outside the cell of the run file"))
 }
 
 /// Plans one given placement, best and worst.
@@ -190,7 +184,7 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
     else {
         return Err(nothing(&planner, placement, None, false));
     };
-    let warnings = outside_cell(problem, placement).into_iter().chain(cancellation(problem, best.mean())).collect();
+    let warnings = cancellation(problem, best.mean()).into_iter().collect();
     Ok(Score {
         placement: *placement,
         best: detailed(problem, placement, &best.plans),

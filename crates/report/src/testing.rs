@@ -73,6 +73,7 @@ pub fn context() -> Context {
     let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
     Context {
         notes: Vec::new(),
+        warnings: Vec::new(),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),

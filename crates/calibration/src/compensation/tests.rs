@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stead_model::robot::Frames;
 use stead_model::robot::testing::{kr270, odd_arms, spindle};
 use stead_model::stiffness::equilibrium::{Load, displaced, equilibrium};
-use stead_model::stiffness::rotation::rotation_vector;
+use stead_numerics::rotation::rotation_vector;
 
 /// The station at which an arm stands with joint angles `theta`, under a wrench.
 fn path_point(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> PathPoint {
@@ -240,8 +240,8 @@ fn failures_are_told_in_runs_of_points() {
     let message = compensate(&job(&robot, &robot, points)).unwrap_err().to_string();
     let lines: Vec<&str> = message.lines().collect();
     assert_eq!(lines[0], "4 of 6 points cannot be compensated:");
-    assert!(lines[1].starts_with("  point 0: the arm gives way"), "{message}");
-    assert!(lines[2].starts_with("  points 2 to 4: at point 2, the arm gives way"), "{message}");
+    assert!(lines[1].starts_with("  point 0: the arm has no stable equilibrium"), "{message}");
+    assert!(lines[2].starts_with("  points 2 to 4: at point 2, the arm has no stable equilibrium"), "{message}");
     assert_eq!(lines.len(), 3);
 }
 

@@ -3,10 +3,10 @@
 use super::active_cells::ActiveCells;
 use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
 use super::cell::whole;
-use super::certifiable;
 use super::coarse_bounds::CoarseBounds;
 use super::model::Model;
 use super::region::Region;
+use super::requirements::certifiable;
 use crate::problem::Problem;
 use crate::sense::Sense;
 use crate::symmetry::Unsupported;

@@ -2,7 +2,9 @@
 
 use super::branch_and_bound::{Bound, Status};
 use super::region::Region;
-use super::{best, certifiable, relaxed_value, worst};
+use super::relaxed::relaxed_value;
+use super::requirements::certifiable;
+use super::{best::best, worst::worst};
 use crate::constraints::{ConstraintKind, describe, relaxed};
 use crate::outcome::CANCELLATION;
 use crate::problem::{Placement, Problem};

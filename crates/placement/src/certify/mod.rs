@@ -35,6 +35,7 @@ mod model;
 mod number;
 mod region;
 mod relaxed;
+mod requirements;
 mod sliding_min;
 mod upper_bound;
 mod worst;
@@ -49,32 +50,5 @@ pub use certificate::{
 };
 pub use region::Region;
 pub use relaxed::relaxed_value;
+pub use requirements::certifiable;
 pub use worst::worst;
-
-use super::problem::Problem;
-use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
-use coarse_bounds::CoarseBounds;
-use compliance_table::ComplianceTable;
-
-/// What tables may take, empty. bytes
-const MAX_BYTES: u64 = 400_000_000;
-
-/// Whether a problem can be certified, found without work.
-///
-/// # Errors
-/// The first reason why not.
-pub fn certifiable(problem: &Problem) -> Result<(), Unsupported> {
-    Upright::of(problem)?;
-    require_constant(problem, &[0, 1, 2, 3, 4, 5])?;
-    if problem.criterion.force_uncertainty != 0.0 {
-        return Err(Unsupported::UncertainForce);
-    }
-    require_certain_compliances(problem)?;
-    let extent = cell::extent(problem);
-    if let Some(needed) = arm::needed_condition(problem, extent.radius.0) {
-        return Err(Unsupported::Conditioning { needed });
-    }
-    let coarse = CoarseBounds::bytes(extent, model::STEPS, &cell::points_of(problem));
-    let bytes = ComplianceTable::bytes(extent, model::STEPS, model::LEVELS).saturating_add(coarse);
-    if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(()) }
-}

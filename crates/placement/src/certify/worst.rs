@@ -4,10 +4,10 @@
 
 use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
 use super::cell::whole;
-use super::certifiable;
 use super::compliance_table::{ComplianceTable, Steps};
 use super::model::Model;
 use super::region::Region;
+use super::requirements::certifiable;
 use super::upper_bound::{BoxBounds, Inherited};
 use crate::problem::Problem;
 use crate::sense::Sense;

@@ -28,11 +28,10 @@ pub use accuracy::Accuracy;
 pub use objective::Workspace;
 pub use shape::{Axis, Shape};
 
+use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
-use crate::constraints::ConstraintKind;
-use crate::evaluate::batch::BatchEvaluator;
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
@@ -81,13 +80,6 @@ impl BetaGrid {
 }
 
 impl<'a> LookupTable<'a> {
-    /// The kinds of constraint that an objective by the table evaluates: all but the steps and turns of the joints.
-    pub fn evaluated() -> Vec<ConstraintKind> {
-        let mut kinds = BatchEvaluator::evaluated();
-        kinds.extend([ConstraintKind::BetaRate, ConstraintKind::CellPosition, ConstraintKind::CellYaw]);
-        kinds
-    }
-
     /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
     ///
     /// # Errors
@@ -129,6 +121,14 @@ impl<'a> LookupTable<'a> {
     /// What is sampled where.
     pub fn shape(&self) -> &Shape {
         &self.shape
+    }
+
+    /// The constraints that an objective by the table leaves out: only the planner evaluates them.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
     }
 
     /// The problem it is for.

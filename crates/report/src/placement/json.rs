@@ -22,7 +22,7 @@ pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Valu
     entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
     entries.insert("states_per_second".to_owned(), rate);
-    context.document().warnings(&outcome.warnings).with(Value::Object(entries))
+    context.document().with(Value::Object(entries))
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
@@ -41,7 +41,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("cases", cases(outcome, false)),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
-    context.document().warnings(&outcome.warnings).with(Value::Object(entries))
+    context.document().with(Value::Object(entries))
 }
 
 fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String, Value> {
@@ -58,14 +58,19 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
-    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), found.document(with_points))));
+    document.extend(
+        context
+            .stability
+            .as_ref()
+            .map(|found| ("stability".to_owned(), crate::stability::path::document(found, with_points))),
+    );
     document
 }
 
-/// Errors of a table, relative.
+/// Errors of a lookup table, relative.
 const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
 
-/// The table that the search looked through, or why there is none.
+/// The lookup table that the search used, or why there is none.
 fn tabled(tabled: &Result<Tabled, Unsupported>) -> Value {
     match tabled {
         Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),

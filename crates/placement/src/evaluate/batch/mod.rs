@@ -20,7 +20,7 @@ mod wrist;
 
 pub use states::StateGrid;
 
-use crate::constraints::ConstraintKind;
+use crate::constraints::{ConstraintKind, relaxed};
 use crate::problem::{Placement, Problem, Redundancy};
 use laws::Laws;
 use limit::Limit;
@@ -129,14 +129,13 @@ impl<'a> BatchEvaluator<'a> {
         }
     }
 
-    /// The kinds of constraint that it evaluates. Joint limits are seen joint by joint, in either flip of the wrist.
-    pub fn evaluated() -> Vec<ConstraintKind> {
-        let limits = (1..=6).map(ConstraintKind::JointLimit);
-        [ConstraintKind::Reach]
-            .into_iter()
-            .chain(limits)
-            .chain([ConstraintKind::Conditioning, ConstraintKind::MaxDeflection])
-            .collect()
+    /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint limits are
+    /// seen joint by joint, in either flip of the wrist.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, Conditioning, MaxDeflection];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
     }
 
     /// Which of the two postures of a class are evaluated.

@@ -1,0 +1,79 @@
+//! One run: a search or a given placement, and the stability of the cut along its plans.
+
+use super::PathStability;
+use stead_format::Run;
+use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
+use stead_placement::outcome::{Cases, Outcome, Plan};
+use stead_placement::place::{self, Infeasible, Score};
+use stead_placement::problem::Placement;
+use stead_simulation::stability_analysis::StabilityError;
+
+/// Why a run ends without a result.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// No placement, or not the given one, satisfies the constraints.
+    #[error(transparent)]
+    Infeasible(#[from] Infeasible),
+    /// The stability of the cut cannot be computed.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
+}
+
+/// The best and the worst placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// The four cases, and how they were found.
+    pub outcome: Outcome,
+    /// Critical depths along cases 1 and 3, where the run file asks for them.
+    pub stability: Option<PathStability>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// A given placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scored {
+    /// Its best and its worst plan.
+    pub score: Score,
+    /// Critical depths along both plans, where the run file asks for them.
+    pub stability: Option<PathStability>,
+    /// What the user should know about the placement though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// Searches for the best and the worst placement. A stop that the monitor asks for leaves the best found so far.
+///
+/// # Errors
+/// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
+pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
+    let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
+    let Cases { best, worst, .. } = &outcome.cases;
+    let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
+    let warnings = outcome.warnings.clone();
+    Ok(Placed { outcome, stability, warnings })
+}
+
+/// Plans a given placement, best and worst.
+///
+/// # Errors
+/// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
+pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
+    let score = place::score(&run.problem, placement)?;
+    let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
+    let notes = outside_cell(run, placement).into_iter().collect();
+    let warnings = score.warnings.clone();
+    Ok(Scored { score, stability, notes, warnings })
+}
+
+/// A placement outside the cell is evaluated all the same, but not silently.
+pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
+    let is_outside = !run.problem.cell.contains(placement);
+    is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
+}
+
+fn stability(run: &Run, plans: [(&Placement, &Plan); 2]) -> Result<Option<PathStability>, StabilityError> {
+    run.path_stability.as_ref().map(|analysis| PathStability::along(&run.problem, analysis, plans)).transpose()
+}
