@@ -281,3 +281,6 @@ impl<'de> SeqAccess<'de> for Elements<'_, '_> {
         Some(self.count + 1 - self.next)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,7 +17,6 @@
 //! # }
 //! ```
 
-mod arrays;
 mod assess;
 mod compensate;
 mod deserialize;
@@ -28,7 +27,6 @@ pub mod place;
 mod points;
 mod published_tables;
 pub mod quantity;
-pub mod reader;
 pub mod robot;
 pub mod run;
 pub mod scalars;

@@ -1,9 +1,9 @@
 //! Files for the tests of this room.
 
 use crate::input::InputError;
-use crate::reader::{Field, Table};
 use crate::toml_file::TomlFile;
 use crate::{Run, read_run};
+use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// The folder of the crate.
@@ -67,12 +67,19 @@ pub fn assert_refused(from: &str, to: &str, parts: &[&str]) {
     }
 }
 
-/// What `read` makes of the field `a.v` of a table `[a]` on line 2 with `v` on line 3.
-pub fn read_field<T>(value: &str, read: impl FnOnce(&Field<'_>) -> Result<T, InputError>) -> Result<T, String> {
-    let source = TomlFile::new(Path::new("f.toml"), format!("# first\n[a]\n{value}\n").into_bytes()).unwrap();
-    let document = source.parse().unwrap();
-    let table = Table::root(&document).fields(["a"]).and_then(|[a]| a.table()).unwrap();
-    table.fields(["v", "w"]).and_then(|[v, _]| read(&v)).map_err(|e| e.to_string())
+/// The field `a.v` of a table `[a]` on line 2 with `v` on line 3, or what is wrong with it.
+pub fn read_field<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    at_path("a.v", text)
+}
+
+/// The table `[a]` on line 2 with this text, or what is wrong with it.
+pub fn read_table<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    at_path("a", text)
+}
+
+fn at_path<T: DeserializeOwned>(path: &str, text: &str) -> Result<T, String> {
+    let source = TomlFile::new(Path::new("f.toml"), format!("# first\n[a]\n{text}\n").into_bytes()).unwrap();
+    source.parse().unwrap().at(path).read().map_err(|e| e.to_string())
 }
 
 /// Asserts that a message names file, line and field, and holds some parts.

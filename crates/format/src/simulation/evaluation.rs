@@ -123,6 +123,5 @@ pub(super) fn check_duration(setup: &Setup, cut: &Cut, at: &Place<'_>) -> Result
         return Ok(());
     }
     let problem = format!("makes a pass of {duration:.3e} s, {:.3e} steps", duration / cut.step());
-    Err(at
-        .error(problem, format!("at most {MOST_STEPS:e} steps and {LONGEST:e} s: a faster feed, or a shorter pass")))
+    Err(at.error(problem, format!("at most {MOST_STEPS:e} steps and {LONGEST:e} s: a faster feed, or a shorter pass")))
 }
