@@ -6,6 +6,7 @@ use divan::{Bencher, black_box};
 use nalgebra::{SMatrix, SVector, Vector3};
 use std::path::Path;
 use stead_format::{Overrides, SimulationRun, read_simulation};
+use stead_model::cutting::CutFrame;
 use stead_simulation::arm::{AnyArm, Arm, Compensation, Variant};
 use stead_simulation::integrator::{MotionState, Newmark, Settings, System, Tangent};
 use stead_simulation::stability_analysis::{analyse, cut_stability, linear_at};
@@ -77,7 +78,7 @@ fn a_thousand_steps(bencher: Bencher<'_, '_>, variant: Variant) {
 fn depths_at_one_speed(bencher: Bencher<'_, '_>, variant: Variant) {
     let run = shipped(variant);
     let linear = linear_at(&run.setup, 0.0).expect("the shipped robot has masses");
-    let frame = stead_simulation::stability_analysis::CutFrame::new(Vector3::x(), Vector3::z(), run.cut.milling);
+    let frame = CutFrame::new(Vector3::x(), Vector3::z(), run.cut.wall(&run.cutter));
     let plant = linear.plant(&frame).expect("the mass matrix is positive definite");
     bencher.bench_local(|| cut_stability(&plant, &run.cutter, black_box(&run.cut), run.analysis.max_depth));
 }

@@ -147,7 +147,7 @@ fn bad_input_ends_with_2_and_leaves_everything_as_it_was() {
         (
             "kuka-kr500.toml",
             "kuka-kr100-ha.toml",
-            ["klimchik-2017.toml:12: robots[5]: ", "second robot called 'KUKA KR 100 HA'"],
+            ["klimchik-2017.toml:13: robots[5]: ", "second robot called 'KUKA KR 100 HA'"],
         ),
         ("1000.0]", "9000.0]", ["zones.sides_mm[4]: ", "larger than the map, found 9000.0; allowed: "]),
         ("[-440.0, -1370.0, -635.0]", "[0.0, 0.0, -635.0]", ["benchmark.force_n: ", "no force in the plane"]),

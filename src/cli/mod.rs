@@ -13,9 +13,11 @@ mod completions;
 mod explain;
 mod help;
 mod identify;
+mod init;
 mod man;
 mod place;
 mod progress;
+mod schema;
 mod score;
 mod simulate;
 mod stability;
@@ -29,7 +31,7 @@ use std::process::ExitCode;
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
-use stead_placement::place::NothingFeasible;
+use stead_placement::place::Infeasible;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
@@ -47,7 +49,7 @@ enum Failure {
     Output(ReportError),
     /// No placement is feasible.
     #[error("{0}")]
-    Nothing(#[from] NothingFeasible),
+    Nothing(#[from] Infeasible),
     /// No robot can mill the benchmark, or nobody wants to know any more.
     #[error("{0}")]
     Assessment(#[from] AssessError),
@@ -81,6 +83,8 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Init(options) => init::run(&options),
+        Command::Schema(options) => schema::run(&options),
         Command::Completions(options) => completions::run(&options),
         Command::Man(options) => man::run(&options),
     };

@@ -1,5 +1,6 @@
 //! The tables `[tool]` and `[cut]`: one cutter and one cut, for runs, simulations and assessments.
 
+mod cutter;
 mod engagement;
 mod force_model;
 mod milling;
@@ -9,7 +10,6 @@ pub(crate) use moved::successor;
 
 use crate::input::InputError;
 use crate::place::Place;
-use crate::quantity::Expects;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::List;
 use crate::units::{Acute, Deg, Mm, Mpa, NPerMm, NotNegative, Number, Positive, Rpm, Um, ranges};
@@ -140,28 +140,6 @@ impl<'a> Cutting<'a> {
     pub fn required(cutting: Option<&Self>, at: &Place<'a>) -> Result<Self, InputError> {
         cutting.cloned().ok_or_else(|| at.key("tool").missing("tables [tool] and [cut]"))
     }
-
-    /// Radial over tangential coefficient and both, in SI units: by whichever of `kr` and `kr_mpa` is given.
-    fn tangential_and_radial(&self) -> Result<Pressures, InputError> {
-        let (tool, at) = (self.tool, &self.tool_at);
-        let tangential = at.require("kt_mpa", tool.kt_mpa)?.si();
-        match (tool.kr, tool.kr_mpa) {
-            (Some(ratio), None) => Ok(Pressures { tangential, radial: ratio.si() * tangential, ratio: ratio.si() }),
-            (None, Some(radial)) => Ok(Pressures { tangential, radial: radial.si(), ratio: radial.si() / tangential }),
-            (Some(_), Some(_)) => Err(at.key("kr").error("is given beside kr_mpa", "only one of the two")),
-            (None, None) => {
-                let allowed = format!("kr_mpa or kr = kr_mpa / kt_mpa, {}", Number::<NotNegative>::expected());
-                Err(at.key("kr_mpa").missing(allowed))
-            }
-        }
-    }
-}
-
-/// Tangential and radial cutting coefficient, and the second over the first. Pa
-struct Pressures {
-    tangential: f64,
-    radial: f64,
-    ratio: f64,
 }
 
 #[cfg(test)]

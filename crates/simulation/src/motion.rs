@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::TAU;
+use stead_model::cutting::{CutFrame, Side};
 use stead_model::robot::{Frames, Pose, Posture, Robot, Spindle, Unreachable, angles::ANGLE_ROUNDING};
 
 /// A start from rest to the feed with bounded jerk: constant jerk upwards over the first half of the time, downwards over
@@ -176,6 +177,11 @@ impl Motion {
     /// The tool frame at the start, in the base frame.
     pub fn start(&self) -> &Pose<f64> {
         &self.start
+    }
+
+    /// The frame of a cut along the pass, with the wall on a side of the feed.
+    pub fn cut_frame(&self, wall: Side) -> CutFrame {
+        CutFrame::new(self.direction, -self.start.rotation.column(2), wall)
     }
 
     /// Where the tool centre point should be (m, base frame) at a time (s), and how far on its way that is (m).

@@ -4,7 +4,7 @@ use super::coupled::{End, Job, JobError, Run};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
-use super::stability_analysis::{CutFrame, StabilityError, linear_at};
+use super::stability_analysis::{StabilityError, linear_at};
 
 /// How to look at a pass.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,7 +96,7 @@ impl Simulation {
         let at = |share: f64| job.setup.motion.ramp().time_of(distance(share));
         let window = settings.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
         let linear = linear_at(job.setup, distance(0.5))?;
-        let plant = linear.plant(&CutFrame::along(&job.setup.motion, job.cut.milling))?;
+        let plant = linear.plant(&job.setup.motion.cut_frame(job.cut.wall(job.cutter)))?;
         let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(StabilityError::from)?;
         let wall = wall(job, settings, &run);
         let filtered = wall.filtered(settings.cutoff);
@@ -109,7 +109,7 @@ impl Simulation {
                 job.cut.steps_per_turn,
             ),
             window,
-            verdict: method.verdict(job.cut.axial_depth),
+            verdict: method.verdict(job.cut.section.axial_depth),
             modes: linear_at(job.setup, 0.0)?.modes()?,
             wall,
             filtered,

@@ -1,10 +1,11 @@
 //! Critical depths along a tool path: a stiff placement may chatter all the same.
 
 use super::arm::Variant;
-use super::milling::{Cut, Cutter};
-use super::stability_analysis::{CutFrame, CutStability, StabilityError, cut_stability, linear_of};
+use super::milling::PassCut;
+use super::stability_analysis::{CutStability, StabilityError, cut_stability, linear_of};
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use stead_model::cutting::{CutFrame, Cutter};
 use stead_model::robot::{Robot, Spindle};
 
 /// What is to be cut along a path.
@@ -17,7 +18,7 @@ pub struct PathStabilityAnalysis {
     /// The cutter.
     pub cutter: Cutter,
     /// The cut, at every point of the path alike.
-    pub cut: Cut,
+    pub cut: PassCut,
     /// Largest depth of cut that is examined. m
     pub max_depth: f64,
 }
@@ -45,7 +46,7 @@ impl PathStabilityAnalysis {
         let at = |configuration: &PathConfiguration| {
             let linear = linear_of(robot, spindle, self.variant, self.damping_scale, &configuration.joints)?;
             let tool = robot.forward(&configuration.joints).then(&spindle.flange_from_tool);
-            let frame = CutFrame::new(configuration.feed, -tool.rotation.column(2), self.cut.milling);
+            let frame = CutFrame::new(configuration.feed, -tool.rotation.column(2), self.cut.wall(&self.cutter));
             Ok(cut_stability(&linear.plant(&frame)?, &self.cutter, &self.cut, self.max_depth)?)
         };
         configurations.par_iter().map(at).collect()

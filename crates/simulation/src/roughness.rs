@@ -1,8 +1,9 @@
 //! The wall that a pass leaves, and how rough it is (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
 
-use super::milling::{Cut, Cutter};
+use super::milling::PassCut;
 use super::surface::Trail;
 use std::f64::consts::{LN_2, PI, TAU};
+use stead_model::cutting::Cutter;
 
 /// Heights of a wall at equal distances along the feed, y over x.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,13 +30,13 @@ pub struct Roughness {
 impl Profile {
     /// The wall at a height above the tip of the cutter (m), from a place to another (m): the lowest that any tooth came by,
     /// exactly on its arc.
-    pub fn of_wall(trail: &Trail, cutter: &Cutter, cut: &Cut, height: f64, span: [f64; 2], spacing: f64) -> Self {
+    pub fn of_wall(trail: &Trail, cutter: &Cutter, cut: &PassCut, height: f64, span: [f64; 2], spacing: f64) -> Self {
         let [start, end] = span;
         let count = ((end - start) / spacing + 1e-9).max(0.0) as usize + 1;
-        let top = if cut.is_slot(cutter) { 2.0 * cutter.radius() } else { cut.radial_depth };
+        let top = if cut.section.is_slot(cutter) { 2.0 * cutter.radius() } else { cut.section.radial_depth };
         let mut heights = vec![top; count];
         let turn = cut.steps_per_turn as f64;
-        let steps_per_radian = cut.sense() * turn / TAU;
+        let steps_per_radian = cut.section.sense() * turn / TAU;
         let range = trail.extents().last().map_or(0.0, |extent| extent.top - extent.bottom);
         for (tooth, offset) in cutter.teeth().iter().zip(cutter.offsets()) {
             let radius = tooth.radius;
@@ -106,7 +107,7 @@ impl Profile {
 }
 
 /// The farthest that the centre came along the feed in a turn. m
-fn cut_advance(trail: &Trail, cut: &Cut) -> f64 {
+fn cut_advance(trail: &Trail, cut: &PassCut) -> f64 {
     let nodes = trail.nodes();
     let pairs = nodes.iter().zip(nodes.iter().skip(cut.steps_per_turn));
     pairs.fold(0.0, |most: f64, (before, after)| most.max((after.place[0] - before.place[0]).abs()))
@@ -115,21 +116,25 @@ fn cut_advance(trail: &Trail, cut: &Cut) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::milling::{Coefficients, Tooth};
     use crate::surface::Node;
-    use stead_model::cutting::MillingDirection;
+    use stead_model::cutting::{Coefficients, Cut, MillingDirection, Rotation, Tooth};
 
     const RADIUS: f64 = 5e-3;
 
     /// Ten turns of 0.2 mm with two teeth; y of the centre at a time in steps.
-    fn pass(runout: f64, direction: MillingDirection, y: impl Fn(f64) -> f64) -> (Trail, Cutter, Cut) {
+    fn pass(runout: f64, direction: MillingDirection, y: impl Fn(f64) -> f64) -> (Trail, Cutter, PassCut) {
         let tooth = |radius| Tooth { pitch: PI, radius };
-        let coefficients = Coefficients { tangential: 1e9, radial: 0.0, axial: 0.0 };
-        let cutter = Cutter::new(vec![tooth(RADIUS), tooth(RADIUS - runout)], 0.5, 0.01, coefficients).unwrap();
-        let cut = Cut {
-            milling: direction,
-            radial_depth: 4e-3,
-            axial_depth: 2e-3,
+        let coefficients = Coefficients::new(1e9, 0.0, 0.0);
+        let cutter = Cutter::new(
+            vec![tooth(RADIUS), tooth(RADIUS - runout)],
+            0.5,
+            Some(0.01),
+            Rotation::Clockwise,
+            coefficients,
+        )
+        .unwrap();
+        let cut = PassCut {
+            section: Cut { direction: direction, radial_depth: 4e-3, axial_depth: 2e-3 },
             length: 1.0,
             spindle_speed: 1e3,
             slices: 1,

@@ -1,13 +1,12 @@
 //! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the spindle speed.
 
 use super::arm::{AnyArm, Arm, Missing, Variant};
-use super::milling::{Cut, Cutter};
+use super::milling::PassCut;
 use super::modes::{LinearArm, Mode};
-use super::motion::Motion;
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
-use stead_model::cutting::{EngagementError, MillingDirection};
+use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::robot::{Robot, Spindle};
 
 /// What is to be found out.
@@ -36,32 +35,6 @@ pub struct FrequencyResponse {
     pub normal: Complex<f64>,
     /// Along the normal, to a force along the feed, and the other way round. m/N
     pub cross: Complex<f64>,
-}
-
-/// The directions of a cut in the base frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CutFrame {
-    /// Of the feed.
-    pub feed: Vector3<f64>,
-    /// Out of the wall.
-    pub normal: Vector3<f64>,
-    /// From the work to the spindle.
-    pub axis: Vector3<f64>,
-}
-
-impl CutFrame {
-    /// For a cutter that turns clockwise as seen from its spindle: `axis` points from the work to the spindle. In climb milling
-    /// the wall is to the right of the feed. What the feed has along the axis is left out.
-    pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, milling: MillingDirection) -> Self {
-        let left = axis.cross(&feed).normalize();
-        let normal = if milling == MillingDirection::Climb { left } else { -left };
-        Self { feed: left.cross(&axis), normal, axis }
-    }
-
-    /// Along a pass.
-    pub fn along(motion: &Motion, milling: MillingDirection) -> Self {
-        Self::new(*motion.direction(), -motion.start().rotation.column(2), milling)
-    }
 }
 
 /// How deep may be cut, and whether the cut at hand is calm.
@@ -100,11 +73,11 @@ const FREQUENCIES: usize = 1000;
 pub fn analyse(
     setup: &Setup,
     cutter: &Cutter,
-    cut: &Cut,
+    cut: &PassCut,
     settings: &AnalysisSettings,
 ) -> Result<StabilityAnalysis, StabilityError> {
     let linear = linear_at(setup, settings.distance)?;
-    let frame = CutFrame::along(&setup.motion, cut.milling);
+    let frame = setup.motion.cut_frame(cut.wall(cutter));
     let plant = linear.plant(&frame)?;
     let between = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
         (0..count).map(|k| from + (to - from) * k as f64 / (count - 1).max(1) as f64).collect()
@@ -122,12 +95,17 @@ pub fn analyse(
 ///
 /// # Errors
 /// [`EngagementError`] for a cut without width.
-pub fn cut_stability(plant: &Plant, cutter: &Cutter, cut: &Cut, most: f64) -> Result<CutStability, EngagementError> {
+pub fn cut_stability(
+    plant: &Plant,
+    cutter: &Cutter,
+    cut: &PassCut,
+    most: f64,
+) -> Result<CutStability, EngagementError> {
     let motion = SemiDiscretisation::new(plant, cutter, cut)?;
     Ok(CutStability {
         semi_discretisation: motion.critical_depth(most),
         zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, most)?,
-        verdict: motion.verdict(cut.axial_depth),
+        verdict: motion.verdict(cut.section.axial_depth),
     })
 }
 

@@ -64,8 +64,8 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         None => Pose::identity(),
     };
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
-    let cutting = cutting.map(|cutting| cutting.tool_and_engagement()).transpose()?;
-    let force_history = cutting.map(|(tool, engagement)| ForceHistory::new(&tool, &engagement));
+    let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
+    let force_history = cut.map(|cut| cut.force_history());
     let yields = yields_from(&file.stiffness.unwrap_or_default(), &at.key("stiffness"))?;
     let setting = Setting { plane, flange_from_tool, yields, force_history: force_history.as_ref() };
     let (benchmark, elbow_names) = benchmark_from(&file.benchmark, &at, &setting)?;

@@ -170,7 +170,7 @@ fn task_from(
             return Err(cutting.tool_at.error(problem, rule));
         }
         (Some(wrenches), _) => wrenches,
-        (None, Some(cutting)) => cutting.force_model()?.wrenches(&imported.path),
+        (None, Some(cutting)) => cutting.path_forces()?.wrenches(&imported.path),
         (None, None) => {
             let problem = "has no force columns, and there are no tables [tool] and [cut] to compute them";
             return Err(field.error(problem, rule));

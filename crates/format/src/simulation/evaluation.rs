@@ -8,7 +8,7 @@ use crate::shapes::Span;
 use crate::units::ranges;
 use std::ops::Bound::Included;
 use stead_simulation::arm::Variant;
-use stead_simulation::milling::Cut;
+use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::{EvaluationSettings, Published, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
@@ -35,9 +35,9 @@ pub(super) fn evaluation_from(
     at: &Place<'_>,
     published: Option<Published>,
     setup: &Setup,
-    cut: &Cut,
+    cut: &PassCut,
 ) -> Result<EvaluationSettings, InputError> {
-    let (duration, depth_mm) = (setup.motion.duration(), cut.axial_depth * 1e3);
+    let (duration, depth_mm) = (setup.motion.duration(), cut.section.axial_depth * 1e3);
     let window = table.window_s.map(Span::si);
     if window.is_some_and(|[_, to]| to > duration) {
         let allowed =
@@ -50,7 +50,7 @@ pub(super) fn evaluation_from(
     }
     Ok(EvaluationSettings {
         window,
-        height: table.wall_height_mm.map_or(cut.axial_depth / 2.0, Quantity::si),
+        height: table.wall_height_mm.map_or(cut.section.axial_depth / 2.0, Quantity::si),
         cutoff: table.cutoff_mm.map_or(CUTOFF, Quantity::si),
         published,
     })
@@ -93,7 +93,7 @@ impl ProfileTable {
 ///
 /// # Errors
 /// [`InputError`] at the field that says how many steps there are.
-pub(super) fn check_step(setup: &Setup, cut: &Cut, at: &Place<'_>) -> Result<(), InputError> {
+pub(super) fn check_step(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result<(), InputError> {
     let Ok(modes) = linear_at(setup, 0.0).and_then(|linear| linear.modes()) else { return Ok(()) };
     let swinging = modes.iter().filter(|mode| mode.damping_ratio < DAMPED);
     let fastest = swinging.fold(0.0_f64, |max, mode| max.max(mode.frequency));
@@ -116,7 +116,7 @@ const LONGEST: f64 = 2e4;
 ///
 /// # Errors
 /// [`InputError`] at the feed.
-pub(super) fn check_duration(setup: &Setup, cut: &Cut, at: &Place<'_>) -> Result<(), InputError> {
+pub(super) fn check_duration(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result<(), InputError> {
     let duration = setup.motion.duration();
     let longest = LONGEST.min(MOST_STEPS * cut.step());
     if duration <= longest {

@@ -21,7 +21,8 @@ use evaluation::{check_duration, check_step, evaluation_from};
 use stability::analysis_from;
 pub(crate) use stability::max_depth;
 use std::path::Path;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::EvaluationSettings;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
@@ -34,7 +35,7 @@ pub struct SimulationRun {
     /// The cutter.
     pub cutter: Cutter,
     /// What it cuts.
-    pub cut: Cut,
+    pub cut: PassCut,
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
     /// How to look at the simulated pass.
@@ -78,6 +79,9 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
     let slices = settings.slices.map_or(SLICES, |slices| slices.count());
     let steps = settings.steps_per_turn.map_or(STEPS_PER_TURN, |steps| steps.count());
     let cutting = Cutting::new(&file.tool, &file.cut, &at);
+    if steps_are_made {
+        cutting.without_edge_forces()?;
+    }
     let (cutter, mut cut) = cutting.cutter_and_cut(file.work.length_mm.si(), slices, steps)?;
     if let Some(width) = file.work.slot_width_mm {
         check_slot(width, &cutter, &at.key("work").key("slot_width_mm"))?;

@@ -8,7 +8,8 @@ use crate::shapes::Span;
 use crate::tool::FASTEST_RPM;
 use crate::units::{Mm, Positive, ranges};
 use std::ops::Bound::Included;
-use stead_simulation::milling::{Cut, Cutter};
+use stead_model::cutting::Cutter;
+use stead_simulation::milling::PassCut;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
 
@@ -28,7 +29,7 @@ pub(super) fn analysis_from(
     at: &Place<'_>,
     setup: &Setup,
     cutter: &Cutter,
-    cut: &Cut,
+    cut: &PassCut,
 ) -> Result<AnalysisSettings, InputError> {
     let length_mm = setup.motion.length() * 1e3;
     if table.way_mm.is_some_and(|way| way.written() > length_mm) {
@@ -44,16 +45,17 @@ pub(super) fn analysis_from(
     })
 }
 
-/// The depth (m) beyond which cuts are not looked at; the length of the flutes where the file does not say.
+/// The largest depth (m) that is examined; the length of the flutes where the file does not say.
 ///
 /// # Errors
 /// [`InputError`] at `max_depth_mm` of the table that is here where it is more than that.
 pub(crate) fn max_depth(depth: Option<Mm<Positive>>, cutter: &Cutter, at: &Place<'_>) -> Result<f64, InputError> {
-    let flute_mm = cutter.flute() * 1e3;
+    let flute = cutter.flute_length().unwrap_or(cutter.diameter());
+    let flute_mm = flute * 1e3;
     match depth {
         Some(depth) if depth.written() > flute_mm => Err(at
             .key("max_depth_mm")
             .out_of_range(format!("a number above 0 and not above flute_length_mm = {flute_mm}"))),
-        depth => Ok(depth.map_or(cutter.flute(), Quantity::si)),
+        depth => Ok(depth.map_or(flute, Quantity::si)),
     }
 }

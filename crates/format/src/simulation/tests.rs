@@ -52,7 +52,7 @@ fn the_shipped_files_are_the_published_passes() {
     assert!((run.setup.motion.start().rotation - spindle_pose()).amax() < 1e-9);
     assert_eq!(run.setup.spindle.payload, spindle().payload);
     assert_eq!((run.setup.variant, run.setup.damping_scale), (Variant::Springs, 1.0));
-    assert_eq!(run.cut.milling, MillingDirection::Climb);
+    assert_eq!(run.cut.section.direction, MillingDirection::Climb);
     assert!((run.cut.spindle_speed - 18700.0 / 60.0 * TAU).abs() < 1e-9);
     assert_eq!((run.cut.slices, run.cut.steps_per_turn, run.gap), (32, 360, 0.5e-3));
     let pitches: Vec<f64> = run.cutter.teeth().iter().map(|tooth| tooth.pitch.to_degrees().round()).collect();
@@ -104,12 +104,12 @@ fn a_cut_of_the_whole_diameter_is_a_slot() {
     let text = shipped("umons-aluminium.toml").replace("radial_depth_mm = 4.0", "radial_depth_mm = 10.0");
     for runout in ["[0, 0]", "[6.929, 0.0]", "[-6.929, 0.0]"] {
         let run = read(&text.replace("teeth = 2", &format!("teeth = 2\nrunout_um = {runout}"))).unwrap();
-        assert!(run.cut.is_slot(&run.cutter), "{runout}");
+        assert!(run.cut.section.is_slot(&run.cutter), "{runout}");
     }
     let run =
         read(&text.replace("= 10.0\naxial", "= 9.9\naxial").replace("teeth = 2", "teeth = 2\nrunout_um = [7, 0]"))
             .unwrap();
-    assert!(!run.cut.is_slot(&run.cutter) && run.cut.radial_depth == 9.9e-3);
+    assert!(!run.cut.section.is_slot(&run.cutter) && run.cut.section.radial_depth == 9.9e-3);
 }
 
 /// A stability analysis makes no steps, so that a slow pass and a slow spindle are none of its business.

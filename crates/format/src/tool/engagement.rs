@@ -3,8 +3,10 @@
 use super::Cutting;
 use crate::input::InputError;
 use crate::place::required;
+use crate::quantity::Quantity;
 use crate::scalars::words;
-use stead_model::cutting::{Engagement, MillingTool, Rotation};
+use stead_model::cutting::{Coefficients, Cutter, CuttingForce, Engagement, ForceHistory, RakeFace};
+use stead_model::task::Wrench;
 
 /// The ways of milling that the key `engagement` names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,34 +31,54 @@ words!(EngagementKind:
     "open-slot" => EngagementKind::OpenSlot,
 );
 
+/// A cutter in the work.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EngagedCutter {
+    pub(super) cutter: Cutter,
+    pub(super) axial_depth: f64,
+    pub(super) feed_per_tooth: f64,
+    pub(super) engagement: Engagement,
+}
+
+impl EngagedCutter {
+    /// The forces over the engagement and over a turn.
+    pub fn force_history(&self) -> ForceHistory {
+        let Self { cutter, axial_depth, feed_per_tooth, engagement } = self;
+        let force = CuttingForce { cutter, axial_depth: *axial_depth, feed_per_tooth: *feed_per_tooth };
+        ForceHistory::new(&force, engagement)
+    }
+}
+
 impl Cutting<'_> {
-    /// Tool and engagement of the force model by rake face: coefficients `kn_mpa` and `friction`.
+    /// The cutter in the work, its force by the rake face: coefficients `kn_mpa` and `friction`.
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a missing key, a width that the engagement does not have or that is larger
     /// than the cutter, values that make no finite force.
-    pub fn tool_and_engagement(&self) -> Result<(MillingTool, Engagement), InputError> {
+    pub fn engaged_cutter(&self) -> Result<EngagedCutter, InputError> {
         let (tool, cut) = (self.tool, self.cut);
-        let kn = required!(self.tool_at, tool.kn_mpa)?;
-        let milling_tool = MillingTool {
-            radius: tool.cutter_diameter_mm.written() / 2e3,
-            teeth: tool.teeth.get() as u32,
-            rotation: tool.rotation.map_or(Rotation::Clockwise, |word| word.0),
-            entering_angle: tool.entering_angle_deg.map_or(90_f64.to_radians(), |angle| angle.si()),
-            helix: tool.helix_deg.map_or(0.0, |angle| angle.si()),
-            rake: tool.rake_deg.map_or(0.0, |angle| angle.si()),
-            friction: tool.friction.map_or(0.0, |ratio| ratio.si()),
-            normal_pressure: kn.si(),
-            feed_per_tooth: required!(self.cut_at, cut.feed_per_tooth_mm)?.si(),
-            axial_depth: cut.axial_depth_mm.si(),
+        let face = RakeFace {
+            entering_angle: tool.entering_angle_deg.map_or(90_f64.to_radians(), Quantity::si),
+            rake: tool.rake_deg.map_or(0.0, Quantity::si),
+            friction: tool.friction.map_or(0.0, Quantity::si),
+            normal_pressure: required!(self.tool_at, tool.kn_mpa)?.si(),
         };
-        let engagement = self.engagement()?;
-        let mean = milling_tool.mean_wrench(&engagement);
-        if mean.force.iter().chain(mean.moment.iter()).all(|part| part.is_finite()) {
-            return Ok((milling_tool, engagement));
+        let feed_per_tooth = required!(self.cut_at, cut.feed_per_tooth_mm)?.si();
+        let (axial_depth, engagement) = (cut.axial_depth_mm.si(), self.engagement()?);
+        let no_force = || {
+            let problem = "gives, with the other values of [tool] and [cut], no finite force";
+            self.tool_at.key("kn_mpa").error(problem, "values whose forces are finite")
+        };
+        let coefficients = face.coefficients(tool.helix_deg.map_or(0.0, Quantity::si));
+        let Coefficients { tangential, radial, axial, .. } = coefficients;
+        if ![tangential, radial, axial].iter().all(|part| part.is_finite()) {
+            return Err(no_force());
         }
-        let problem = "gives, with the other values of [tool] and [cut], no finite force";
-        Err(self.tool_at.key("kn_mpa").error(problem, "values whose forces are finite"))
+        let cutter = self.cutter(coefficients, "kn_mpa")?;
+        let force = CuttingForce { cutter: &cutter, axial_depth, feed_per_tooth };
+        let Wrench { force, moment } = force.mean_wrench(&engagement);
+        let is_finite = force.iter().chain(moment.iter()).all(|part| part.is_finite());
+        if is_finite { Ok(EngagedCutter { cutter, axial_depth, feed_per_tooth, engagement }) } else { Err(no_force()) }
     }
 
     fn engagement(&self) -> Result<Engagement, InputError> {

@@ -1,7 +1,8 @@
+use super::engagement::EngagedCutter;
 use super::*;
 use crate::toml_file::TomlFile;
 use std::path::Path;
-use stead_model::cutting::{CuttingModel, Engagement, MillingTool};
+use stead_model::cutting::{Coefficients, Cut, Cutter, Engagement, PathForces, RakeFace};
 
 /// The tables of a file with nothing else in it.
 #[derive(Deserialize)]
@@ -47,33 +48,26 @@ feed_per_tooth_mm = 0.05
 concave_corners = 'right'
 ";
 
-    fn read(text: &str) -> Result<CuttingModel, InputError> {
-        with(text, |cutting| cutting.force_model())
+    fn read(text: &str) -> Result<PathForces, InputError> {
+        with(text, |cutting| cutting.path_forces())
     }
 
     #[test]
     fn units_become_si_and_defaults_are_filled_in() {
         let model = read(TEXT).unwrap();
-        let expected = CuttingModel {
-            diameter: 0.016,
-            teeth: 4,
-            rotation: Rotation::Counterclockwise,
-            milling: MillingDirection::Climb,
-            radial_depth: 0.002,
-            axial_depth: 0.005,
+        let coefficients =
+            Coefficients { tangential: 800e6, radial: 320e6, axial: 0.0, tangential_edge: 20e3, radial_edge: 0.0 };
+        let cutter = |rotation| Cutter::even(4, 0.008, 0.0, rotation, coefficients).unwrap();
+        let expected = PathForces {
+            cutter: cutter(Rotation::Counterclockwise),
+            cut: Cut { direction: MillingDirection::Climb, radial_depth: 0.002, axial_depth: 0.005 },
             feed_per_tooth: 0.05e-3,
-            tangential_pressure: 800e6,
-            radial_ratio: 0.4,
-            tangential_edge: 20e3,
-            radial_edge: 0.0,
             concave_corners: Some(Side::Right),
         };
         assert_eq!(model, expected);
         let bare = TEXT.replace("rotation = 'counterclockwise'\n", "").replace("concave_corners = 'right'\n", "");
-        assert_eq!(
-            read(&bare).unwrap(),
-            CuttingModel { rotation: Rotation::Clockwise, concave_corners: None, ..expected }
-        );
+        let expected = PathForces { cutter: cutter(Rotation::Clockwise), concave_corners: None, ..expected };
+        assert_eq!(read(&bare).unwrap(), expected);
     }
 
     #[test]
@@ -144,39 +138,35 @@ engagement = 'up'
 radial_depth_mm = 2.5
 ";
 
-    fn read(text: &str) -> Result<(MillingTool, Engagement), InputError> {
-        with(text, |cutting| cutting.tool_and_engagement())
+    fn read(text: &str) -> Result<EngagedCutter, InputError> {
+        with(text, |cutting| cutting.engaged_cutter())
     }
 
     #[test]
     fn units_become_si_and_defaults_are_filled_in() {
-        let (tool, engagement) = read(TEXT).unwrap();
-        let expected = MillingTool {
-            radius: 0.005,
-            teeth: 3,
-            rotation: Rotation::Counterclockwise,
+        let face = RakeFace {
             entering_angle: 45_f64.to_radians(),
-            helix: -30_f64.to_radians(),
             rake: 7_f64.to_radians(),
             friction: 0.4,
             normal_pressure: 750e6,
-            feed_per_tooth: 0.08e-3,
-            axial_depth: 0.005,
         };
-        assert_eq!(tool, expected);
-        assert_eq!(engagement, Engagement::up(0.0025, 0.01).unwrap());
+        let helix = -30_f64.to_radians();
+        let cutter = |rotation, helix, face: RakeFace| {
+            Cutter::even(3, 0.005, helix, rotation, face.coefficients(helix)).unwrap()
+        };
+        let expected = EngagedCutter {
+            cutter: cutter(Rotation::Counterclockwise, helix, face),
+            axial_depth: 0.005,
+            feed_per_tooth: 0.08e-3,
+            engagement: Engagement::up(0.0025, 0.01).unwrap(),
+        };
+        assert_eq!(read(TEXT).unwrap(), expected);
         let kept =
             |line: &&str| !["rotation", "entering", "helix", "rake", "friction"].iter().any(|k| line.starts_with(k));
         let bare = TEXT.lines().filter(kept).collect::<Vec<_>>().join("\n");
-        let expected = MillingTool {
-            rotation: Rotation::Clockwise,
-            entering_angle: 90_f64.to_radians(),
-            helix: 0.0,
-            rake: 0.0,
-            friction: 0.0,
-            ..expected
-        };
-        assert_eq!(read(&bare).unwrap().0, expected);
+        let plain = RakeFace { entering_angle: 90_f64.to_radians(), rake: 0.0, friction: 0.0, ..face };
+        let expected = EngagedCutter { cutter: cutter(Rotation::Clockwise, 0.0, plain), ..expected };
+        assert_eq!(read(&bare).unwrap(), expected);
     }
 
     #[test]
@@ -189,7 +179,7 @@ radial_depth_mm = 2.5
             ("engagement = 'centred'\nradial_depth_mm = 7.5\n", Engagement::centred(0.0075, 0.01)),
             ("engagement = 'open-slot'\nopen_width_mm = 4\n", Engagement::open_slot(0.004, 0.01)),
         ] {
-            assert_eq!(read(&TEXT.replace(up, text)).unwrap().1, expected.unwrap(), "{text}");
+            assert_eq!(read(&TEXT.replace(up, text)).unwrap().engagement, expected.unwrap(), "{text}");
         }
     }
 

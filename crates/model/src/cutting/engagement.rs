@@ -1,5 +1,6 @@
 //! Over which part of a turn a tooth cuts (Klimchik 2017, Fig. 3 and eq. 4 to 7).
 
+use super::cut::MillingDirection;
 use std::f64::consts::PI;
 
 /// A part of a turn from `entry` to `exit`, angles phi as of [`Engagement`]. rad
@@ -97,6 +98,15 @@ impl Engagement {
         Ok(Self { arcs: vec![Arc { entry: PI - immersion(width, diameter), exit: PI }] })
     }
 
+    /// Up or down milling with a width of cut (m), from nothing to a full slot; a wider cut is a slot.
+    pub(super) fn of_cut(direction: MillingDirection, width: f64, diameter: f64) -> Self {
+        let arc = match direction {
+            MillingDirection::Conventional => Arc { entry: 0.0, exit: immersion(width, diameter) },
+            MillingDirection::Climb => Arc { entry: PI - immersion(width, diameter), exit: PI },
+        };
+        Self { arcs: vec![arc] }
+    }
+
     /// Face milling of a width a_e with the cutter on the middle of it. m
     ///
     /// # Errors
@@ -170,13 +180,15 @@ fn check_width(width: f64, diameter: f64) -> Result<(), EngagementError> {
 
 /// Angle between the radii to a side of the cutter and to its rim at a distance (m) across the feed from that side: 0 to pi.
 /// rad
-pub(super) fn immersion(distance: f64, diameter: f64) -> f64 {
+fn immersion(distance: f64, diameter: f64) -> f64 {
     libm::acos((1.0 - 2.0 * distance / diameter).clamp(-1.0, 1.0))
 }
 
 /// What the mean over a turn of a force that turns with the tooth is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Integrals {
+    /// Integral of 1: the angle. rad
+    pub angle: f64,
     /// Integral of sin(phi).
     pub sine: f64,
     /// Integral of cos(phi).
@@ -195,6 +207,7 @@ impl Integrals {
         let (entry_sine, entry_cosine) = libm::sincos(arc.entry);
         let (exit_sine, exit_cosine) = libm::sincos(arc.exit);
         Self {
+            angle: arc.exit - arc.entry,
             sine: entry_cosine - exit_cosine,
             cosine: exit_sine - entry_sine,
             sine_squared: ((arc.exit - exit_sine * exit_cosine) - (arc.entry - entry_sine * entry_cosine)) / 2.0,
@@ -206,6 +219,7 @@ impl Integrals {
     /// Over the arcs of both.
     pub fn plus(self, other: Self) -> Self {
         Self {
+            angle: self.angle + other.angle,
             sine: self.sine + other.sine,
             cosine: self.cosine + other.cosine,
             sine_squared: self.sine_squared + other.sine_squared,

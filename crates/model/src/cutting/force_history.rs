@@ -1,7 +1,7 @@
 //! Force and moment of a milling tool over the engagement and over a turn (Klimchik 2017, Fig. 4).
 
 use super::engagement::{Arc, Engagement, Integrals};
-use super::milling_tool::MillingTool;
+use super::force::CuttingForce;
 use crate::task::Wrench;
 use std::f64::consts::{PI, TAU};
 
@@ -34,14 +34,14 @@ const ENTERING_STEPS: u32 = 180;
 const TURN_STEPS: u32 = 720;
 
 impl ForceHistory {
-    /// The forces of a tool in an engagement.
-    pub fn new(tool: &MillingTool, engagement: &Engagement) -> Self {
+    /// The forces in an engagement.
+    pub fn new(force: &CuttingForce<'_>, engagement: &Engagement) -> Self {
         let angles = |steps: u32, end: f64| (0..=steps).map(move |k| end * (f64::from(k) / f64::from(steps)));
-        let entering = |phi| Sample { phi, wrench: tool.mean_over(Integrals::over(Arc { entry: 0.0, exit: phi })) };
-        let turning = |phi| Sample { phi, wrench: tool.instantaneous_wrench(engagement, phi) };
+        let entering = |phi| Sample { phi, wrench: force.mean_over(Integrals::over(Arc { entry: 0.0, exit: phi })) };
+        let turning = |phi| Sample { phi, wrench: force.instantaneous_wrench(engagement, phi) };
         Self {
             engagement: engagement.clone(),
-            mean: tool.mean_wrench(engagement),
+            mean: force.mean_wrench(engagement),
             entering: angles(ENTERING_STEPS, PI).map(entering).collect(),
             turn: angles(TURN_STEPS, TAU).map(turning).collect(),
         }
@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn means_grow_from_nothing_to_the_slot_and_gain_any_cut_over_its_arcs() {
         let tool = published();
-        let force_history = ForceHistory::new(&tool, &Engagement::open_slot(0.5, 1.0).unwrap());
+        let force_history = ForceHistory::new(&tool.force(&tool.cutter()), &Engagement::open_slot(0.5, 1.0).unwrap());
         assert_eq!(force_history.entering[0], Sample { phi: 0.0, wrench: Wrench::zero() });
         assert_eq!(force_history.entering[180].phi, PI);
         assert_eq!(force_history.entering[180].wrench, tool.mean_wrench(&Engagement::slot()));
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_turn_repeats_itself_from_tooth_to_tooth_and_has_the_mean() {
-        let force_history = ForceHistory::new(&published(), &Engagement::slot());
+        let force_history = ForceHistory::new(&published().force(&published().cutter()), &Engagement::slot());
         let turn = &force_history.turn;
         assert_eq!((turn.len(), turn[720].phi), (721, TAU));
         let close = |a: &Sample, b: &Sample| (a.wrench.force - b.wrench.force).norm() < 1e-9;

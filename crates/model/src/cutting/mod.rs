@@ -1,25 +1,30 @@
-//! What pushes: the mean cutting force of a milling cutter over one turn, by two models that share frame and engagement.
+//! Cutter, cut, and the force of milling.
 //!
 //! Frame: x along the feed, y to the left of it, z along the tool axis from the work to the spindle; forces and moments are
 //! what the work does to the tool.
 //!
-//! - [`CuttingModel`] knows a cylindrical cutter by its tangential and radial coefficients with edge terms (after Tlusty and
-//!   MacNeil 1975, the model that Caro 2013 names) and puts the mean force along a tool path.
-//! - [`MillingTool`] knows the geometry of a tooth, so its force has an axial part and comes with its moment (Klimchik 2017,
-//!   section 2.2).
-//! - [`Engagement`] says over which arcs of a turn a tooth cuts. Means are closed forms of integrals over these arcs.
-//! - [`ForceHistory`] is the wrench of a milling tool while it moves into the work, and over one turn, to be reported.
+//! - [`Cutter`]: teeth, helix, rotation and [`Coefficients`], which may follow from the geometry of a [`RakeFace`].
+//! - [`Cut`]: direction, width and depth of a cut along a wall, and its [`CutFrame`].
+//! - [`Engagement`]: the arcs of a turn over which a tooth cuts. Means are closed forms of integrals over these arcs.
+//! - [`CuttingForce`]: force and moment at an angle of the turn, and their means; [`ForceHistory`]: both over the engagement and
+//!   over a turn, to be reported; [`PathForces`]: the mean force along a tool path.
 
+mod coefficients;
+mod cut;
+mod cutter;
 mod engagement;
+mod force;
 mod force_history;
-mod milling_tool;
-mod model;
+mod path_forces;
 mod rotation;
 #[cfg(test)]
 mod tests;
 
+pub use coefficients::{Coefficients, RakeFace};
+pub use cut::{Cut, CutFrame, MillingDirection, Side};
+pub use cutter::{Cutter, CutterError, Tooth};
 pub use engagement::{Arc, Engagement, EngagementError, Integrals};
+pub use force::CuttingForce;
 pub use force_history::{ForceHistory, Sample};
-pub use milling_tool::MillingTool;
-pub use model::{CuttingModel, MillingDirection, Side};
+pub use path_forces::PathForces;
 pub use rotation::Rotation;

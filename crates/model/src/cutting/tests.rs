@@ -1,4 +1,4 @@
-//! [`MillingTool`] against limits, sums over tooth positions, energy, and the other model.
+//! Force and moment of a [`RakeFace`] against limits, sums over tooth positions, energy, and coefficients with edge forces.
 
 use super::*;
 use crate::task::Wrench;
@@ -6,9 +6,56 @@ use nalgebra::{Matrix3, Vector3, vector};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+/// A cutter by its rake face, with its cut.
+#[derive(Debug, Clone)]
+pub(super) struct Tool {
+    radius: f64,
+    teeth: u32,
+    rotation: Rotation,
+    entering_angle: f64,
+    helix: f64,
+    rake: f64,
+    friction: f64,
+    normal_pressure: f64,
+    feed_per_tooth: f64,
+    axial_depth: f64,
+}
+
+impl Tool {
+    fn face(&self) -> RakeFace {
+        let Self { entering_angle, rake, friction, normal_pressure, .. } = *self;
+        RakeFace { entering_angle, rake, friction, normal_pressure }
+    }
+
+    pub(super) fn cutter(&self) -> Cutter {
+        let coefficients = self.face().coefficients(self.helix);
+        Cutter::even(self.teeth as usize, self.radius, self.helix, self.rotation, coefficients).unwrap()
+    }
+
+    pub(super) fn force<'a>(&self, cutter: &'a Cutter) -> CuttingForce<'a> {
+        CuttingForce { cutter, axial_depth: self.axial_depth, feed_per_tooth: self.feed_per_tooth }
+    }
+
+    fn force_ratios(&self) -> Vector3<f64> {
+        self.face().force_ratios(self.helix)
+    }
+
+    fn tooth_wrench(&self, phi: f64) -> Wrench {
+        self.force(&self.cutter()).tooth_wrench(phi)
+    }
+
+    fn instantaneous_wrench(&self, engagement: &Engagement, phi: f64) -> Wrench {
+        self.force(&self.cutter()).instantaneous_wrench(engagement, phi)
+    }
+
+    pub(super) fn mean_wrench(&self, engagement: &Engagement) -> Wrench {
+        self.force(&self.cutter()).mean_wrench(engagement)
+    }
+}
+
 /// The case of Klimchik 2017, section 2.2, with a friction of our own.
-pub(super) fn published() -> MillingTool {
-    MillingTool {
+pub(super) fn published() -> Tool {
+    Tool {
         radius: 0.005,
         teeth: 3,
         rotation: Rotation::Clockwise,
@@ -23,15 +70,15 @@ pub(super) fn published() -> MillingTool {
 }
 
 /// Upright edge, no rake, no friction.
-fn plain() -> MillingTool {
-    MillingTool { helix: 0.0, rake: 0.0, friction: 0.0, ..published() }
+fn plain() -> Tool {
+    Tool { helix: 0.0, rake: 0.0, friction: 0.0, ..published() }
 }
 
 fn rotations() -> impl Strategy<Value = Rotation> {
     any::<bool>().prop_map(|clockwise| if clockwise { Rotation::Clockwise } else { Rotation::Counterclockwise })
 }
 
-fn tools() -> impl Strategy<Value = MillingTool> {
+fn tools() -> impl Strategy<Value = Tool> {
     let angles = (0.1..3.0_f64, -1.5..1.5_f64, -1.5..1.5_f64, 0.0..2.0_f64);
     let cut = (0.001..0.1_f64, 1..12_u32, 1e8..5e9_f64, 1e-5..5e-4_f64, 1e-4..2e-2_f64);
     (rotations(), angles, cut).prop_map(
@@ -40,7 +87,7 @@ fn tools() -> impl Strategy<Value = MillingTool> {
             (entering_angle, helix, rake, friction),
             (radius, teeth, normal_pressure, feed_per_tooth, axial_depth),
         )| {
-            MillingTool {
+            Tool {
                 radius,
                 teeth,
                 rotation,
@@ -69,7 +116,7 @@ fn engagements() -> impl Strategy<Value = Engagement> {
 }
 
 /// The largest difference of two wrenches, over the normal force of all teeth in front, moments with the radius as lever.
-fn apart(tool: &MillingTool, a: &Wrench, b: &Wrench) -> f64 {
+fn apart(tool: &Tool, a: &Wrench, b: &Wrench) -> f64 {
     let force = tool.normal_pressure * tool.feed_per_tooth * tool.axial_depth * f64::from(tool.teeth);
     let moments = (a.moment - b.moment).abs().max() / tool.radius;
     (a.force - b.force).abs().max().max(moments) / force
@@ -86,7 +133,7 @@ fn a_plain_tooth_is_pushed_against_its_motion_alone() {
     let force = plain().tooth_wrench(FRAC_PI_2);
     assert!((force.force - vector![0.0, 300.0, 0.0]).norm() < 1e-12, "{force:?}");
     assert!((force.moment - vector![0.0, 0.0, 1.5]).norm() < 1e-14, "{force:?}");
-    let left_hand = MillingTool { rotation: Rotation::Counterclockwise, ..plain() }.tooth_wrench(FRAC_PI_2);
+    let left_hand = Tool { rotation: Rotation::Counterclockwise, ..plain() }.tooth_wrench(FRAC_PI_2);
     assert!((left_hand.force - vector![0.0, -300.0, 0.0]).norm() < 1e-12, "{left_hand:?}");
     assert!((left_hand.moment - vector![0.0, 0.0, -1.5]).norm() < 1e-14, "{left_hand:?}");
 }
@@ -95,15 +142,15 @@ fn a_plain_tooth_is_pushed_against_its_motion_alone() {
 fn each_angle_and_the_friction_turn_the_force_their_way() {
     let (s, c) = libm::sincos(0.3);
     // Friction pushes the tool away from the work; with an edge that lies over on the work, towards the spindle too.
-    near(MillingTool { friction: 0.3, ..plain() }.force_ratios(), vector![-0.3, -1.0, 0.0]);
-    let lying = MillingTool { entering_angle: 0.3, friction: 0.3, ..plain() };
+    near(Tool { friction: 0.3, ..plain() }.force_ratios(), vector![-0.3, -1.0, 0.0]);
+    let lying = Tool { entering_angle: 0.3, friction: 0.3, ..plain() };
     near(lying.force_ratios(), vector![-0.3 * s, -1.0, 0.3 * c]);
     // A positive rake draws the tool into the work, a helix of the hand of the cut out of the spindle.
-    near(MillingTool { rake: 0.3, ..plain() }.force_ratios(), vector![s, -c, 0.0]);
-    near(MillingTool { helix: 0.3, ..plain() }.force_ratios(), vector![0.0, -c, -s]);
-    near(MillingTool { helix: -0.3, ..plain() }.force_ratios(), vector![0.0, -c, s]);
+    near(Tool { rake: 0.3, ..plain() }.force_ratios(), vector![s, -c, 0.0]);
+    near(Tool { helix: 0.3, ..plain() }.force_ratios(), vector![0.0, -c, -s]);
+    near(Tool { helix: -0.3, ..plain() }.force_ratios(), vector![0.0, -c, s]);
     // Merchant's circle: cutting force N cos + F sin, thrust F cos - N sin.
-    let sharp = MillingTool { rake: 0.3, friction: 0.7, ..plain() };
+    let sharp = Tool { rake: 0.3, friction: 0.7, ..plain() };
     near(sharp.force_ratios(), vector![-(0.7 * c - s), -(c + 0.7 * s), 0.0]);
 }
 
@@ -123,40 +170,33 @@ fn a_slot_has_its_closed_form() {
 #[test]
 fn another_cutter_without_the_mean_gives_the_published_digits() {
     let (helix, rake) = (20_f64.to_radians(), 5_f64.to_radians());
-    let tool = MillingTool { radius: 0.006, helix, rake, ..published() };
+    let tool = Tool { radius: 0.006, helix, rake, ..published() };
     let mean = tool.mean_wrench(&Engagement::slot());
     assert!((mean.force * TAU - vector![-440.0, 1370.0, -635.0]).abs().max() < 0.5, "{}", mean.force * TAU);
     assert!((mean.moment * TAU - vector![0.0, 3.0, 10.5]).abs().max() < 0.05, "{}", mean.moment * TAU);
 }
 
-/// The other model without edge forces, with `K_t = K_n (cos + k_f sin)` and `K_r K_t = K_n (k_f cos - sin)` of the rake.
+/// Coefficients without edge forces, with `K_t = K_n (cos + k_f sin)` and `K_r = K_n (k_f cos - sin)` of the rake.
 #[test]
 fn both_models_agree_where_they_say_the_same() {
     let (s, c) = libm::sincos(0.1);
     for rotation in [Rotation::Clockwise, Rotation::Counterclockwise] {
-        let tool = MillingTool { rotation, rake: 0.1, friction: 0.5, ..plain() };
-        for (milling, engagement) in [
+        let tool = Tool { rotation, rake: 0.1, friction: 0.5, ..plain() };
+        for (direction, engagement) in [
             (MillingDirection::Conventional, Engagement::up as fn(f64, f64) -> Result<Engagement, EngagementError>),
             (MillingDirection::Climb, Engagement::down),
         ] {
-            let model = CuttingModel {
-                diameter: 0.01,
-                teeth: 3,
-                rotation,
-                milling,
-                radial_depth: 0.002,
-                axial_depth: 5e-3,
+            let coefficients = Coefficients::new(750e6 * (c + 0.5 * s), 750e6 * (0.5 * c - s), 0.0);
+            let model = PathForces {
+                cutter: Cutter::even(3, 0.005, 0.0, rotation, coefficients).unwrap(),
+                cut: Cut { direction, radial_depth: 0.002, axial_depth: 5e-3 },
                 feed_per_tooth: 8e-5,
-                tangential_pressure: 750e6 * (c + 0.5 * s),
-                radial_ratio: (0.5 * c - s) / (c + 0.5 * s),
-                tangential_edge: 0.0,
-                radial_edge: 0.0,
                 concave_corners: None,
             };
             for depth in [0.001, 0.005, 0.008, 0.01] {
                 let mean = tool.mean_wrench(&engagement(depth, 0.01).unwrap());
                 let theirs = model.mean_force(depth);
-                assert!((mean.force - theirs).norm() < 1e-12, "{milling:?} {depth} {} {theirs}", mean.force);
+                assert!((mean.force - theirs).norm() < 1e-12, "{direction:?} {depth} {} {theirs}", mean.force);
             }
         }
     }
@@ -165,7 +205,7 @@ fn both_models_agree_where_they_say_the_same() {
 proptest! {
     #[test]
     fn the_rake_face_is_a_rotation(tool in tools()) {
-        let face = tool.rake_face();
+        let face = tool.face().axes(tool.helix);
         prop_assert!((face.transpose() * face - Matrix3::identity()).abs().max() < 1e-15);
         prop_assert!((face.determinant() - 1.0).abs() < 1e-15);
     }
@@ -221,7 +261,7 @@ proptest! {
             Rotation::Counterclockwise => Rotation::Clockwise,
         };
         let mean = tool.mean_wrench(&engagement);
-        let mirrored = MillingTool { rotation: other, ..tool.clone() }.mean_wrench(&engagement);
+        let mirrored = Tool { rotation: other, ..tool.clone() }.mean_wrench(&engagement);
         prop_assert_eq!(mirrored.force, mean.force.component_mul(&vector![1.0, -1.0, 1.0]));
         prop_assert_eq!(mirrored.moment, mean.moment.component_mul(&vector![-1.0, 1.0, -1.0]));
     }
@@ -229,7 +269,7 @@ proptest! {
     /// The mirror that takes phi to pi - phi takes up milling to down milling, and turns round a force along the motion.
     #[test]
     fn up_and_down_milling_mirror_each_other(tool in tools(), width in 0.01..=1.0_f64) {
-        let balanced = MillingTool { entering_angle: FRAC_PI_2, friction: libm::tan(tool.rake), ..tool };
+        let balanced = Tool { entering_angle: FRAC_PI_2, friction: libm::tan(tool.rake), ..tool };
         prop_assert!(balanced.force_ratios().x.abs() < 1e-14);
         let up = balanced.mean_wrench(&Engagement::up(width, 1.0).unwrap());
         let down = balanced.mean_wrench(&Engagement::down(width, 1.0).unwrap());
@@ -240,10 +280,10 @@ proptest! {
 
     #[test]
     fn teeth_and_cut_scale_the_wrench(tool in tools(), engagement in engagements()) {
-        let one = MillingTool { teeth: 1, ..tool.clone() }.mean_wrench(&engagement);
+        let one = Tool { teeth: 1, ..tool.clone() }.mean_wrench(&engagement);
         let scaled = Wrench { force: one.force * f64::from(tool.teeth), moment: one.moment * f64::from(tool.teeth) };
         prop_assert!(apart(&tool, &tool.mean_wrench(&engagement), &scaled) < 1e-15);
-        let deeper = MillingTool { axial_depth: tool.axial_depth * 2.0, ..tool.clone() }.mean_wrench(&engagement);
+        let deeper = Tool { axial_depth: tool.axial_depth * 2.0, ..tool.clone() }.mean_wrench(&engagement);
         prop_assert_eq!(deeper.force, tool.mean_wrench(&engagement).force * 2.0);
     }
 

@@ -18,7 +18,7 @@ pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Valu
         ("damping_scale", json!(run.setup.damping_scale)),
         ("way_mm", json!(Unit::PLACE_MM.number(run.analysis.distance))),
         ("spindle_rpm", json!(RPM.number(run.cut.spindle_speed))),
-        ("axial_depth_mm", json!(DEPTH_MM.number(run.cut.axial_depth))),
+        ("axial_depth_mm", json!(DEPTH_MM.number(run.cut.section.axial_depth))),
         ("max_depth_mm", json!(DEPTH_MM.number(run.analysis.max_depth))),
         ("pass_time_s", json!(Unit::TIME_S.number(analysis.pass_time))),
         ("growth_in_pass", json!(RATE.number(rate * analysis.pass_time))),

@@ -29,7 +29,7 @@ impl PathStability {
         Ok([
             ("stability-best.csv", along(plans[0], &self.plans[0])?),
             ("stability-worst.csv", along(plans[1], &self.plans[1])?),
-            ("stability.svg", picture::path_stability(self, plans)?.into_bytes()),
+            ("stability.svg", picture::path_stability(self, plans).into_bytes()),
         ])
     }
 
@@ -53,7 +53,7 @@ impl PathStability {
             "variant": self.analysis.variant.word(),
             "damping_scale": self.analysis.damping_scale,
             "spindle_rpm": RPM.number(self.analysis.cut.spindle_speed),
-            "axial_depth_mm": DEPTH_MM.number(self.analysis.cut.axial_depth),
+            "axial_depth_mm": DEPTH_MM.number(self.analysis.cut.section.axial_depth),
             "max_depth_mm": DEPTH_MM.number(self.analysis.max_depth),
             "best": plan(&self.plans[0]),
             "worst": plan(&self.plans[1]),
@@ -73,7 +73,7 @@ impl PathStability {
                 0 => "is stable at every point".to_owned(),
                 _ => format!("chatters at {bad} of {count} points"),
             };
-            let depth = fixed(self.analysis.cut.axial_depth * 1e3, 3);
+            let depth = fixed(self.analysis.cut.section.axial_depth * 1e3, 3);
             text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
         }
         text

@@ -52,7 +52,7 @@ pub fn stability_text(run: &SimulationRun, analysis: &StabilityAnalysis) -> Stri
 /// The verdict in a sentence.
 fn sentence(run: &SimulationRun, analysis: &StabilityAnalysis) -> String {
     let verdict = &analysis.cut_stability.verdict;
-    let (rate, depth) = (verdict.growth_rate(), fixed(run.cut.axial_depth * 1e3, 3));
+    let (rate, depth) = (verdict.growth_rate(), fixed(run.cut.section.axial_depth * 1e3, 3));
     let how = match verdict.kind() {
         Kind::None => {
             let (time, rate) = (figures(-factor_two(rate)), figures(-rate));

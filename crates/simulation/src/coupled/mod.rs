@@ -11,12 +11,12 @@ mod tests;
 
 use super::arm::{AnyArm, Missing};
 use super::integrator::StepError;
-use super::milling::{Cut, CutError, Cutter, Force, Limit, Limits, MaterialRemoval};
+use super::milling::{CutError, Force, Limit, Limits, MaterialRemoval, PassCut};
 use super::motion::Motion;
 use super::setup::Setup;
-use super::stability_analysis::CutFrame;
 use super::surface::{Node, Trail};
 use nalgebra::Vector3;
+use stead_model::cutting::{CutFrame, Cutter};
 
 /// What is to be simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Job<'a> {
     /// The cutter.
     pub cutter: &'a Cutter,
     /// What it cuts.
-    pub cut: &'a Cut,
+    pub cut: &'a PassCut,
     /// How far before the work the rim of the cutter is at the start. m
     pub gap: f64,
 }
@@ -117,7 +117,7 @@ pub(super) struct CutPlane {
 impl CutPlane {
     fn new(job: &Job<'_>) -> Self {
         let motion = &job.setup.motion;
-        let CutFrame { feed, normal, axis } = CutFrame::along(motion, job.cut.milling);
+        let CutFrame { feed, normal, axis } = motion.cut_frame(job.cut.wall(job.cutter));
         let radius = job.cutter.radius();
         let origin = motion.start().translation + feed * (radius + job.gap) - normal * radius;
         Self { feed, normal, axis, origin }

@@ -2,13 +2,12 @@
 
 use super::*;
 use crate::arm::{Variant, testing};
-use crate::milling::{Coefficients, Tooth};
 use crate::motion::{Pass, Ramp};
 use crate::outcome::{EvaluationSettings, Simulation, Statistics, statistics};
 use crate::stability::SemiDiscretisation;
 use crate::stability_analysis::linear_at;
 use std::f64::consts::TAU;
-use stead_model::cutting::MillingDirection as Way;
+use stead_model::cutting::{Coefficients, Cut, MillingDirection as Way, Rotation, Tooth};
 
 /// The arm on the published pass of a length (m) at a feed (m/s).
 fn setup(variant: Variant, damping_scale: f64, feed: f64, length: f64) -> Setup {
@@ -21,15 +20,13 @@ fn setup(variant: Variant, damping_scale: f64, feed: f64, length: f64) -> Setup 
 fn cutter(pitch_deg: f64, runout: f64, tangential: f64, radial: f64) -> Cutter {
     let tooth = |pitch: f64, runout| Tooth { pitch: pitch.to_radians(), radius: 5e-3 + runout };
     let teeth = vec![tooth(pitch_deg, runout), tooth(360.0 - pitch_deg, 0.0)];
-    let coefficients = Coefficients { tangential, radial, axial: 0.0 };
-    Cutter::new(teeth, 30_f64.to_radians(), 0.02, coefficients).unwrap()
+    let coefficients = Coefficients::new(tangential, radial, 0.0);
+    Cutter::new(teeth, 30_f64.to_radians(), Some(0.02), Rotation::Clockwise, coefficients).unwrap()
 }
 
-fn cut(rpm: f64, steps_per_turn: usize, slices: usize) -> Cut {
-    Cut {
-        milling: Way::Climb,
-        radial_depth: 4e-3,
-        axial_depth: 1.6e-3,
+fn cut(rpm: f64, steps_per_turn: usize, slices: usize) -> PassCut {
+    PassCut {
+        section: Cut { direction: Way::Climb, radial_depth: 4e-3, axial_depth: 1.6e-3 },
         length: 0.09,
         spindle_speed: rpm * TAU / 60.0,
         slices,
@@ -106,8 +103,10 @@ fn the_axial_force_bends_the_condensed_arm_too() {
     let setup = setup(Variant::Gravity, 1.0, 3.7 / 60.0, 0.04);
     let plain = cutter(170.0, 0.0, 661.553e6, 253.458e6);
     let coefficients = Coefficients { axial: 400e6, ..plain.coefficients() };
-    let pulled = Cutter::new(plain.teeth().to_vec(), plain.helix(), plain.flute(), coefficients).unwrap();
-    let cut = Cut { length: 0.03, ..cut(18_700.0, 90, 8) };
+    let pulled =
+        Cutter::new(plain.teeth().to_vec(), plain.helix(), plain.flute_length(), Rotation::Clockwise, coefficients)
+            .unwrap();
+    let cut = PassCut { length: 0.03, ..cut(18_700.0, 90, 8) };
     let [full, fast, without] = [(&pulled, false), (&pulled, true), (&plain, true)].map(|(cutter, is_fast)| {
         let job = Job { setup: &setup, cutter, cut: &cut, gap: 0.5e-3 };
         if is_fast { job.run_fast() } else { job.run() }.unwrap()
@@ -159,7 +158,8 @@ fn steel_is_unstable_and_bounded_with_ten_times_the_damping() {
 fn a_run_beyond_what_is_represented_ends_with_the_reason() {
     let setup = setup(Variant::Springs, 0.0, 3.0 / 60.0, 0.1);
     let cutter = cutter(180.0, 0.0, 3333e7, 2289e7);
-    let cut = Cut { axial_depth: 20e-3, ..cut(3100.0, 90, 8) };
+    let mut cut = cut(3100.0, 90, 8);
+    cut.section.axial_depth = 20e-3;
     for is_fast in [false, true] {
         let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
         let run = if is_fast { job.run_fast() } else { job.run() }.unwrap();
@@ -188,14 +188,14 @@ fn without_work_the_arm_follows_its_path() {
 #[test]
 fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
-    let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), Cut { length: 0.01, ..cut(18_700.0, 90, 8) });
+    let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), PassCut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
     let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
-    let frame = CutFrame::along(&setup.motion, cut.milling);
+    let frame = setup.motion.cut_frame(cut.wall(&cutter));
     let verdict_at = |distance: f64| {
         let plant = linear_at(&setup, distance).unwrap().plant(&frame).unwrap();
-        SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().verdict(cut.axial_depth)
+        SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().verdict(cut.section.axial_depth)
     };
     assert_eq!(found.verdict, verdict_at(cutter.radius() + 0.06 + 0.005));
     assert_ne!(found.verdict, verdict_at(0.005));

@@ -11,18 +11,17 @@
 //! print F_x and -F_y.)
 
 mod cut;
-mod cutter;
 mod limit;
 #[cfg(test)]
 mod tests;
 
-pub use cut::{Cut, CutError, min_steps};
-pub use cutter::{Coefficients, Cutter, CutterError, Tooth};
+pub use cut::{CutError, PassCut, min_steps};
 pub use limit::{Limit, Limits};
 
 use super::surface::{LANES, Node, Passes, Predecessor, Rays, Stock, ToothQuery, Trail, starts};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
+use stead_model::cutting::{Coefficients, Cutter};
 use stead_numerics::simd::{Instructions, Lanes};
 
 /// Turns in a stretch of the trail.
@@ -100,7 +99,7 @@ impl MaterialRemoval {
     ///
     /// # Errors
     /// [`CutError`] if the cutter cannot do the cut.
-    pub fn new(cutter: &Cutter, cut: &Cut) -> Result<Self, CutError> {
+    pub fn new(cutter: &Cutter, cut: &PassCut) -> Result<Self, CutError> {
         Self::with_room(cutter, cut, 0)
     }
 
@@ -108,19 +107,22 @@ impl MaterialRemoval {
     ///
     /// # Errors
     /// [`CutError`] if the cutter cannot do the cut.
-    pub fn with_room(cutter: &Cutter, cut: &Cut, steps: usize) -> Result<Self, CutError> {
+    pub fn with_room(cutter: &Cutter, cut: &PassCut, steps: usize) -> Result<Self, CutError> {
         cut.check(cutter)?;
-        let sense = cut.sense();
-        let slice = cut.axial_depth / cut.slices as f64;
+        if cutter.coefficients().has_edge_forces() {
+            return Err(CutError::EdgeForces);
+        }
+        let sense = cut.section.sense();
+        let slice = cut.section.axial_depth / cut.slices as f64;
         let lags = (0..cut.slices.div_ceil(LANES)).map(|bundle| {
             let [mut sines, mut cosines] = [[0.0; LANES]; 2];
             for lane in 0..LANES {
                 let height = ((bundle * LANES + lane) as f64 + 0.5) * slice;
-                (sines[lane], cosines[lane]) = libm::sincos(sense * cutter.lag(height.min(cut.axial_depth)));
+                (sines[lane], cosines[lane]) = libm::sincos(sense * cutter.lag(height.min(cut.section.axial_depth)));
             }
             [sines, cosines]
         });
-        let top = if cut.is_slot(cutter) { f64::INFINITY } else { cut.radial_depth };
+        let top = if cut.section.is_slot(cutter) { f64::INFINITY } else { cut.section.radial_depth };
         Ok(Self {
             teeth: edges(cutter, cut),
             lags: lags.collect(),
@@ -146,7 +148,7 @@ impl MaterialRemoval {
         let chips = self.instructions.run(Moment { removal: self, time, centre });
         let sum = |parts: [f64; LANES]| parts.iter().sum::<f64>() * self.slice;
         let (cosines, sines) = (sum(chips.cosine), sum(chips.sine));
-        let Coefficients { tangential, radial, axial } = self.coefficients;
+        let Coefficients { tangential, radial, axial, .. } = self.coefficients;
         let tangential = -self.sense * tangential;
         let on_tool =
             [tangential * cosines - radial * sines, tangential * sines + radial * cosines, axial * sum(chips.sum)];
@@ -227,9 +229,9 @@ impl MaterialRemoval {
     }
 }
 
-fn edges(cutter: &Cutter, cut: &Cut) -> Vec<Edge> {
+fn edges(cutter: &Cutter, cut: &PassCut) -> Vec<Edge> {
     let teeth = cutter.teeth();
-    let (turn, sense) = (cut.steps_per_turn as f64, cut.sense());
+    let (turn, sense) = (cut.steps_per_turn as f64, cut.section.sense());
     let edges = cutter.offsets().into_iter().enumerate().map(|(own, offset)| {
         let mut delay = 0.0;
         let predecessors = (0..teeth.len()).map(|back| {

@@ -3,26 +3,32 @@
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use stead_model::cutting::{Engagement, MillingDirection as Way};
+use stead_model::cutting::{Cut, Engagement, MillingDirection as Way, Rotation, Tooth};
 
 mod strips;
 
-const K: Coefficients = Coefficients { tangential: 661.553e6, radial: 253.458e6, axial: 0.1e9 };
+const K: Coefficients = Coefficients::new(661.553e6, 253.458e6, 0.1e9);
 const RADIUS: f64 = 5e-3;
 
 fn cutter(pitches_deg: &[f64], runouts: &[f64], helix_deg: f64) -> Cutter {
     let teeth = pitches_deg.iter().zip(runouts);
     let teeth = teeth.map(|(pitch, runout)| Tooth { pitch: pitch.to_radians(), radius: RADIUS + runout });
-    Cutter::new(teeth.collect(), helix_deg.to_radians(), 0.02, K).unwrap()
+    Cutter::new(teeth.collect(), helix_deg.to_radians(), Some(0.02), Rotation::Clockwise, K).unwrap()
 }
 
-fn cut(milling: Way, slices: usize, steps_per_turn: usize) -> Cut {
+fn cut(direction: Way, slices: usize, steps_per_turn: usize) -> PassCut {
     let spindle_speed = 18_700.0 * TAU / 60.0;
-    Cut { milling, radial_depth: 4e-3, axial_depth: 1.6e-3, length: 0.09, spindle_speed, slices, steps_per_turn }
+    PassCut {
+        section: Cut { direction, radial_depth: 4e-3, axial_depth: 1.6e-3 },
+        length: 0.09,
+        spindle_speed,
+        slices,
+        steps_per_turn,
+    }
 }
 
 /// The published aluminium cut with a tool that does not yield.
-fn aluminium(slices: usize, steps_per_turn: usize) -> (Cutter, Cut) {
+fn aluminium(slices: usize, steps_per_turn: usize) -> (Cutter, PassCut) {
     (cutter(&[170.0, 190.0], &[0.0; 2], 30.0), cut(Way::Climb, slices, steps_per_turn))
 }
 
@@ -39,7 +45,7 @@ fn ramped(time: f64) -> [f64; 2] {
 }
 
 /// Forces over a rigid pass: times and what is printed, F_x and -F_y.
-fn rigid_pass((cutter, cut): &(Cutter, Cut), until: f64) -> Vec<(f64, [f64; 2])> {
+fn rigid_pass((cutter, cut): &(Cutter, PassCut), until: f64) -> Vec<(f64, [f64; 2])> {
     let mut milling = MaterialRemoval::new(cutter, cut).unwrap();
     let step = cut.step();
     (0..(until / step) as usize)
@@ -294,11 +300,11 @@ proptest! {
             }
             let mut expected = 0.0;
             for (tooth, offset) in cutter.teeth().iter().zip(cutter.offsets()) {
-                let psi = cut.sense() * (step as f64 / turn as f64 * TAU - offset);
+                let psi = cut.section.sense() * (step as f64 / turn as f64 * TAU - offset);
                 let cosine = libm::cos(psi);
                 // Only the shoulder: what is behind and above is checked by the other rays.
                 let top = if cosine > 0.0 { (node.place[1] - 4e-3) / cosine } else { f64::MAX };
-                let reach = brute_force(&wild, &cutter, cut.sense(), step as f64, psi);
+                let reach = brute_force(&wild, &cutter, cut.section.sense(), step as f64, psi);
                 expected += (tooth.radius - reach.max(top)).max(0.0);
             }
             let found = force.on_tool[2] / K.axial / 1.6e-3;

@@ -1,9 +1,10 @@
 //! How the force of milling follows the motion of the tip, at each part of a turn.
 
-use crate::milling::{Coefficients, Cut, Cutter};
+use crate::milling::PassCut;
 use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
 use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, MillingDirection};
+use stead_model::cutting::{Coefficients, Cutter};
 
 /// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`. N/m
 ///
@@ -20,15 +21,15 @@ pub(super) struct Directional {
 ///
 /// # Errors
 /// [`EngagementError`] for a width of cut that is none.
-pub(super) fn exit(cutter: &Cutter, cut: &Cut) -> Result<f64, EngagementError> {
+pub(super) fn exit(cutter: &Cutter, cut: &PassCut) -> Result<f64, EngagementError> {
     // By psi, down milling is up milling the other way round.
     let diameter = 2.0 * cutter.radius();
-    let engagement = Engagement::up(cut.radial_depth.min(diameter), diameter)?;
+    let engagement = Engagement::up(cut.section.radial_depth.min(diameter), diameter)?;
     Ok(engagement.arcs().iter().fold(0.0, |_, arc| arc.exit))
 }
 
 impl Directional {
-    pub(super) fn new(cutter: &Cutter, cut: &Cut, exit: f64, depth: f64, intervals: usize) -> Self {
+    pub(super) fn new(cutter: &Cutter, cut: &PassCut, exit: f64, depth: f64, intervals: usize) -> Self {
         let width = TAU / intervals as f64;
         let slice = depth / cut.slices as f64;
         let lags: Vec<f64> = (0..cut.slices).map(|k| cutter.lag((k as f64 + 0.5) * slice)).collect();
@@ -40,7 +41,7 @@ impl Directional {
                 let mut sum = Integrals::default();
                 for lag in &lags {
                     // Between -pi and pi, where the work lies from 0 to `exit`; in a slot beyond pi too.
-                    let psi = cut.sense() * (middle - lag);
+                    let psi = cut.section.sense() * (middle - lag);
                     let psi = psi - TAU * ((psi + PI) / TAU).floor();
                     for psi in [psi, psi + TAU] {
                         let arc = Arc { entry: (psi - width / 2.0).max(0.0), exit: (psi + width / 2.0).min(exit) };
@@ -49,7 +50,7 @@ impl Directional {
                         }
                     }
                 }
-                parts.push(matrix(cutter, cut.milling, &sum) * (slice / width));
+                parts.push(matrix(cutter, cut.section.direction, &sum) * (slice / width));
             }
         }
         Self { parts, teeth: offsets.len() }
@@ -72,8 +73,8 @@ impl Directional {
 }
 
 /// The mean over a turn of what one tooth does, at 1 m depth of cut. N/m^2
-pub(super) fn mean(cutter: &Cutter, cut: &Cut, exit: f64) -> Matrix3x2<f64> {
-    matrix(cutter, cut.milling, &Integrals::over(Arc { entry: 0.0, exit })) / TAU
+pub(super) fn mean(cutter: &Cutter, cut: &PassCut, exit: f64) -> Matrix3x2<f64> {
+    matrix(cutter, cut.section.direction, &Integrals::over(Arc { entry: 0.0, exit })) / TAU
 }
 
 fn matrix(cutter: &Cutter, milling: MillingDirection, sums: &Integrals) -> Matrix3x2<f64> {
@@ -82,7 +83,7 @@ fn matrix(cutter: &Cutter, milling: MillingDirection, sums: &Integrals) -> Matri
         MillingDirection::Conventional => -cutter.coefficients().tangential,
     };
     let Coefficients { radial, axial, .. } = cutter.coefficients();
-    let Integrals { sine, cosine, sine_squared, cosine_squared, sine_cosine } = *sums;
+    let Integrals { sine, cosine, sine_squared, cosine_squared, sine_cosine, .. } = *sums;
     Matrix3x2::new(
         tangential * sine_cosine - radial * sine_squared,
         -tangential * cosine_squared + radial * sine_cosine,

@@ -2,9 +2,10 @@
 
 use super::directional::{Directional, exit};
 use super::plant::Plant;
-use crate::milling::{Cut, Cutter};
+use crate::milling::PassCut;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::TAU;
+use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
 /// How small motions become large ones.
@@ -59,7 +60,7 @@ impl Verdict {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SemiDiscretisation<'a> {
     cutter: &'a Cutter,
-    cut: &'a Cut,
+    cut: &'a PassCut,
     exit: f64,
     plant: &'a Plant,
     /// E, W_0, W_1.
@@ -85,7 +86,7 @@ impl<'a> SemiDiscretisation<'a> {
     ///
     /// # Errors
     /// [`EngagementError`] for a width of cut that is none.
-    pub fn new(plant: &'a Plant, cutter: &'a Cutter, cut: &'a Cut) -> Result<Self, EngagementError> {
+    pub fn new(plant: &'a Plant, cutter: &'a Cutter, cut: &'a PassCut) -> Result<Self, EngagementError> {
         let swings = plant.poles().iter().fold(0.0_f64, |most, pole| most.max(pole.im));
         let for_modes = (INTERVALS_PER_SWING * swings / cut.spindle_speed).min(MAX_INTERVALS as f64) as usize;
         Self::with_intervals(plant, cutter, cut, for_modes.max(INTERVALS_PER_TOOTH * cutter.teeth().len()))
@@ -99,7 +100,7 @@ impl<'a> SemiDiscretisation<'a> {
     pub fn with_intervals(
         plant: &'a Plant,
         cutter: &'a Cutter,
-        cut: &'a Cut,
+        cut: &'a PassCut,
         intervals: usize,
     ) -> Result<Self, EngagementError> {
         let repeats = repeats(cutter);

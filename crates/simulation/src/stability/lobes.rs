@@ -3,8 +3,9 @@
 use super::floquet::SemiDiscretisation;
 use super::plant::Plant;
 use super::zero_order::ZeroOrder;
-use crate::milling::{Cut, Cutter};
+use crate::milling::PassCut;
 use rayon::prelude::*;
+use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
 /// How deep can be cut at a spindle speed; `None` where all depths up to the largest are stable.
@@ -25,13 +26,13 @@ pub struct Lobe {
 pub fn lobes(
     plant: &Plant,
     cutter: &Cutter,
-    cut: &Cut,
+    cut: &PassCut,
     spindle_speeds: &[f64],
     most: f64,
 ) -> Result<Vec<Lobe>, EngagementError> {
     let zero_order = ZeroOrder::new(plant);
     let lobe = |&spindle_speed: &f64| {
-        let cut = Cut { spindle_speed, ..*cut };
+        let cut = PassCut { spindle_speed, ..*cut };
         Ok(Lobe {
             spindle_speed,
             semi_discretisation: SemiDiscretisation::new(plant, cutter, &cut)?.critical_depth(most),

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::arm::{Arm, Variant, testing};
-use crate::milling::{Coefficients, Cut, Cutter, MaterialRemoval, Tooth};
+use crate::milling::{MaterialRemoval, PassCut};
 use crate::modes::LinearArm;
 use crate::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::MillingDirection as Way;
+use stead_model::cutting::{Coefficients, Cut, Cutter, MillingDirection as Way, Rotation, Tooth};
 
 mod time_domain;
 
@@ -26,15 +26,13 @@ fn benchmark_plant() -> Plant {
 /// Its two teeth, K_t = 600 MPa and K_n = 200 MPa; a force along the tool axis, which does nothing to a tool that does not lean.
 fn benchmark_cutter(pitches_deg: &[f64], helix_deg: f64) -> Cutter {
     let teeth = pitches_deg.iter().map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
-    let coefficients = Coefficients { tangential: 6e8, radial: 2e8, axial: 2e8 };
-    Cutter::new(teeth.collect(), helix_deg.to_radians(), 0.05, coefficients).unwrap()
+    let coefficients = Coefficients::new(6e8, 2e8, 2e8);
+    Cutter::new(teeth.collect(), helix_deg.to_radians(), Some(0.05), Rotation::Clockwise, coefficients).unwrap()
 }
 
-fn cut(milling: Way, immersion: f64, rpm: f64) -> Cut {
-    Cut {
-        milling,
-        radial_depth: immersion * 2.0 * RADIUS,
-        axial_depth: 1e-3,
+fn cut(direction: Way, immersion: f64, rpm: f64) -> PassCut {
+    PassCut {
+        section: Cut { direction, radial_depth: immersion * 2.0 * RADIUS, axial_depth: 1e-3 },
         length: 1.0,
         spindle_speed: rpm * TAU / 60.0,
         slices: 1,
@@ -111,10 +109,10 @@ fn a_cut_beyond_all_numbers_is_unstable() {
 
 /// The method as first published (Insperger and Stépán 2002 and 2004, one delay): in each interval the matrix
 /// `A - b K_i B C` is constant and the delayed motion a mean of two, and all matrices are multiplied out.
-fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: usize) -> f64 {
+fn classical(plant: &Plant, cutter: &Cutter, cut: &PassCut, depth: f64, intervals: usize) -> f64 {
     let n = plant.states();
     let step = PI / cut.spindle_speed / intervals as f64;
-    let exit = libm::acos(1.0 - cut.radial_depth / RADIUS);
+    let exit = libm::acos(1.0 - cut.section.radial_depth / RADIUS);
     let size = n + 2 * intervals;
     let mut whole = DMatrix::<f64>::identity(size, size);
     let [_, _, rising] = plant.step(1e-9);
@@ -124,10 +122,10 @@ fn classical(plant: &Plant, cutter: &Cutter, cut: &Cut, depth: f64, intervals: u
         let mut mean = Matrix2::zeros();
         for part in 0..400 {
             let phi = (interval as f64 + (f64::from(part) + 0.5) / 400.0) / intervals as f64 * PI;
-            let psi = if cut.milling == Way::Climb { PI - phi } else { phi };
+            let psi = if cut.section.direction == Way::Climb { PI - phi } else { phi };
             if psi < exit {
                 let (sine, cosine) = libm::sincos(psi);
-                let sign = if cut.milling == Way::Climb { 1.0 } else { -1.0 };
+                let sign = if cut.section.direction == Way::Climb { 1.0 } else { -1.0 };
                 let Coefficients { tangential, radial, .. } = cutter.coefficients();
                 let force = nalgebra::Vector2::new(
                     sign * tangential * cosine - radial * sine,
@@ -174,7 +172,7 @@ fn the_classical_method_agrees_for_all_immersions() {
 #[test]
 fn errors_fall_with_the_square_of_the_interval() {
     let (plant, cutter) = (benchmark_plant(), benchmark_cutter(&[170.0, 190.0], 30.0));
-    let cut = Cut { slices: 8, ..cut(Way::Climb, 0.3, 7000.0) };
+    let cut = PassCut { slices: 8, ..cut(Way::Climb, 0.3, 7000.0) };
     let size = |intervals| {
         SemiDiscretisation::with_intervals(&plant, &cutter, &cut, intervals).unwrap().verdict(2e-3).multiplier.norm()
     };
@@ -210,14 +208,13 @@ fn the_zero_order_solution_is_that_of_mean_coefficients() {
     }
 }
 
-fn umons(pitches_deg: [f64; 2], rpm: f64, tangential: f64, radial: f64) -> (Cutter, Cut) {
+fn umons(pitches_deg: [f64; 2], rpm: f64, tangential: f64, radial: f64) -> (Cutter, PassCut) {
     let teeth = pitches_deg.map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
-    let coefficients = Coefficients { tangential, radial, axial: 0.0 };
-    let cutter = Cutter::new(teeth.to_vec(), 30_f64.to_radians(), 0.02, coefficients).unwrap();
-    let cut = Cut {
-        milling: Way::Climb,
-        radial_depth: 4e-3,
-        axial_depth: 1.6e-3,
+    let coefficients = Coefficients::new(tangential, radial, 0.0);
+    let cutter =
+        Cutter::new(teeth.to_vec(), 30_f64.to_radians(), Some(0.02), Rotation::Clockwise, coefficients).unwrap();
+    let cut = PassCut {
+        section: Cut { direction: Way::Climb, radial_depth: 4e-3, axial_depth: 1.6e-3 },
         length: 0.09,
         spindle_speed: rpm * TAU / 60.0,
         slices: 8,

@@ -2,8 +2,9 @@
 
 use super::directional::{exit, mean};
 use super::plant::Plant;
-use crate::milling::{Cut, Cutter};
+use crate::milling::PassCut;
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
+use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
 /// The frequency response of a tool tip, from which the zero-order solution is read at any spindle speed.
@@ -49,7 +50,7 @@ impl ZeroOrder {
     ///
     /// # Errors
     /// [`EngagementError`] for a width of cut that is none.
-    pub fn critical_depth(&self, cutter: &Cutter, cut: &Cut, most: f64) -> Result<Option<f64>, EngagementError> {
+    pub fn critical_depth(&self, cutter: &Cutter, cut: &PassCut, most: f64) -> Result<Option<f64>, EngagementError> {
         let teeth = cutter.teeth();
         let coefficients = mean(cutter, cut, exit(cutter, cut)?).map(Complex::from);
         let delays: Vec<f64> = teeth.iter().map(|tooth| tooth.pitch / cut.spindle_speed).collect();

@@ -1,11 +1,10 @@
 use super::*;
 use crate::arm::testing::{spindle, start, tx200};
-use crate::milling::{Coefficients, Tooth};
 use crate::motion::{Motion, Pass, Ramp};
 use crate::path_stability::{PathConfiguration, PathStabilityAnalysis, smallest};
 use crate::stability::Kind;
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::MillingDirection;
+use stead_model::cutting::{Coefficients, Cut, MillingDirection, Rotation, Tooth};
 
 fn setup(variant: Variant, damping_scale: f64) -> Setup {
     let pass = Pass { start: start(), direction: Vector3::x(), length: 0.1 };
@@ -14,14 +13,12 @@ fn setup(variant: Variant, damping_scale: f64) -> Setup {
 }
 
 /// The steel cut of the paper.
-fn steel() -> (Cutter, Cut) {
-    let coefficients = Coefficients { tangential: 3333e6, radial: 2289e6, axial: 0.0 };
+fn steel() -> (Cutter, PassCut) {
+    let coefficients = Coefficients::new(3333e6, 2289e6, 0.0);
     let teeth = vec![Tooth { pitch: PI, radius: 5e-3 }; 2];
-    let cutter = Cutter::new(teeth, 30_f64.to_radians(), 0.022, coefficients).unwrap();
-    let cut = Cut {
-        milling: MillingDirection::Climb,
-        radial_depth: 4e-3,
-        axial_depth: 1.6e-3,
+    let cutter = Cutter::new(teeth, 30_f64.to_radians(), Some(0.022), Rotation::Clockwise, coefficients).unwrap();
+    let cut = PassCut {
+        section: Cut { direction: MillingDirection::Climb, radial_depth: 4e-3, axial_depth: 1.6e-3 },
         length: 0.09,
         spindle_speed: 3100.0 / 60.0 * TAU,
         slices: 32,
@@ -30,32 +27,20 @@ fn steel() -> (Cutter, Cut) {
     (cutter, cut)
 }
 
-fn settings(cut: &Cut) -> AnalysisSettings {
+fn settings(cut: &PassCut) -> AnalysisSettings {
     let speeds = [cut.spindle_speed, cut.spindle_speed * 1.2];
     AnalysisSettings { distance: 0.0, speeds, points: 2, max_depth: 0.022, frequencies: [0.0, 100.0] }
 }
 
-#[test]
-fn the_wall_of_climb_milling_is_to_the_right_of_the_feed() {
-    let (feed, up) = (Vector3::x(), Vector3::z());
-    let climb = CutFrame::new(feed, up, MillingDirection::Climb);
-    assert_eq!((climb.feed, climb.normal), (feed, Vector3::y()));
-    let conventional = CutFrame::new(feed, up, MillingDirection::Conventional);
-    assert_eq!((conventional.feed, conventional.normal), (feed, -Vector3::y()));
-    // A feed that goes down a little is one in the plane of the cut.
-    let sloping = CutFrame::new(Vector3::new(0.8, 0.0, -0.6), up, MillingDirection::Climb);
-    assert!((sloping.feed - feed).norm() < 1e-15 && (sloping.normal - Vector3::y()).norm() < 1e-15);
-}
-
 /// The published steel cut chatters with a flip, which damping slows down and ends.
 #[test]
-fn a_survey_of_the_published_steel_cut() {
+fn stability_of_the_published_steel_cut() {
     let (cutter, cut) = steel();
     let found = analyse(&setup(Variant::Springs, 1.0), &cutter, &cut, &settings(&cut)).unwrap();
     assert_eq!(found.modes.len(), 6);
     assert_eq!(found.cut_stability.verdict.kind(), Kind::Flip);
     let critical = found.cut_stability.semi_discretisation.unwrap();
-    assert!(critical < found.cut_stability.zero_order.unwrap() && critical < cut.axial_depth);
+    assert!(critical < found.cut_stability.zero_order.unwrap() && critical < cut.section.axial_depth);
     // The first lobe is at the speed of the cut.
     assert_eq!(found.lobes[0].semi_discretisation, Some(critical));
     assert!((found.lobes[1].spindle_speed / cut.spindle_speed - 1.2).abs() < 1e-12);

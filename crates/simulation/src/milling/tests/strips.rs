@@ -20,7 +20,8 @@ fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
         [(Way::Climb, 4e-3), (Way::Climb, 9.75e-3), (Way::Conventional, 9.75e-3), (Way::Climb, 10e-3)]
     {
         let cutter = cutter(&[360.0], &[0.0], 0.0);
-        let cut = Cut { radial_depth: width, length, ..cut(direction, 1, turn) };
+        let mut cut = PassCut { length, ..cut(direction, 1, turn) };
+        cut.section.radial_depth = width;
         let mut milling = MaterialRemoval::new(&cutter, &cut).unwrap();
         let mut met = 0;
         for step in 0..30 * turn {
@@ -30,16 +31,16 @@ fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
             if step < 12 * turn || step % 3 != 0 {
                 continue;
             }
-            let ([x, y], psi) = (node.place, cut.sense() * (step as f64 / turn as f64 * TAU));
+            let ([x, y], psi) = (node.place, cut.section.sense() * (step as f64 / turn as f64 * TAU));
             let (sine, cosine) = libm::sincos(psi);
-            let top = if cut.is_slot(&cutter) { f64::MAX } else { width };
+            let top = if cut.section.is_slot(&cutter) { f64::MAX } else { width };
             // Where the ray comes into the block and where it leaves it.
             let (mut from, mut to) = (0.0_f64, RADIUS);
             for (inside, slope) in [(x, sine), (length - x, -sine), (top - y, cosine)] {
                 let edge = -inside / slope;
                 if slope > 0.0 { from = from.max(edge) } else { to = to.min(edge) }
             }
-            let reach = brute_force(&wild, &cutter, cut.sense(), step as f64, psi);
+            let reach = brute_force(&wild, &cutter, cut.section.sense(), step as f64, psi);
             let expected = (to - from.max(reach)).max(0.0);
             met += usize::from(expected > 0.0);
             assert!((found - expected).abs() < 2e-9, "{found} {expected} at {step} {direction:?} {width}");

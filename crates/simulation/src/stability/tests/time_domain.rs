@@ -4,8 +4,9 @@ use super::*;
 
 /// Whether motion dies out over time when the tool really mills: in the end the tip comes by the same way from period to period,
 /// to a tenth of the feed of a tooth. The tool leans so that this part of the force along its axis acts along the feed.
-fn calm(cutter: &Cutter, cut: &Cut, depth: f64, period: usize, lean: f64) -> bool {
-    let cut = Cut { axial_depth: depth, ..*cut };
+fn calm(cutter: &Cutter, cut: &PassCut, depth: f64, period: usize, lean: f64) -> bool {
+    let mut cut = *cut;
+    cut.section.axial_depth = depth;
     let (turn, dt) = (cut.steps_per_turn, cut.step());
     let mut milling = MaterialRemoval::new(cutter, &cut).unwrap();
     let feed = 0.1e-3 * cutter.teeth().len() as f64 / turn as f64;
@@ -56,7 +57,7 @@ fn the_time_domain_has_the_same_critical_depths() {
         (Way::Climb, 0.6, 8000.0, [160.0, 200.0], 0.0, 1),
     ] {
         let cutter = benchmark_cutter(&pitches, helix);
-        let cut = Cut { slices, steps_per_turn: 360, ..cut(direction, immersion, rpm) };
+        let cut = PassCut { slices, steps_per_turn: 360, ..cut(direction, immersion, rpm) };
         let period = if pitches[0] == pitches[1] { 180 } else { 360 };
         let ours = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap().critical_depth(20e-3).unwrap();
         let calm = |depth: f64| calm(&cutter, &cut, depth, period, 0.0);
@@ -68,7 +69,7 @@ fn the_time_domain_has_the_same_critical_depths() {
 #[test]
 fn a_force_along_the_tool_axis_is_felt() {
     let (flat, cutter) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0));
-    let cut = Cut { slices: 1, steps_per_turn: 360, ..cut(Way::Climb, 0.5, 5000.0) };
+    let cut = PassCut { slices: 1, steps_per_turn: 360, ..cut(Way::Climb, 0.5, 5000.0) };
     let without = SemiDiscretisation::new(&flat, &cutter, &cut).unwrap().critical_depth(20e-3).unwrap();
     for lean in [-0.4, 0.4] {
         let b = DMatrix::from_row_slice(2, 3, &[0.0, 0.0, 0.0, 1.0 / MASS, 0.0, lean / MASS]);

@@ -1,0 +1,236 @@
+//! The batch evaluator: one path point, all grid values of beta, all posture classes.
+//!
+//! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
+//! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
+//! quantities, one state at a time and by way of the Jacobian, come from [`super::evaluate::reference::state`]; the tests hold the
+//! two against each other.
+//!
+//! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the frame
+//! turned with joint 1, where the arm is a plane mechanism; joint angles are never computed, only their sines and cosines
+//! (but where a compliance is given over the angle itself); what the first three joints rule out never reaches the wrist;
+//! and all is done in the widest vectors that the processor has ([`stead_numerics::simd`]), to the same bits with each.
+
+mod arm;
+mod laws;
+mod limit;
+mod pose;
+mod spread;
+mod states;
+mod wrist;
+
+pub use states::StateGrid;
+
+use crate::problem::{Problem, Redundancy, base_from_workpiece};
+use laws::Laws;
+use limit::Limit;
+use nalgebra::Vector3;
+use pulp::{Simd, WithSimd};
+use spread::Spread;
+use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
+use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
+use wrist::Demand;
+
+/// What does not change from one placement to the next.
+#[derive(Debug, Clone)]
+pub struct BatchEvaluator<'a> {
+    problem: &'a Problem,
+    count: usize,
+    cosine: Vec<f64>,
+    sine: Vec<f64>,
+    limits: [Limit; 6],
+    laws: Laws,
+    spread: Option<Spread>,
+    flips: Flips,
+    forearm_sin_cos: (f64, f64),
+    instructions: Instructions,
+}
+
+/// Which of the two postures of a class are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flips {
+    /// Both as one, for arms that yield alike in both ([`Robot::flips_yield_alike`]): the score is that of either.
+    Both,
+    /// The one with theta_5 not negative.
+    Plain,
+    /// The one with theta_5 negative.
+    Flipped,
+}
+
+impl Flips {
+    /// What evaluators an arm needs: one for both postures of a class, or one for each.
+    pub fn of(robot: &Robot) -> &'static [Self] {
+        if robot.flips_yield_alike() { &[Self::Both] } else { &[Self::Plain, Self::Flipped] }
+    }
+
+    /// Whether a posture is among them.
+    pub fn contains(self, posture: Posture) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Plain => !posture.is_flipped(),
+            Self::Flipped => posture.is_flipped(),
+        }
+    }
+}
+
+/// A direction or vector of the flange as it turns with beta, in the root frame: `a + b cos(beta) + c sin(beta)`.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    c: Vector3<f64>,
+}
+
+impl Turning {
+    /// A vector given in the tool frame, on point axes given as columns in the root frame (Caro 2013, eq. 7 and 10).
+    fn new(axes: &nalgebra::Matrix3<f64>, v: &Vector3<f64>) -> Self {
+        let (x, y, z) = (axes.column(0), axes.column(1), axes.column(2));
+        Self { a: -z * v.z, b: x * v.x - y * v.y, c: x * v.y + y * v.x }
+    }
+
+    #[inline(always)]
+    fn at<S: Simd>(&self, k: usize, cosine: Lanes<S>, sine: Lanes<S>) -> Lanes<S> {
+        cosine * self.b[k] + sine * self.c[k] + self.a[k]
+    }
+}
+
+/// One path point at one placement, in the root frame of the arm.
+#[derive(Debug, Clone, Copy)]
+struct PointGeometry {
+    tip: Vector3<f64>,
+    x6: Turning,
+    y6: Turning,
+    z6: Turning,
+    lever: Turning,
+    normal: Vector3<f64>,
+    force: Vector3<f64>,
+    moment: Vector3<f64>,
+    uncertainty: f64,
+}
+
+impl<'a> BatchEvaluator<'a> {
+    /// Prepares the evaluation of a problem on a grid of beta, in one or both postures of each class.
+    pub fn new(problem: &'a Problem, grid: &Redundancy, flips: Flips) -> Self {
+        let count = grid.beta_count;
+        let padded = count.next_multiple_of(MAX_LANES);
+        let angle = |k: usize| libm::sincos(grid.beta(k % count));
+        let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
+        Self {
+            problem,
+            count,
+            cosine: (0..padded).map(|k| angle(k).1).collect(),
+            sine: (0..padded).map(|k| angle(k).0).collect(),
+            limits,
+            laws: Laws::new(&problem.robot),
+            spread: Spread::new(problem),
+            flips,
+            forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
+            instructions: Instructions::best(),
+        }
+    }
+
+    /// Which of the two postures of a class are evaluated.
+    pub fn flips(&self) -> Flips {
+        self.flips
+    }
+
+    /// The same with other instructions of the processor; the results are the same too.
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
+    }
+
+    /// Evaluates path point `point` with the workpiece at `pose` (x, y, z in m, yaw in rad) into `states`.
+    ///
+    /// Allowed states get their score (m) and the sines and cosines of their joint angles (theta_5 not negative), all others
+    /// an infinite score. A state is allowed when one of the postures asked for is inside the limits of every joint by
+    /// itself; turns, and limits that tell two postures apart, are for the planner to look at.
+    pub fn evaluate(&self, point: usize, pose: &[f64; 4], states: &mut StateGrid) {
+        self.evaluate_classes(point, pose, [true; 4], states);
+    }
+
+    /// The same with states of some posture classes only, by their [`PostureClass::index`].
+    pub fn evaluate_classes(&self, point: usize, pose: &[f64; 4], classes: [bool; 4], states: &mut StateGrid) {
+        let geometry = self.point_geometry(point, pose);
+        for class in PostureClass::ALL {
+            states.clear(class);
+        }
+        self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
+    }
+
+    fn point_geometry(&self, point: usize, pose: &[f64; 4]) -> PointGeometry {
+        let g = self.problem.robot.geometry();
+        let root_from_base = g.base_from_root.transpose();
+        let workpiece = base_from_workpiece(pose);
+        let path_point = &self.problem.task.points()[point];
+        let wrench = &self.problem.task.wrenches()[point];
+        let rotation = root_from_base * workpiece.rotation;
+        let axes = rotation * path_point.workpiece_from_point();
+        let tool_from_flange = self.problem.spindle.flange_from_tool.inverse();
+        let mut lever = self.problem.spindle.flange_from_tool.translation;
+        lever.z += g.flange;
+        let flange_axis = |k: usize| Turning::new(&axes, &tool_from_flange.rotation.column(k).into_owned());
+        PointGeometry {
+            tip: root_from_base * (workpiece.point(&path_point.position) - g.root_in_base),
+            x6: flange_axis(0),
+            y6: flange_axis(1),
+            z6: flange_axis(2),
+            lever: Turning::new(&axes, &(tool_from_flange.rotation * lever)),
+            normal: axes.column(1).into_owned(),
+            force: rotation * wrench.force,
+            moment: rotation * wrench.moment,
+            uncertainty: self.problem.criterion.force_uncertainty * wrench.force.norm(),
+        }
+    }
+}
+
+/// The evaluation of one point, for any instructions of the processor.
+struct Evaluation<'k> {
+    evaluator: &'k BatchEvaluator<'k>,
+    geometry: &'k PointGeometry,
+    classes: [bool; 4],
+    states: &'k mut StateGrid,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        if self.geometry.uncertainty > 0.0 || self.evaluator.spread.is_some() {
+            self.batches::<S, true>(simd);
+        } else {
+            self.batches::<S, false>(simd);
+        }
+    }
+}
+
+impl Evaluation<'_> {
+    #[inline(always)]
+    fn batches<S: Simd, const ROBUST: bool>(self, simd: S) {
+        let Self { evaluator, geometry, classes, states } = self;
+        for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
+            let cosine = Lanes::load(simd, &evaluator.cosine, start);
+            let sine = Lanes::load(simd, &evaluator.sine, start);
+            let centre = evaluator.centre(simd, geometry, cosine, sine);
+            for back in [false, true] {
+                let arm = evaluator.arm(simd, &centre, back);
+                if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
+                    continue;
+                }
+                let demand = Demand::new(simd, geometry, &arm, cosine, sine);
+                for (negative, elbow) in arm.elbows.iter().enumerate() {
+                    let class = PostureClass::ALL[2 * usize::from(back) + negative];
+                    if !classes[class.index()] || !elbow.allowed.any() {
+                        continue;
+                    }
+                    let found = evaluator.wrist::<S, ROBUST>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    if let Some((score, directions)) = found {
+                        states.set_lanes(class, start, score, &directions);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

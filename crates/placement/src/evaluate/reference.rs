@@ -1,0 +1,249 @@
+//! The score of one state: one path point, one placement, one beta, one posture.
+//!
+//! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
+//! batch evaluator of [`super::evaluate::batch`], which is tested against this one.
+
+use crate::problem::{Problem, base_from_workpiece};
+use nalgebra::Vector3;
+use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, cast, conditioning::inverse_condition};
+use stead_model::stiffness::displacement;
+use stead_numerics::scalar::Scalar;
+
+/// A state of the arm at a path point and what the cutting force does to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<T: Scalar> {
+    /// Joint angles as the inverse kinematics gives them, limits not looked at. rad
+    pub joints: [T; 6],
+    /// 1/kappa_F of the normalised Jacobian at the tool centre point (Caro 2013, eq. 26).
+    pub inverse_condition: T,
+    /// Displacement of the tool centre point in the base frame, `K^-1 w` (eq. 12). m
+    pub deflection: Vector3<T>,
+    /// Its part along the feed (made normal to the tool axis). m
+    pub feed_part: T,
+    /// Its part to the left of the feed, `axis x feed`; its absolute value is c_i (eq. 11). m
+    pub normal_part: T,
+    /// Its part along the tool axis, positive towards the robot. m
+    pub axial_part: T,
+    /// What a force error of the given relative size can add to c_i: `eps |w| |K^-1 n|`. m
+    pub uncertainty: T,
+    /// Standard deviation sigma_i of the normal part, where the uncertainty of the compliances is known. m
+    pub deviation: Option<T>,
+    /// What the score adds for it: `confidence sigma_i`. m
+    pub margin: T,
+}
+
+impl<T: Scalar> State<T> {
+    /// What the point counts in the mean: `c_i + eps |w| |K^-1 n| + confidence sigma_i`. m
+    pub fn score(&self) -> T {
+        self.normal_part.abs() + self.uncertainty + self.margin
+    }
+}
+
+/// Evaluates path point `point` for a workpiece at `pose` (x, y, z in m, yaw in rad), free angle `beta` (rad) and a
+/// posture. Joint limits are not looked at.
+///
+/// # Errors
+/// [`Unreachable`] when the posture cannot reach the point.
+pub fn state<T: Scalar>(
+    problem: &Problem,
+    point: usize,
+    pose: &[T; 4],
+    beta: T,
+    posture: Posture,
+) -> Result<State<T>, Unreachable> {
+    let joints = problem.robot.inverse(&problem.base_from_flange(point, pose, beta), posture)?;
+    let frames = Frames::new(&problem.robot, &joints);
+    let workpiece = base_from_workpiece(pose);
+    let path_point = &problem.task.points()[point];
+    let wrench = &problem.task.wrenches()[point];
+    let tip = workpiece.point(&cast(&path_point.position));
+    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
+    let force = workpiece.rotation * cast(&wrench.force);
+    let moment = workpiece.rotation * cast(&wrench.moment);
+    let compliances = problem.robot.compliances_at(&joints);
+    let deflection = displacement(&frames, &tip, &compliances, &force, &moment).linear;
+    let normal = axes.column(1).into_owned();
+    let uncertainty = if problem.criterion.force_uncertainty > 0.0 {
+        let response = displacement(&frames, &tip, &compliances, &normal, &Vector3::zeros()).linear;
+        response.dot(&response).sqrt().scale(problem.criterion.force_uncertainty * wrench.force.norm())
+    } else {
+        T::zero()
+    };
+    let deviation = problem.robot.uncertainty().map(|known| {
+        let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
+        known.standard_deviation(&by_parameters(&problem.robot, &joints, &parts))
+    });
+    let margin = match deviation {
+        Some(deviation) if problem.criterion.confidence > 0.0 => deviation.scale(problem.criterion.confidence),
+        _ => T::zero(),
+    };
+    Ok(State {
+        joints,
+        inverse_condition: inverse_condition(&frames, &tip, problem.constraints.characteristic_length),
+        deflection,
+        feed_part: deflection.dot(&axes.column(0)),
+        normal_part: deflection.dot(&normal),
+        axial_part: deflection.dot(&axes.column(2)),
+        uncertainty,
+        deviation,
+        margin,
+    })
+}
+
+/// Derivatives of the normal part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
+/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `pose`. m per SI unit of each
+/// parameter; empty where no uncertainty is known.
+///
+/// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
+pub fn normal_part_by_parameters<T: Scalar>(problem: &Problem, point: usize, pose: &[T; 4], joints: &[T; 6]) -> Vec<T> {
+    let frames = Frames::new(&problem.robot, joints);
+    let workpiece = base_from_workpiece(pose);
+    let path_point = &problem.task.points()[point];
+    let wrench = &problem.task.wrenches()[point];
+    let tip = workpiece.point(&cast(&path_point.position));
+    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
+    let normal = axes.column(1).into_owned();
+    let (force, moment) = (workpiece.rotation * cast(&wrench.force), workpiece.rotation * cast(&wrench.moment));
+    let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
+    by_parameters(&problem.robot, joints, &parts)
+}
+
+/// What each joint adds to the normal part of the deflection per compliance: `(J_j . n) (J_j . w)`, in m per rad/(N m).
+fn parts_per_compliance<T: Scalar>(
+    frames: &Frames<T>,
+    tip: &Vector3<T>,
+    normal: &Vector3<T>,
+    force: &Vector3<T>,
+    moment: &Vector3<T>,
+) -> [T; 6] {
+    std::array::from_fn(|j| {
+        let (velocity, axis) = frames.twist(j, tip);
+        velocity.dot(normal) * (velocity.dot(force) + axis.dot(moment))
+    })
+}
+
+/// The chain rule from what each joint adds per compliance to the parameters of the joints' laws.
+fn by_parameters<T: Scalar>(robot: &Robot, joints: &[T; 6], parts: &[T; 6]) -> Vec<T> {
+    let parameters = robot.uncertainty().map(Uncertainty::parameters).unwrap_or_default();
+    let slopes = robot.compliance_gradient_at(joints);
+    parameters.iter().zip(slopes).map(|(parameter, slope)| parts[parameter.joint()] * slope).collect()
+}
+
+#[cfg(test)]
+mod uncertainty_tests;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{five_segments, five_segments_compensated};
+    use nalgebra::{Matrix6, Vector6};
+    use proptest::prelude::*;
+    use stead_model::robot::angles::yaw_from_q4;
+    use stead_numerics::scalar::Dual;
+
+    fn published_optimum() -> [f64; 4] {
+        [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+    }
+
+    #[test]
+    fn agrees_with_the_prototype_at_point_30() {
+        let problem = five_segments();
+        let found = state(&problem, 30, &published_optimum(), 40.0_f64.to_radians(), Posture::ALL[2]).unwrap();
+        let expected = [-92.6318, 27.4912, -150.7821, -178.7079, 101.6922, 1.5275];
+        for (found, expected) in found.joints.iter().zip(expected) {
+            assert!((found.to_degrees() - expected).abs() < 5.1e-5, "{} {expected}", found.to_degrees());
+        }
+        assert!((found.score() * 1e3 - 0.8392428).abs() < 5.1e-8, "{}", found.score() * 1e3);
+        assert!((found.inverse_condition - 0.479182).abs() < 5.1e-7, "{}", found.inverse_condition);
+    }
+
+    #[test]
+    fn parts_of_the_deflection_make_up_the_whole() {
+        let problem = five_segments();
+        let s = state(&problem, 41, &published_optimum(), 0.4, Posture::ALL[3]).unwrap();
+        let parts = Vector3::new(s.feed_part, s.normal_part, s.axial_part);
+        assert!((parts.norm() - s.deflection.norm()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn uncertainty_is_the_worst_case_over_force_errors() {
+        let mut problem = five_segments();
+        problem.criterion.force_uncertainty = 0.1;
+        let (pose, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
+        let robust = state(&problem, 60, &pose, beta, posture).unwrap();
+        let size = 0.1 * problem.task.wrenches()[60].force.norm();
+        let mut worst = 0.0_f64;
+        for k in 0..2000 {
+            // Directions spread over the sphere.
+            let z = 1.0 - 2.0 * (f64::from(k) + 0.5) / 2000.0;
+            let (s, c) = libm::sincos(f64::from(k) * 2.399_963_229_728_653);
+            let r = libm::sqrt(1.0 - z * z);
+            let error = Vector3::new(r * c, r * s, z) * size;
+            let mut wrenches = problem.task.wrenches().to_vec();
+            wrenches[60].force += error;
+            let mut changed = problem.clone();
+            changed.task = stead_model::task::Task::new(problem.task.path().clone(), wrenches).unwrap();
+            let c_i = state(&changed, 60, &pose, beta, posture).unwrap().normal_part.abs();
+            assert!(c_i <= robust.score() * (1.0 + 1e-12));
+            worst = worst.max(c_i);
+        }
+        assert!(worst > robust.score() * 0.998, "{worst} {}", robust.score());
+    }
+
+    proptest! {
+        #[test]
+        fn deflection_agrees_with_the_matrix_inverse(beta in -3.0..3.0_f64, point in 0..105_usize) {
+            let problem = five_segments();
+            let pose = published_optimum();
+            for posture in Posture::ALL {
+                let Ok(found) = state(&problem, point, &pose, beta, posture) else { continue };
+                let frames = Frames::new(&problem.robot, &found.joints);
+                let workpiece = base_from_workpiece(&pose);
+                let tip = workpiece.point(&problem.task.points()[point].position);
+                prop_assert!((frames.base_from_flange.point(&problem.spindle.flange_from_tool.translation) - tip).norm() < 1e-9);
+                let jacobian = frames.jacobian(&tip);
+                let joint = Matrix6::from_diagonal(&Vector6::from(problem.robot.compliances_at(&found.joints).map(|c| 1.0 / c)));
+                let Some(inverse) = jacobian.try_inverse() else { continue };
+                let stiffness = inverse.transpose() * joint * inverse;
+                let force = workpiece.rotation * problem.task.wrenches()[point].force;
+                let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
+                let Some(moved) = stiffness.lu().solve(&wrench) else { continue };
+                prop_assume!(found.inverse_condition > 0.02);
+                prop_assert!((moved.fixed_rows::<3>(0) - found.deflection).norm() < 1e-9 * (1.0 + moved.norm()));
+            }
+        }
+
+        #[test]
+        fn derivatives_agree_with_central_differences(
+            beta in -3.0..3.0_f64, point in 0..105_usize, is_compensated in any::<bool>()
+        ) {
+            let mut problem = if is_compensated { five_segments_compensated() } else { five_segments() };
+            problem.criterion.force_uncertainty = 0.2;
+            let pose = published_optimum();
+            let at = |shift: [f64; 5]| {
+                let moved = std::array::from_fn(|k| pose[k] + shift[k]);
+                state(&problem, point, &moved, beta + shift[4], Posture::ALL[2])
+            };
+            let variables = std::array::from_fn(|k| Dual::<5>::variable(pose[k], k));
+            let Ok(exact) = state(&problem, point, &variables, Dual::variable(beta, 4), Posture::ALL[2]) else { return Ok(()) };
+            prop_assume!(exact.inverse_condition.value > 0.05);
+            for k in 0..5 {
+                let h = 1e-6;
+                let mut shift = [0.0; 5];
+                shift[k] = h;
+                let Ok(up) = at(shift) else { continue };
+                shift[k] = -h;
+                let Ok(down) = at(shift) else { continue };
+                let difference = |f: &dyn Fn(&State<f64>) -> f64| (f(&up) - f(&down)) / (2.0 * h);
+                prop_assert!((exact.normal_part.gradient[k] - difference(&|s| s.normal_part)).abs() < 1e-8);
+                prop_assert!((exact.uncertainty.gradient[k] - difference(&|s| s.uncertainty)).abs() < 1e-8);
+                prop_assert!((exact.inverse_condition.gradient[k] - difference(&|s| s.inverse_condition)).abs() < 1e-6);
+                for j in 0..6 {
+                    let turned = stead_model::robot::angles::wrap(up.joints[j] - down.joints[j]) / (2.0 * h);
+                    let tolerance = 1e-6 * (1.0 + turned.abs() * turned.abs());
+                    prop_assert!((exact.joints[j].gradient[k] - turned).abs() < tolerance, "{} {}", exact.joints[j].gradient[k], turned);
+                }
+            }
+        }
+    }
+}

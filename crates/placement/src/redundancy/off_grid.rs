@@ -1,0 +1,174 @@
+//! Beta off the grid: dynamic programming on ever narrower grids around a plan.
+//!
+//! Each level lays five values of beta around the present plan at every point, finds the best way through them under the
+//! same constraints as on the grid (real joint angles, exact rate), and repeats until nothing moves; then the spacing is
+//! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
+
+use super::super::evaluate::reference;
+use super::super::problem::{Problem, Redundancy};
+use super::joint_turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
+use super::{SegmentPlan, Sense};
+use rayon::prelude::*;
+
+/// Values of beta at each point of a level.
+const VALUES: usize = 5;
+/// Repetitions of a level at the most.
+const REPEATS: usize = 8;
+
+/// A pass that gains less than this share of the cost ends its level.
+const MIN_GAIN: f64 = 1e-9;
+
+/// Points that one thread lays at least.
+const MIN_SHARE: usize = 500;
+
+/// How far the grid of beta around a plan is narrowed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spacing {
+    /// First spacing of beta. rad
+    pub first: f64,
+    /// Last spacing of beta. rad
+    pub last: f64,
+}
+
+impl Spacing {
+    /// From half the step of a grid down to a thousandth of a degree.
+    pub fn full(grid: &Redundancy) -> Self {
+        Self { first: grid.beta_step() / 2.0, last: 1.7e-5 }
+    }
+}
+
+/// One value of beta at one point.
+#[derive(Clone, Copy)]
+struct Node {
+    beta: f64,
+    joints: [f64; 6],
+    score: f64,
+    cost: f64,
+    from: usize,
+}
+
+/// Refines the plan of one segment for the workpiece at `pose` (x, y, z in m, yaw in rad). Returns whether it got better.
+///
+/// The plan given need not be one for this pose exactly: with an infinite cost, the betas of `plan` are only where the grid
+/// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
+pub fn refine(problem: &Problem, pose: &[f64; 4], sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
+    let mut better = false;
+    let mut spacing = range.first;
+    let mut layers = vec![Layer { states: [None; VALUES], is_fresh: false }; plan.points.len()];
+    while spacing >= range.last {
+        layers.iter_mut().for_each(|layer| layer.is_fresh = false);
+        for _ in 0..REPEATS {
+            lay(problem, pose, spacing, plan, &mut layers);
+            if !level(problem, sense, plan, &mut layers) {
+                break;
+            }
+            better = true;
+        }
+        spacing /= 2.0;
+    }
+    better
+}
+
+/// The values of beta that a level lays at one point.
+#[derive(Clone)]
+struct Layer {
+    states: [Option<Node>; VALUES],
+    /// Whether they lie around the present plan, with the present spacing.
+    is_fresh: bool,
+}
+
+/// The sum of scores and the real joint angles of fixed betas at `pose`, or `None` when they break a constraint there.
+pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<SegmentPlan> {
+    let mut replayed = plan.clone();
+    replayed.cost = 0.0;
+    for (place, point) in plan.points.clone().enumerate() {
+        let node = node(problem, pose, point, plan, place, plan.betas[place])?;
+        replayed.joints[place] = node.joints;
+        replayed.cost += node.score;
+        if place > 0 {
+            let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
+            let steps = inside_steps(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
+            if turned > problem.beta_step_limit(point) + BETA_ROUNDING || !steps {
+                return None;
+            }
+        }
+    }
+    Some(replayed)
+}
+
+/// Steps of beta are compared with their limit up to this. rad
+const BETA_ROUNDING: f64 = 1e-9;
+
+fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, place: usize, beta: f64) -> Option<Node> {
+    let state = reference::state(problem, point, pose, beta, plan.posture).ok()?;
+    let joints = nearest_turns(&state.joints, &plan.joints[place]);
+    if !is_allowed(problem, &state) || !inside_limits(problem, &joints) {
+        return None;
+    }
+    Some(Node { beta, joints, score: state.score(), cost: f64::INFINITY, from: 0 })
+}
+
+/// Lays values of beta around the plan, where that moved since.
+fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
+    let middle = VALUES / 2;
+    let first = plan.points.start;
+    layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
+        if layer.is_fresh {
+            return;
+        }
+        layer.is_fresh = true;
+        let own = plan.betas[place];
+        // The plan itself was met before, at the latest spacing.
+        let known = layer.states.iter().flatten().find(|node| node.beta == own && node.joints == plan.joints[place]);
+        let known = known.copied();
+        layer.states = std::array::from_fn(|k| {
+            let beta = own + (k as f64 - middle as f64) * spacing;
+            known.filter(|_| k == middle).or_else(|| node(problem, pose, first + place, plan, place, beta))
+        });
+    });
+}
+
+/// One pass over what was laid; whether the plan got better by more than rounding.
+fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
+    let sign = sense.sign();
+    for (place, point) in plan.points.clone().enumerate() {
+        let (done, open) = layers.split_at_mut(place);
+        let before = done.last().map(|layer| &layer.states);
+        let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
+        let beta_limit = if place > 0 { problem.beta_step_limit(point) + BETA_ROUNDING } else { f64::INFINITY };
+        for node in open[0].states.iter_mut().flatten() {
+            let best = match before {
+                None => Some((0.0, 0)),
+                Some(before) => before
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(index, old)| old.as_ref().map(|old| (index, old)))
+                    .filter(|(_, old)| {
+                        old.cost.is_finite()
+                            && (node.beta - old.beta).abs() <= beta_limit
+                            && inside_steps(&old.joints, &node.joints, &joint_limits)
+                    })
+                    .map(|(index, old)| (old.cost, index))
+                    .min_by(|a, b| a.0.total_cmp(&b.0)),
+            };
+            (node.cost, node.from) = best.map_or((f64::INFINITY, 0), |(cost, from)| (cost + sign * node.score, from));
+        }
+    }
+    let end = layers.last().and_then(|layer| {
+        let ends = layer.states.iter().enumerate().filter_map(|(k, node)| node.map(|node| (node.cost, k)));
+        ends.filter(|(cost, _)| cost.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))
+    });
+    let Some((cost, mut index)) = end else { return false };
+    if plan.cost.is_finite() && cost >= plan.cost * sign - MIN_GAIN * plan.cost.abs() {
+        return false;
+    }
+    for (place, layer) in layers.iter_mut().enumerate().rev() {
+        let Some(node) = layer.states[index] else { return false };
+        layer.is_fresh = plan.betas[place] == node.beta && plan.joints[place] == node.joints;
+        plan.betas[place] = node.beta;
+        plan.joints[place] = node.joints;
+        index = node.from;
+    }
+    plan.cost = cost * sign;
+    true
+}

@@ -1,0 +1,200 @@
+//! Dynamic programming over (beta, turns) in one posture: where a flip or the turns of joints 1, 4 and 6 decide.
+//!
+//! Slower than [`super::transition`] and rarely needed, so it is written to be plainly right: every real configuration of every
+//! grid state is a node, and an edge is a change of beta within its rate with every real joint angle within its step. The
+//! tests use it as the judge of the fast planner.
+
+use super::super::evaluate::reference;
+use super::joint_turns::{JointPath, SegmentChoice, inside_steps, is_allowed};
+use super::{Planner, Sense, Workspace};
+use std::ops::Range as Span;
+use stead_model::robot::{Posture, PostureClass, turns::Range};
+
+/// One real configuration at one grid value of beta.
+#[derive(Debug, Clone)]
+struct Node {
+    beta: usize,
+    joints: [f64; 6],
+    score: f64,
+    /// Smallest sum of signed scores up to here.
+    cost: f64,
+    from: usize,
+}
+
+/// The cheapest plan of a segment over the given postures.
+pub(super) fn plan(
+    planner: &Planner<'_>,
+    span: &Span<usize>,
+    pose: &[f64; 4],
+    sense: Sense,
+    postures: &[Posture],
+    workspace: &mut Workspace,
+) -> Option<SegmentChoice> {
+    let mut best: Option<SegmentChoice> = None;
+    for posture in postures {
+        let Some(choice) = one_posture(planner, span, pose, sense, *posture, workspace) else { continue };
+        let sign = sense.sign();
+        match &mut best {
+            Some(known) if known.cost == choice.cost && known.betas == choice.betas => {
+                known.joint_paths.extend(choice.joint_paths)
+            }
+            Some(known) if known.cost * sign <= choice.cost * sign => {}
+            _ => best = Some(choice),
+        }
+    }
+    best
+}
+
+/// Segments of more points than this are gone through in blocks.
+const MAX_LAYERS: usize = 4096;
+
+/// What is planned: one segment in one posture.
+pub(super) struct Search<'s> {
+    pub planner: &'s Planner<'s>,
+    pub span: &'s Span<usize>,
+    pub pose: &'s [f64; 4],
+    pub sense: Sense,
+    pub posture: Posture,
+}
+
+fn one_posture(
+    planner: &Planner<'_>,
+    span: &Span<usize>,
+    pose: &[f64; 4],
+    sense: Sense,
+    posture: Posture,
+    workspace: &mut Workspace,
+) -> Option<SegmentChoice> {
+    let block = if span.len() > MAX_LAYERS { span.len().isqrt() } else { span.len() };
+    Search { planner, span, pose, sense, posture }.plan(block, workspace)
+}
+
+impl Search<'_> {
+    /// The cheapest plan. Only the layers of one block of points are kept, and the first ones of the others, from which
+    /// theirs are found again.
+    pub fn plan(&self, block: usize, workspace: &mut Workspace) -> Option<SegmentChoice> {
+        let length = self.span.len();
+        let mut firsts = vec![self.first(workspace)?];
+        let mut layers = Vec::new();
+        for place in (0..length).step_by(block) {
+            layers = self.block(firsts.last()?, place, (place + block).min(length), workspace)?;
+            if place + block < length {
+                firsts.push(self.next(layers.last()?, place + block, workspace)?);
+            }
+        }
+        let last = layers.last()?;
+        let mut index = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost))?;
+        let cost = last[index].cost * self.sense.sign();
+        let (mut betas, mut joints) = (Vec::with_capacity(length), Vec::with_capacity(length));
+        for (number, first) in firsts.iter().enumerate().rev() {
+            if number + 1 < firsts.len() {
+                layers = self.block(first, number * block, (number + 1) * block, workspace)?;
+            }
+            for layer in layers.iter().rev() {
+                let node = &layer[index];
+                betas.push(self.planner.grid.beta(node.beta));
+                joints.push(node.joints);
+                index = node.from;
+            }
+        }
+        betas.reverse();
+        joints.reverse();
+        let joint_paths = vec![JointPath { posture: self.posture, joints }];
+        Some(SegmentChoice { points: self.span.clone(), betas, cost, joint_paths })
+    }
+
+    /// The layers of the points at `from` up to `to`, the first one given.
+    fn block(&self, first: &[Node], from: usize, to: usize, workspace: &mut Workspace) -> Option<Vec<Vec<Node>>> {
+        let mut layers = vec![first.to_vec()];
+        for place in from + 1..to {
+            layers.push(self.next(layers.last()?, place, workspace)?);
+        }
+        Some(layers)
+    }
+
+    /// The layer of the first point, where it has states.
+    fn first(&self, workspace: &mut Workspace) -> Option<Vec<Node>> {
+        let mut layer = nodes(self.planner, self.span.start, self.pose, self.posture, workspace);
+        layer.iter_mut().for_each(|node| node.cost = node.score * self.sense.sign());
+        Some(layer).filter(|layer| !layer.is_empty())
+    }
+
+    /// The layer after another, where some of its states can be reached.
+    fn next(&self, before: &[Node], place: usize, workspace: &mut Workspace) -> Option<Vec<Node>> {
+        let point = self.span.start + place;
+        let planner = self.planner;
+        let mut layer = nodes(planner, point, self.pose, self.posture, workspace);
+        connect(before, &mut layer, planner.rate_limit.reach(point), planner.grid.beta_count, &planner.steps[point]);
+        layer.retain(|node| node.cost.is_finite());
+        layer.iter_mut().for_each(|node| node.cost += node.score * self.sense.sign());
+        Some(layer).filter(|layer| !layer.is_empty())
+    }
+}
+
+/// Every real configuration of every allowed grid state of one point, in the order of beta.
+fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture, space: &mut Workspace) -> Vec<Node> {
+    let problem = planner.problem;
+    // The evaluator says which grid values are worth a closer look.
+    let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
+        return Vec::new();
+    };
+    evaluator.evaluate(point, pose, &mut space.now);
+    let class: PostureClass = posture.class();
+    let mut nodes = Vec::new();
+    for beta in 0..planner.grid.beta_count {
+        if !space.now.inner_scores(class)[beta].is_finite() {
+            continue;
+        }
+        let Ok(state) = reference::state(problem, point, pose, planner.grid.beta(beta), posture) else {
+            continue;
+        };
+        if !is_allowed(problem, &state) {
+            continue;
+        }
+        let mut configurations = vec![[0.0; 6]];
+        for (j, joint) in problem.robot.joints().iter().enumerate() {
+            let range = Range::of(joint);
+            let extended = configurations.iter().flat_map(|known| {
+                range.real_angles(state.joints[j]).map(|real| {
+                    let mut next = *known;
+                    next[j] = real;
+                    next
+                })
+            });
+            configurations = extended.collect();
+        }
+        let score = state.score();
+        nodes.extend(configurations.into_iter().map(|joints| Node {
+            beta,
+            joints,
+            score,
+            cost: f64::INFINITY,
+            from: 0,
+        }));
+    }
+    nodes
+}
+
+/// Gives each node its cheapest predecessor.
+fn connect(before: &[Node], layer: &mut [Node], reach: usize, count: usize, limits: &[f64; 6]) {
+    let mut starts = vec![before.len(); count + 1];
+    for (index, node) in before.iter().enumerate().rev() {
+        starts[node.beta] = index;
+    }
+    for beta in (0..count).rev() {
+        starts[beta] = starts[beta].min(starts[beta + 1]);
+    }
+    for node in layer {
+        let reach = reach as isize;
+        for k in 0..=2 * reach {
+            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+            let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
+            for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
+                if old.cost < node.cost && inside_steps(&old.joints, &node.joints, limits) {
+                    node.cost = old.cost;
+                    node.from = index;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! The global search: a genetic algorithm over table pose and, if wanted, the posture scheme.
+//!
+//! Genes are x, y, z and the yaw (not Q4, which is stretched near +-1 and has a seam there). In the exact mode every
+//! candidate gets its best posture scheme from the planner; in the genetic mode the scheme is part of the genome, one
+//! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
+//! many points and segments fail.
+//!
+//! Candidates are looked at through a table where the task allows one ([`super::lookup`]), and then the basins that go on, and
+//! the best of every generation, are looked at by the planner: only averages are the table's.
+//!
+//! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
+//! seed alone and not on the number of threads.
+
+use super::evaluator::Evaluator;
+use super::outcome::Generation;
+use super::problem::{Cell, Placement, Problem};
+use super::redundancy::Objective;
+use super::sense::Sense;
+use super::settings::{PostureSearch, SearchSettings};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::f64::consts::TAU;
+use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::monitor::{Monitor, Progress};
+
+/// One candidate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// x, y, z (m) and yaw (rad).
+    pub pose: [f64; 4],
+    /// One posture per segment, in the genetic mode.
+    pub scheme: Option<Vec<Posture>>,
+    /// What it is worth under its best plan.
+    pub objective: Objective,
+}
+
+/// What a search returns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The best candidates of distinct basins, best first; if nothing was feasible, the one that came nearest.
+    pub basins: Vec<Candidate>,
+    /// Generation by generation.
+    pub history: Vec<Generation>,
+    /// Placements evaluated.
+    pub evaluations: usize,
+    /// Whether a table misled it: what the table promised, the planner does not find.
+    pub misled: bool,
+    /// Whether the caller stopped it.
+    pub interrupted: bool,
+}
+
+/// Share of the population that goes on unchanged: the best.
+const ELITE: f64 = 0.05;
+/// Share of the children that have two parents; the others are mutants of one.
+const CROSSOVER: f64 = 0.8;
+/// Candidates that fight for the place of a parent.
+const TOURNAMENT: usize = 3;
+/// How far outside its parents a child may be, relative to their distance.
+const OVERSHOOT: f64 = 0.25;
+/// Standard deviation of a mutation relative to the cell, at the start and at the end.
+const MUTATION: (f64, f64) = (0.2, 0.004);
+/// Two placements are in one basin when they are nearer than this, relative to the cell, and in yaw (rad).
+const BASIN: (f64, f64) = (0.25, 0.35);
+
+/// Basins kept in mind during the search.
+const ARCHIVE: usize = 64;
+
+/// Order of two candidates, better first.
+pub fn rank(sense: Sense, a: Objective, b: Objective) -> Ordering {
+    match (a, b) {
+        (Objective::Feasible(a), Objective::Feasible(b)) => match sense {
+            Sense::Min => a.total_cmp(&b),
+            Sense::Max => b.total_cmp(&a),
+        },
+        (Objective::Feasible(_), Objective::Infeasible { .. }) => Ordering::Less,
+        (Objective::Infeasible { .. }, Objective::Feasible(_)) => Ordering::Greater,
+        (Objective::Infeasible { points: p, segments: s }, Objective::Infeasible { points: q, segments: t }) => {
+            (p, s).cmp(&(q, t))
+        }
+    }
+}
+
+/// Searches the cell.
+pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> Found {
+    let problem = evaluator.planner().problem();
+    let cell = &problem.cell;
+    let mut population = initial(problem, settings, sense);
+    evaluate(evaluator, &mut population, 0);
+    let mut evaluations = population.len();
+    let mut history = Vec::new();
+    let mut best = Vec::new();
+    let mut archive = Vec::new();
+    let mut interrupted = false;
+    for generation in 0..=settings.generations {
+        if generation > 0 {
+            let elite = ((population.len() as f64 * ELITE).ceil() as usize).min(population.len() - 1);
+            let children = (elite..settings.population)
+                .map(|index| {
+                    let mut random = stream(settings.seed, sense, generation, index);
+                    breed(cell, settings, &population, sense, generation, &mut random)
+                })
+                .collect::<Vec<_>>();
+            population.truncate(elite);
+            population.extend(children);
+            evaluate(evaluator, &mut population, elite);
+            evaluations += settings.population - elite;
+        }
+        population.sort_by(|a, b| rank(sense, a.objective, b.objective));
+        archive.extend(population.iter().filter(|i| i.objective.mean().is_some()).cloned());
+        archive.sort_by(|a, b| rank(sense, a.objective, b.objective));
+        archive = distinct(cell, &archive, ARCHIVE);
+        let figures = figures(sense, generation, &population, evaluations);
+        history.push(figures);
+        best.push(population[0].clone());
+        monitor.report(Progress::Search {
+            stage: stage(sense),
+            done: generation,
+            total: settings.generations,
+            best: figures.best,
+        });
+        if monitor.should_stop() {
+            interrupted = true;
+            break;
+        }
+    }
+    archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
+    evaluator.check(&mut history, &best, sense);
+    let settled = evaluator.settle(archive, sense, settings.basins, monitor);
+    evaluations += settled.looks;
+    Found { basins: settled.basins, history, evaluations, misled: settled.misled, interrupted }
+}
+
+/// The name of a search in reports of progress.
+fn stage(sense: Sense) -> &'static str {
+    match sense {
+        Sense::Min => "best placement",
+        Sense::Max => "worst placement",
+    }
+}
+
+/// The random numbers of one candidate: seed and place decide, nothing else.
+fn stream(seed: u64, sense: Sense, generation: usize, index: usize) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let side = match sense {
+        Sense::Min => 0,
+        Sense::Max => 1_u64 << 63,
+    };
+    random.set_stream(side | (generation as u64) << 32 | index as u64);
+    random
+}
+
+/// The bounds of the genes.
+fn bounds(cell: &Cell) -> [(f64, f64); 4] {
+    let [x, y, z] = cell.position;
+    [(x.min, x.max), (y.min, y.max), (z.min, z.max), (cell.yaw.min, cell.yaw.max)]
+}
+
+/// A Latin hypercube: along every gene, one candidate in each of equal slices.
+fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Candidate> {
+    let size = settings.population;
+    let mut random = stream(settings.seed, sense, 0, size);
+    let slices: [Vec<usize>; 4] = std::array::from_fn(|_| {
+        let mut order: Vec<usize> = (0..size).collect();
+        for k in (1..size).rev() {
+            order.swap(k, random.random_range(0..=k));
+        }
+        order
+    });
+    let bounds = bounds(&problem.cell);
+    let segments = problem.task.segments().len();
+    (0..size)
+        .map(|index| {
+            let mut random = stream(settings.seed, sense, 0, index);
+            let pose = std::array::from_fn(|k| {
+                let share = (slices[k][index] as f64 + random.random::<f64>()) / size as f64;
+                bounds[k].0 + share * (bounds[k].1 - bounds[k].0)
+            });
+            let scheme = (settings.postures == PostureSearch::Genetic)
+                .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
+            Candidate { pose, scheme, objective: Objective::Infeasible { points: usize::MAX, segments: 0 } }
+        })
+        .collect()
+}
+
+fn random_posture(random: &mut impl Rng) -> Posture {
+    Posture::ALL[random.random_range(0..8)]
+}
+
+fn evaluate(evaluator: &Evaluator<'_>, population: &mut [Candidate], from: usize) {
+    population[from..].par_iter_mut().for_each_init(
+        || evaluator.workspace(),
+        |workspace, candidate| {
+            candidate.objective = evaluator.objective(&candidate.pose, candidate.scheme.as_deref(), workspace);
+        },
+    );
+}
+
+/// One child: of two parents, or a mutant of one.
+fn breed(
+    cell: &Cell,
+    settings: &SearchSettings,
+    population: &[Candidate],
+    sense: Sense,
+    generation: usize,
+    random: &mut ChaCha8Rng,
+) -> Candidate {
+    let mother = tournament(population, sense, random);
+    let mut child = mother.clone();
+    if random.random::<f64>() < CROSSOVER {
+        let father = tournament(population, sense, random);
+        for k in 0..4 {
+            let share = random.random_range(-OVERSHOOT..1.0 + OVERSHOOT);
+            let apart = father.pose[k] - mother.pose[k];
+            child.pose[k] += share * if k == 3 && cell.is_yaw_free() { wrap(apart) } else { apart };
+        }
+        if let (Some(scheme), Some(other)) = (&mut child.scheme, &father.scheme) {
+            for (posture, theirs) in scheme.iter_mut().zip(other) {
+                if random.random::<bool>() {
+                    *posture = *theirs;
+                }
+            }
+        }
+    } else {
+        let progress = generation as f64 / settings.generations.max(1) as f64;
+        let spread = MUTATION.0 * libm::pow(MUTATION.1 / MUTATION.0, progress);
+        for (k, (min, max)) in bounds(cell).into_iter().enumerate() {
+            child.pose[k] += spread * (max - min) * normal(random);
+        }
+        if let Some(scheme) = &mut child.scheme {
+            let chance = 1.0 / scheme.len() as f64;
+            for posture in scheme.iter_mut() {
+                if random.random::<f64>() < chance {
+                    *posture = random_posture(random);
+                }
+            }
+        }
+    }
+    let [x, y, z, yaw] = child.pose;
+    let inside = cell.clamp(&Placement { x, y, z, yaw });
+    child.pose = [inside.x, inside.y, inside.z, inside.yaw];
+    child
+}
+
+fn tournament<'p>(population: &'p [Candidate], sense: Sense, random: &mut ChaCha8Rng) -> &'p Candidate {
+    let mut winner = &population[random.random_range(0..population.len())];
+    for _ in 1..TOURNAMENT {
+        let rival = &population[random.random_range(0..population.len())];
+        if rank(sense, rival.objective, winner.objective) == Ordering::Less {
+            winner = rival;
+        }
+    }
+    winner
+}
+
+/// A normally distributed number (Box and Muller), from libm so that it is the same everywhere.
+fn normal(random: &mut impl Rng) -> f64 {
+    let (u, v): (f64, f64) = (random.random(), random.random());
+    libm::sqrt(-2.0 * libm::log(1.0 - u)) * libm::cos(TAU * v)
+}
+
+fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluations: usize) -> Generation {
+    let means: Vec<f64> = population.iter().filter_map(|i| i.objective.mean()).collect();
+    Generation {
+        sense,
+        generation,
+        best: means.first().copied(),
+        average: (!means.is_empty()).then(|| means.iter().sum::<f64>() / means.len() as f64),
+        feasible: means.len(),
+        population: population.len(),
+        evaluations,
+    }
+}
+
+/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `most`.
+pub fn distinct(cell: &Cell, sorted: &[Candidate], most: usize) -> Vec<Candidate> {
+    let mut basins: Vec<Candidate> = Vec::new();
+    for candidate in sorted {
+        if basins.len() == most {
+            break;
+        }
+        let is_new = basins.iter().all(|known| {
+            let far = (0..3).any(|k| {
+                let width = cell.position[k].width();
+                width > 0.0 && (known.pose[k] - candidate.pose[k]).abs() / width > BASIN.0
+            });
+            far || wrap(known.pose[3] - candidate.pose[3]).abs() > BASIN.1
+        });
+        if is_new {
+            basins.push(candidate.clone());
+        }
+    }
+    basins
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lookup::LookupTable;
+    use super::super::redundancy::Planner;
+    use super::super::testing::five_segments;
+    use super::*;
+
+    fn small() -> SearchSettings {
+        SearchSettings { population: 24, generations: 6, ..SearchSettings::default() }
+    }
+
+    #[test]
+    fn same_seed_same_result_for_any_number_of_threads() {
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 24;
+        let planner = Planner::new(&problem);
+        for looks_through_table in [false, true] {
+            let run = |threads: usize, seed: u64| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| {
+                    let table = looks_through_table.then(|| LookupTable::new(&problem).unwrap());
+                    let evaluator = Evaluator::new(&planner, table.as_ref());
+                    search(&evaluator, &SearchSettings { seed, ..small() }, Sense::Min, &Monitor::silent())
+                })
+            };
+            let one = run(1, 1);
+            assert_eq!(one, run(2, 1));
+            assert_eq!(one, run(5, 1));
+            assert_ne!(one.basins, run(2, 2).basins);
+        }
+    }
+
+    #[test]
+    fn best_only_gets_better_and_stays_in_the_cell() {
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 24;
+        for (sense, postures) in [
+            (Sense::Min, PostureSearch::Exact),
+            (Sense::Max, PostureSearch::Exact),
+            (Sense::Min, PostureSearch::Genetic),
+        ] {
+            let planner = Planner::new(&problem);
+            let evaluator = Evaluator::new(&planner, None);
+            let found = search(&evaluator, &SearchSettings { postures, ..small() }, sense, &Monitor::silent());
+            let best: Vec<f64> = found.history.iter().filter_map(|g| g.best).collect();
+            let sign = if sense == Sense::Min { 1.0 } else { -1.0 };
+            assert!(best.windows(2).all(|pair| pair[1] * sign <= pair[0] * sign));
+            assert_eq!(found.history.len(), 7);
+            for candidate in &found.basins {
+                let [x, y, z, yaw] = candidate.pose;
+                assert!(problem.cell.contains(&Placement { x, y, z, yaw }));
+                assert_eq!(candidate.scheme.is_some(), postures == PostureSearch::Genetic);
+            }
+        }
+    }
+
+    #[test]
+    fn feasible_ranks_before_infeasible() {
+        let (a, b) = (Objective::Feasible(1.0), Objective::Feasible(2.0));
+        let (c, d) =
+            (Objective::Infeasible { points: 1, segments: 5 }, Objective::Infeasible { points: 2, segments: 0 });
+        assert_eq!(rank(Sense::Min, a, b), Ordering::Less);
+        assert_eq!(rank(Sense::Max, a, b), Ordering::Greater);
+        assert_eq!(rank(Sense::Max, a, c), Ordering::Less);
+        assert_eq!(rank(Sense::Min, d, c), Ordering::Greater);
+    }
+}
