@@ -45,7 +45,7 @@ pub mod units;
 
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
-pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
+pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify};

@@ -2,7 +2,7 @@
 
 use super::plan::PlanTable;
 use crate::scalars::Whole;
-use crate::shapes::{Matrix, Vector};
+use crate::shapes::{List, Matrix, Vector};
 use crate::units::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -70,6 +70,8 @@ pub struct FitTable {
     /// Whether parameters that the readings do not determine keep their values of the robot file; false where left out, and
     /// then such a sheet is refused.
     pub reduce: Option<bool>,
+    /// Numbers of one to five joints that keep their compliance of the robot file.
+    pub hold: Option<List<Whole<1, 6>>>,
     /// Whether joint 2 has one compliance for each of its angles without a compensator too; false where left out.
     pub distinct_q2: Option<bool>,
     /// Angles of the joint beside the compensator that differ by no more than this count as one; 0.05 where left out.

@@ -2,17 +2,21 @@
 
 mod directions;
 mod file;
+mod locate;
 mod plan;
 
 pub use file::IdentificationFile;
+pub use locate::LocatedError;
 pub use plan::{PlanRun, read_plan};
 
 use super::robot::robot_from;
-use super::sheet::{repeated, sheet_from};
+use super::sheet::sheet_from;
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile, input_file};
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::scalars::{Whole, joint_set};
+use crate::shapes::List;
 use file::{BaseTable, CompensatorGeometryTable};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
@@ -48,7 +52,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     let document = source.parse()?;
     let at = document.root();
     let file: IdentificationFile = document.read()?;
-    let Shared { robot, robot_input, robot_text, load_point, angle_tolerance, varying, note, start } =
+    let Shared { robot, robot_input, robot_text, load_point, angle_tolerance, hold, varying, note, start } =
         Shared::new(&file, &at)?;
     let fit = file.fit.unwrap_or_default();
     let sheet_file = at.key("sheet").named_file()?;
@@ -61,7 +65,6 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
             }
         }
     }
-    let notes = note.into_iter().chain(repeated(&readings)).collect();
     let inputs = vec![source.as_config(), robot_input, input_file("sheet", &sheet_file.name, &sheet_file.bytes)];
     let problem = Problem {
         robot,
@@ -73,7 +76,9 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         angle_tolerance,
         start,
         reduce: fit.reduce.unwrap_or_default(),
+        hold,
     };
+    let notes = note.into_iter().collect();
     Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
 
@@ -84,6 +89,7 @@ struct Shared {
     robot_text: String,
     load_point: Vector3<f64>,
     angle_tolerance: f64,
+    hold: [bool; 6],
     varying: Option<(usize, Law)>,
     note: Option<String>,
     start: Option<Matrix3<f64>>,
@@ -106,6 +112,10 @@ impl Shared {
             None => None,
         };
         let fit = file.fit.clone().unwrap_or_default();
+        let hold = match &fit.hold {
+            Some(joints) => held_from(joints, &at.key("fit").key("hold"))?,
+            None => [false; 6],
+        };
         let (varying, note) = varying_from(&robot, given, fit.distinct_q2.unwrap_or_default());
         Ok(Self {
             robot,
@@ -113,11 +123,22 @@ impl Shared {
             robot_text: String::from_utf8_lossy(robot_source.bytes()).into_owned(),
             load_point: file.load_point_mm.vector(),
             angle_tolerance: fit.angle_tolerance_deg.map_or(TOLERANCE_DEG.to_radians(), Quantity::si),
+            hold,
             varying,
             note,
             start,
         })
     }
+}
+
+/// The joints that keep the compliance of the robot file.
+fn held_from(joints: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[bool; 6], InputError> {
+    let hold = joint_set(joints, at)?;
+    if hold == [true; 6] {
+        let allowed = "numbers of one to five joints, from 1 to 6, each once";
+        return Err(at.error("holds every joint, so that nothing is left to identify", allowed));
+    }
+    Ok(hold)
 }
 
 fn compensator_from(

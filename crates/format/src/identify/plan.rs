@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
-use stead_calibration::identification::design::{Loads, Request, TestCases, Volume};
+use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
 use stead_model::robot::Robot;
@@ -163,13 +163,14 @@ impl PlanTable {
             Spread { joint: level_joint, needed, limits: limits[level_joint], tolerance: shared.angle_tolerance };
         let loads = match &self.load_directions {
             Some(directions) => loads_from(directions, &at.key("load_directions"))?,
-            None => Loads::Any,
+            None => LoadDirections::Any,
         };
         Ok(Request {
             load_point: shared.load_point,
             points: self.reference_points_mm.0.iter().map(|point| point.vector()).collect(),
             noise,
             varying: shared.varying,
+            hold: shared.hold,
             angle_tolerance: shared.angle_tolerance,
             level_joint,
             levels: spread.levels_from(self.levels_deg.as_ref(), &at.key("levels_deg"))?,
@@ -271,18 +272,18 @@ impl Spread {
     }
 }
 
-fn loads_from(directions: &Directions, at: &Place<'_>) -> Result<Loads, InputError> {
+fn loads_from(directions: &Directions, at: &Place<'_>) -> Result<LoadDirections, InputError> {
     match directions {
-        Directions::Named(Word(NamedDirections::Any)) => Ok(Loads::Any),
-        Directions::Named(Word(NamedDirections::Horizontal)) => Ok(Loads::Horizontal),
-        Directions::Named(Word(NamedDirections::Vertical)) => Ok(Loads::Vertical),
+        Directions::Named(Word(NamedDirections::Any)) => Ok(LoadDirections::Any),
+        Directions::Named(Word(NamedDirections::Horizontal)) => Ok(LoadDirections::Horizontal),
+        Directions::Named(Word(NamedDirections::Vertical)) => Ok(LoadDirections::Vertical),
         Directions::Listed(list) => {
             let vectors: Vec<Vector3<f64>> = list.0.iter().map(|direction| direction.vector()).collect();
             match vectors.iter().position(|vector| vector.norm() < 1e-9) {
                 Some(index) => {
                     Err(at.element(index + 1).error("is no direction: its length is zero", Directions::expected()))
                 }
-                None => Ok(Loads::Listed(vectors.iter().map(|vector| vector.normalize()).collect())),
+                None => Ok(LoadDirections::Listed(vectors.iter().map(|vector| vector.normalize()).collect())),
             }
         }
     }

@@ -7,9 +7,10 @@ use crate::units::{Percent, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_placement::certify::{Unfit, certifiable};
+use stead_placement::certify::certifiable;
 use stead_placement::problem::Problem;
 use stead_placement::settings::CertificateSettings;
+use stead_placement::symmetry::Unsupported;
 
 /// Which gaps can be asked for, on the command line as well.
 pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";
@@ -39,9 +40,9 @@ impl CertificateTable {
 /// the workpiece without one.
 pub(super) fn check_size(problem: &Problem, cell: &Place<'_>) -> Result<(), InputError> {
     match certifiable(problem) {
-        Err(unfit @ Unfit::TooLarge(_, allowed)) => {
-            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", allowed as f64 / 1e9);
-            Err(InputError::new(cell.file.file(), unfit.to_string())
+        Err(too_large @ Unsupported::TooLarge { max, .. }) => {
+            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", max as f64 / 1e9);
+            Err(InputError::new(cell.file.file(), too_large.to_string())
                 .at_line(cell.line())
                 .in_field("cell")
                 .allowed(allowed))
