@@ -129,16 +129,3 @@ macro_rules! required {
     };
 }
 pub(crate) use required;
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::assert_parts;
-    use crate::toml_file::TomlFile;
-
-    #[test]
-    fn a_named_file_that_is_not_there_is_located_at_the_name() {
-        let source = TomlFile::new("f.toml".as_ref(), b"# first\n[a]\nv = 'nowhere/x.csv'\n".to_vec()).unwrap();
-        let result = source.parse().unwrap().at("a.v").named_file().map(drop).map_err(|e| e.to_string());
-        assert_parts(result, "3: a.v", &["nowhere/x.csv", "found 'nowhere/x.csv'", "cannot be read"]);
-    }
-}

@@ -1,9 +1,7 @@
 //! Files for the tests of this room.
 
 use crate::input::InputError;
-use crate::toml_file::TomlFile;
 use crate::{Run, read_run};
-use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// The folder of the crate.
@@ -65,21 +63,6 @@ pub fn assert_refused(from: &str, to: &str, parts: &[&str]) {
     for part in parts.iter().chain(&["; allowed: "]) {
         assert!(message.contains(part), "{part} in {message}");
     }
-}
-
-/// The field `a.v` of a table `[a]` on line 2 with `v` on line 3, or what is wrong with it.
-pub fn read_field<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    at_path("a.v", text)
-}
-
-/// The table `[a]` on line 2 with this text, or what is wrong with it.
-pub fn read_table<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    at_path("a", text)
-}
-
-fn at_path<T: DeserializeOwned>(path: &str, text: &str) -> Result<T, String> {
-    let source = TomlFile::new(Path::new("f.toml"), format!("# first\n[a]\n{text}\n").into_bytes()).unwrap();
-    source.parse().unwrap().at(path).read().map_err(|e| e.to_string())
 }
 
 /// Asserts that a message names file, line and field, and holds some parts.

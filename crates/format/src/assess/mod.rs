@@ -5,7 +5,7 @@ mod file;
 #[cfg(test)]
 mod tests;
 
-pub use file::AssessmentFile;
+pub use file::*;
 
 use super::published_tables::published_tables_from;
 use super::robot::robot_from;
@@ -17,7 +17,6 @@ use crate::shapes::List;
 use crate::tool::Cutting;
 use crate::units::{Mm, Positive};
 use benchmark::{Setting, benchmark_from, direction, yields_from};
-use file::{MapTable, PlaneTable, SelectionTable};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_assessment::benchmark::Plane;

@@ -6,14 +6,13 @@ mod stations;
 #[cfg(test)]
 mod tests;
 
-pub use file::CompensationFile;
+pub use file::*;
 
 use super::robot::robot_from;
 use super::run::read_run;
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile, input_file};
 use crate::quantity::Quantity;
-use file::CompensationTable;
 use rows::rows_from;
 use stations::placed;
 use std::path::Path;

@@ -5,9 +5,10 @@ mod file;
 mod locate;
 mod plan;
 
-pub use file::IdentificationFile;
+pub use directions::{Directions, NamedDirections};
+pub use file::*;
 pub use locate::LocatedError;
-pub use plan::{PlanRun, read_plan};
+pub use plan::{PlanRun, PlanTable, TestTable, VolumeTable, read_plan};
 
 use super::robot::robot_from;
 use super::sheet::sheet_from;
@@ -17,7 +18,6 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, joint_set};
 use crate::shapes::List;
-use file::{BaseTable, CompensatorGeometryTable};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 use stead_calibration::identification::Problem;

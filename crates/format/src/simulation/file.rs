@@ -95,7 +95,7 @@ pub struct AnalysisTable {
     pub lobes_rpm: Option<Span<Rpm<LobeSpeed>>>,
     /// Number of spindle speeds; 60 where left out.
     pub lobes_points: Option<Whole<2, 10000>>,
-    /// Depth beyond which cuts are not looked at; the length of the flutes where left out.
+    /// Largest depth that is examined; the length of the flutes where left out.
     pub max_depth_mm: Option<Mm<Positive>>,
     /// Frequencies `[from, to]` of the frequency response function at the tool centre point; 1 to 250 where left out.
     pub frequencies_hz: Option<Span<Hz<Frequency>>>,

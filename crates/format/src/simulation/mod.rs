@@ -8,7 +8,7 @@ mod stability;
 mod tests;
 
 pub use arm::{MOST_DAMPING_SCALE, Overrides};
-pub use file::SimulationFile;
+pub use file::*;
 
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile};
