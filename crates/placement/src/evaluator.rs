@@ -4,9 +4,11 @@
 
 use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::Generation;
+use super::problem::Placement;
 use super::redundancy::{self, Objective, Planner};
 use super::search::{Candidate, rank};
 use super::sense::Sense;
+use super::symmetry::about_axis_1;
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::Monitor;
@@ -54,7 +56,8 @@ fn apart<'s>(
 ) -> Vec<(&'s Candidate, Candidate)> {
     let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
     for (start, end) in sorted {
-        let place = table.cylindrical(&end.pose);
+        let [x, y, z, yaw] = end.pose;
+        let place = about_axis_1(table.problem(), &Placement { x, y, z, yaw });
         let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]

@@ -15,6 +15,7 @@
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
 pub mod certify;
+pub mod constraints;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
@@ -27,6 +28,7 @@ pub mod refine;
 pub mod search;
 pub mod sense;
 pub mod settings;
+pub mod symmetry;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

@@ -1,8 +1,9 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::lookup::{Accuracy, Shape, Unsuited};
+use super::lookup::{Accuracy, Shape};
 use super::problem::Placement;
 use super::sense::Sense;
+use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use stead_model::robot::Posture;
 
@@ -225,7 +226,7 @@ pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
     /// The table that the searches looked through, or why there is none; `None` where none was asked for.
-    pub tabled: Option<Result<Tabled, Unsuited>>,
+    pub tabled: Option<Result<Tabled, Unsupported>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.

@@ -3,7 +3,7 @@
 use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
-use super::lookup::{LookupTable, Unsuited};
+use super::lookup::LookupTable;
 use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
@@ -11,6 +11,7 @@ use super::refine::{Solution, planned, refine};
 use super::search::{self, Candidate, Found};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -85,7 +86,7 @@ pub fn place(
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     if found.iter().any(|f| f.misled && !f.interrupted) && !monitor.should_stop() {
-        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }

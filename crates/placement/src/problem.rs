@@ -74,7 +74,7 @@ impl Cell {
 }
 
 /// Where the workpiece stands: its origin in the robot base frame, and its rotation about the vertical.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Placement {
     /// x of the workpiece origin. m
     pub x: f64,

@@ -49,12 +49,6 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
 }
 
-/// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
-pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
-    let number = joint + 1;
-    angle.map_or_else(|| format!("k_{number}"), |angle| format!("k_{number} at {:.2} deg", angle.to_degrees()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! What a placement is worth with the limits between neighbouring points dropped, by the ordinary evaluator.
+//! The objective of a placement without the limits between neighbouring points, by the ordinary evaluator.
 
 use crate::evaluate::reference::state;
 use crate::problem::{Placement, Problem};

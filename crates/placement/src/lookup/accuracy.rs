@@ -1,4 +1,4 @@
-//! How far a table is from the ordinary evaluator, measured at states drawn all over the cell.
+//! The error of a lookup table against the ordinary evaluator, at random states all over the cell.
 
 use super::{BetaGrid, LookupTable};
 use crate::feasibility::explain;
@@ -8,12 +8,12 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use stead_model::robot::{PostureClass, angles::wrap};
 
-/// Placements and path points that are looked at.
+/// Random placements, each with a path point.
 const DRAWN: u64 = 96;
 /// Values of beta at each.
 const BETAS: usize = 12;
 
-/// What was found.
+/// The error of a lookup table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// States compared: path point, beta, posture class.
@@ -66,10 +66,10 @@ impl LookupTable<'_> {
         let redundancy = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
         let grid = BetaGrid { count: redundancy.beta_count, reaches: Vec::new() };
         let mut workspace = self.workspace(&grid);
-        let evaluations: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
+        let interpolated: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
             let polar = self.polar_point(&self.place(&pose), point)?;
             let mut scores = vec![f32::INFINITY; grid.count];
-            self.interpolate(&polar, class, &grid, &mut workspace.rows, &mut scores).then_some(scores)
+            self.interpolate(&polar, class, &grid, &mut workspace.scratch, &mut scores).then_some(scores)
         });
         let mut sums = Sums::default();
         for _ in 0..BETAS {
@@ -78,12 +78,12 @@ impl LookupTable<'_> {
             for class in PostureClass::ALL {
                 let mut postures = class.postures().into_iter().map(|posture| &all[usize::from(posture.number()) - 1]);
                 let ordinary = postures.find(|e| e.is_allowed()).and_then(|e| e.state.as_ref()).map(|s| s.score());
-                let looked =
-                    evaluations[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
-                sums.states += usize::from(ordinary.is_some() || looked.is_some());
-                match (ordinary, looked) {
-                    (Some(ordinary), Some(looked)) => {
-                        let error = (looked - ordinary).abs();
+                let found =
+                    interpolated[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
+                sums.states += usize::from(ordinary.is_some() || found.is_some());
+                match (ordinary, found) {
+                    (Some(ordinary), Some(found)) => {
+                        let error = (found - ordinary).abs();
                         sums.scores += ordinary * ordinary;
                         sums.errors += error * error;
                         sums.largest = sums.largest.max(error);

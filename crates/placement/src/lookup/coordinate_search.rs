@@ -1,4 +1,4 @@
-//! From a candidate of the search to the bottom (or top) of its basin, on the table: steps along one direction at a time.
+//! Coordinate search on the lookup table: from a candidate to the bottom (or top) of its basin, one direction at a time.
 //!
 //! The directions are those in which an upright tool's problem has its variables: away from axis 1, up, and the yaw against
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
@@ -14,18 +14,18 @@ use stead_model::robot::Posture;
 
 /// First steps: radius (m), height (m), yaw (rad).
 const FIRST: [f64; 3] = [0.03, 0.03, 0.06];
-/// The polishing ends when every step is below this share of the first.
+/// The search ends when every step is below this share of the first.
 const LAST: f64 = 0.01;
 /// A step that brings nothing is divided by this.
 const SHRINK: f64 = 3.0;
 /// A step that brings something is multiplied by this.
 const GROWTH: f64 = 1.7;
-/// Placements looked at, at the most.
+/// Placements evaluated, at most.
 const MAX_EVALUATIONS: usize = 150;
 
 impl LookupTable<'_> {
-    /// The best placement (in the sense of the sense) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
-    /// worth by the table, and the number of placements looked at; never worse than the start.
+    /// The best placement (in the given sense) that steps from `start` (x, y, z in m, yaw in rad) lead to, its
+    /// objective by the table, and the number of placements evaluated; never worse than the start.
     pub fn coordinate_search(
         &self,
         start: &[f64; 4],
@@ -59,14 +59,6 @@ impl LookupTable<'_> {
             }
         }
         (best, worth, evaluations)
-    }
-
-    /// What an upright tool's problem knows of a pose: radius and height of the workpiece origin (m), and the yaw against its
-    /// azimuth (rad).
-    pub fn cylindrical(&self, pose: &[f64; 4]) -> [f64; 3] {
-        let root = self.problem.robot.geometry().root_in_base;
-        let (x, y) = (pose[0] - root.x, pose[1] - root.y);
-        [libm::hypot(x, y), pose[2], pose[3] - libm::atan2(y, x)]
     }
 
     /// A pose moved along one direction, inside the cell.

@@ -1,8 +1,9 @@
-//! What a placement is worth by the table: dynamic programming over its scores.
+//! The objective of a placement by the lookup table: dynamic programming over interpolated scores.
 //!
 //! The rules are those of [`crate::redundancy::band`], but for the steps and turns of the joints.
 
-use super::interpolate::{PlacedPath, PolarPoint, Rows};
+use super::interpolate::Scratch;
+use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
 use crate::redundancy::Objective;
 use std::ops::Range as Span;
@@ -11,7 +12,7 @@ use stead_model::robot::Posture;
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    pub(super) rows: Rows,
+    pub(super) scratch: Scratch,
     scores: Vec<f32>,
     /// Smallest sums of scores so far, over beta.
     costs: Vec<f32>,
@@ -21,11 +22,11 @@ pub struct Workspace {
 }
 
 impl LookupTable<'_> {
-    /// Space for one thread to look along a grid of beta.
+    /// Scratch space for one thread and one grid of beta.
     pub fn workspace(&self, grid: &BetaGrid) -> Workspace {
         let row = || vec![0.0; grid.count];
         Workspace {
-            rows: Rows::new(self, grid),
+            scratch: Scratch::new(&self.shape, grid),
             scores: row(),
             costs: row(),
             windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
@@ -61,12 +62,13 @@ impl LookupTable<'_> {
                 sum += best;
                 continue;
             }
-            let Workspace { rows, scores, .. } = workspace;
+            let Workspace { scratch, scores, .. } = workspace;
             let is_blocked = |point: &usize| {
                 let polar = self.polar_point(&placed, *point);
                 let mut classes = (0..4).filter(|class| asked(*class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
-                    self.interpolate(polar, class, grid, rows, scores) && scores.iter().any(|score| score.is_finite())
+                    self.interpolate(polar, class, grid, scratch, scores)
+                        && scores.iter().any(|score| score.is_finite())
                 };
                 polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
             };
@@ -93,11 +95,11 @@ impl LookupTable<'_> {
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
-        let Workspace { rows, scores, costs, windows, .. } = workspace;
+        let Workspace { scratch, scores, costs, windows, .. } = workspace;
         // Costs are relative to this, so that long sums keep their digits.
         let mut base = 0.0;
         for (place, point) in span.enumerate() {
-            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, rows, scores) {
+            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, scratch, scores) {
                 return None;
             }
             if place == 0 {

@@ -1,5 +1,6 @@
 //! The table against the ordinary evaluator and the planner, and with parts of the formula broken on purpose.
 
+use super::super::constraints::ConstraintKind;
 use super::super::feasibility::explain;
 use super::super::problem::{Interval, Placement, Redundancy};
 use super::super::redundancy::Objective;
@@ -8,6 +9,7 @@ use super::super::sense::Sense;
 use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;
 use super::*;
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::{PostureClass, Robot};
@@ -47,7 +49,7 @@ fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
         for class in PostureClass::ALL {
             let mut scores = vec![f32::INFINITY; count];
             if let Some(polar) = table.polar_point(&table.place(&pose), point)
-                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.rows, &mut scores)
+                && !table.interpolate(&polar, class.index(), &grid, &mut workspace.scratch, &mut scores)
             {
                 scores.fill(f32::INFINITY);
             }
@@ -162,7 +164,8 @@ fn worth_agrees_with_the_planner() {
                 disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
                 continue;
             };
-            // What the table leaves out, turns and steps of the joints, can only make it find less.
+            // What the table relaxes can only make it find less.
+            assert_eq!(table.relaxed(), [ConstraintKind::JointStep, ConstraintKind::JointTurn]);
             let error = (looked / planned - 1.0).abs();
             assert!(error < 0.02, "{k}: {planned} {looked}");
             close += usize::from(error < 1e-4);
@@ -282,39 +285,40 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     });
     let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
     tilted.task = Task::new(path, tilted.task.wrenches().to_vec()).unwrap();
-    assert_eq!(refused(&tilted), Unsuited::Tilted { point: 40 });
+    assert_eq!(refused(&tilted), Unsupported::TiltedTool { point: 40 });
 
     let mut twisted = five_segments();
     let mut wrenches = twisted.task.wrenches().to_vec();
     wrenches[7].moment.z = 1.0;
     twisted.task = Task::new(twisted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(refused(&twisted), Unsuited::Moment { point: 7 });
+    assert_eq!(refused(&twisted), Unsupported::Moment { point: 7 });
 
     for joint in [0, 3, 5] {
         let mut joints = five_segments().robot.joints().clone();
         (joints[joint].min, joints[joint].max) = (-2.0, 2.0);
         joints[joint].compliance = stead_model::robot::Compliance::Range { at_min: 1e-6, at_max: 2e-6 };
         let problem = Problem { robot: Robot::new("law", joints).unwrap(), ..five_segments() };
-        assert_eq!(refused(&problem), Unsuited::Law { joint: joint + 1 });
+        assert_eq!(refused(&problem), Unsupported::VaryingCompliance { joint: joint + 1 });
     }
 
     let mut uncertain = with_uncertainty(five_segments(), 0.1);
     assert!(LookupTable::shape_for(&uncertain).is_ok());
     uncertain.criterion.confidence = 2.0;
-    assert_eq!(refused(&uncertain), Unsuited::Uncertain);
+    assert_eq!(refused(&uncertain), Unsupported::UncertainCompliances);
 
     let mut leaning = five_segments();
     let mut joints = leaning.robot.joints().clone();
     joints[0].alpha = 0.1;
     leaning.robot = Robot::new("leaning", joints).unwrap();
-    assert_eq!(refused(&leaning), Unsuited::BaseNotVertical);
+    let Unsupported::BaseNotVertical { angle } = refused(&leaning) else { panic!("axis 1 leans") };
+    assert!((angle - 0.1).abs() < 1e-12);
 
     let mut huge = five_segments();
     let mut joints = huge.robot.joints().clone();
     (joints[2].a, joints[3].d) = (120.0, 120.0);
     huge.robot = Robot::new("crane", joints).unwrap();
     huge.cell.position = [Interval { min: -1e3, max: 1e3 }; 3];
-    let Unsuited::TooLarge { bytes, most } = refused(&huge) else { panic!("a crane's table does not fit") };
-    assert!(bytes > most && most == MAX_BYTES);
+    let Unsupported::TooLarge { bytes, max } = refused(&huge) else { panic!("a crane's table does not fit") };
+    assert!(bytes > max && max == MAX_BYTES);
     assert!(refused(&huge).to_string().contains(" GB, and at most 1.1 GB are allowed"), "{}", refused(&huge));
 }

@@ -1,7 +1,7 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
-use super::super::lookup::Unsuited;
 use super::super::settings::{PostureSearch, Tables};
+use super::super::symmetry::Unsupported;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
 
@@ -59,7 +59,7 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     let mut wrenches = tilted.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
     tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsuited::Moment { point: 3 })));
+    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsupported::Moment { point: 3 })));
 }
 
 #[test]

@@ -8,11 +8,12 @@ mod arms;
 mod boxes;
 mod cell;
 mod cells;
+mod certificate;
 mod minorants;
 mod planner;
 
-use super::lower_bound::Model;
-use super::model::prepared;
+use super::cell::whole;
+use super::model::Model;
 use super::region::{Point, Region};
 use crate::feasibility::explain;
 use crate::problem::{Interval, Problem};
@@ -47,8 +48,7 @@ pub struct Truth {
 
 impl Setting {
     pub fn new(problem: Problem) -> Self {
-        let compliances = problem.robot.constant_compliances().unwrap();
-        let (model, whole) = prepared(&problem, &compliances, true);
+        let (model, whole) = (Model::new(&problem, true), whole(&problem));
         let turned = |beta: f64| problem.base_from_flange(0, &[0.0; 4], beta).rotation;
         let turn = turned(0.1) * turned(0.0).transpose();
         let side = problem.robot.geometry().base_from_root[(2, 2)].signum();
