@@ -36,7 +36,7 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let assessment = assessment.inspect_err(|_| out.give_up())?;
 
     let published = run.published.map(|published| {
-        let agreement = published.agreement(&assessment);
+        let agreement = published.figures.agreement(&assessment);
         (published, agreement)
     });
     let context = AssessmentContext {

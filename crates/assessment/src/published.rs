@@ -7,8 +7,6 @@ use super::ranking::{Capable, Competitor, order};
 /// Published tables of an assessment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PublishedTables {
-    /// Where they were published.
-    pub source: String,
     /// Readings of single configurations.
     pub readings: Vec<Reading>,
     /// Robot, force (N) and circularity (m, `None` for a dash).

@@ -6,22 +6,23 @@ use crate::input::InputError;
 use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
 use stead_assessment::published::{PublishedTables, Quantity, Reading};
+use stead_model::published::Published;
 
 /// Reads published tables: `source`, the heads `sides_mm`, `forces_n` and `accuracies_mm`, and for each of `[[robots]]` its
 /// `name`, `accuracy_mm` (by force), `largest_force_n` (by accuracy: the largest of the forces at which the robot is
 /// listed) and the tables `[robots.up]` and `[robots.down]` with `test_mm` and `rated_mm` (smallest, largest, middle),
 /// `optimal_mm` and `middle_mm` (by side). Rows by force or side may be shorter than their head: the rest are dashes.
-pub(super) fn printed_from(source: &Source) -> Result<PublishedTables, InputError> {
+pub(super) fn printed_from(source: &Source) -> Result<Published<PublishedTables>, InputError> {
     let document = source.parse()?;
     let [origin, sides, forces, accuracies, robots] =
         Table::root(&document).fields(["source", "sides_mm", "forces_n", "accuracies_mm", "robots"])?;
     let head = |field: &Field<'_>| field.numbers("one or more numbers above 0", |value| value > 0.0);
     let heads = Heads { sides: head(&sides)?, forces: head(&forces)?, accuracies: head(&accuracies)? };
-    let mut published = PublishedTables { source: origin.string()?.to_owned(), ..PublishedTables::default() };
+    let (source, mut published) = (origin.string()?.to_owned(), PublishedTables::default());
     for row in robots.tables()? {
         robot(&row, &heads, &mut published)?;
     }
-    Ok(published)
+    Ok(Published { source, figures: published })
 }
 
 /// What the rows are by, in the units of the file.

@@ -10,9 +10,10 @@ use super::tables::{
     cell_from, check_confidence, check_tables, constraints_from, criterion_from, moving_spindle_from, redundancy_from,
     reference_from, search_from, spindle_from, transfer_from,
 };
-use crate::input::{InputError, InputFile, Reference};
+use crate::input::{InputError, InputFile};
 use crate::task::{Imported, parse_csv};
 use std::path::Path;
+use stead_model::published::Published;
 use stead_model::robot::Robot;
 use stead_model::task::{Task, ToolPath};
 use stead_placement::problem::Problem;
@@ -33,8 +34,8 @@ pub struct Run {
     pub certificate: Option<CertificateSettings>,
     /// The files that were read, in the order config, robot, task.
     pub inputs: Vec<InputFile>,
-    /// Published figures to print beside ours.
-    pub reference: Option<Reference>,
+    /// Published mean deflections of the four cases (Caro 2013, Table III), to print beside the computed ones. mm
+    pub reference: Option<Published<[f64; 4]>>,
     /// What is to be cut along the path, where its stability is asked for.
     pub path_stability: Option<PathStabilityAnalysis>,
     /// What the user should know about the input though it is not wrong, in sentences.

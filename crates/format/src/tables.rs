@@ -2,7 +2,8 @@
 
 use super::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use super::reader::{Field, Table};
-use crate::input::{InputError, Reference};
+use crate::input::InputError;
+use stead_model::published::Published;
 use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4};
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::{Cell, Constraints, Criterion, Interval, Problem, Redundancy};
@@ -146,10 +147,10 @@ pub(super) fn transfer_from(table: &Table<'_>) -> Result<TransferSettings, Input
     })
 }
 
-pub(super) fn reference_from(table: &Table<'_>) -> Result<Reference, InputError> {
+pub(super) fn reference_from(table: &Table<'_>) -> Result<Published<[f64; 4]>, InputError> {
     let [source, case] = table.fields(["source", "case_mm"])?;
     let case: [f64; 4] = case.numbers_where("four numbers above 0, of cases 1 to 4", |value| value > 0.0)?;
-    Ok(Reference { source: source.string()?.to_owned(), case_mm: case })
+    Ok(Published { source: source.string()?.to_owned(), figures: case })
 }
 
 #[cfg(test)]

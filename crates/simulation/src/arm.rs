@@ -1,8 +1,8 @@
 //! A robot with its spindle as a chain with drives, in one of four variants.
 
 use super::drive::Drive;
-use super::multibody::{Axis, Chain, Joint, Posed};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{SMatrix, SVector, Vector3};
+use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
 
 /// How much of the arm is modelled; each adds to the one before.
@@ -82,8 +82,6 @@ impl AnyArm {
 /// Everything that the two kinds of chain have in common.
 struct Parts<'a> {
     dynamics: &'a [JointDynamics; 6],
-    /// The frame of each row at joint angle zero, in that before it.
-    steps: [Pose<f64>; 6],
     bodies: [Inertial; 6],
     stiffness: [f64; 6],
 }
@@ -91,20 +89,12 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(robot: &'a Robot, spindle: &Spindle, theta: &[f64; 6]) -> Result<Self, Missing> {
         let dynamics = robot.dynamics().ok_or(Missing::Dynamics)?;
-        let steps = std::array::from_fn(|j| {
-            let joint = &robot.joints()[j];
-            let (sine, cosine) = robot.geometry().twist_sin_cos(j, joint.alpha);
-            Pose {
-                rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine),
-                translation: Vector3::new(joint.a, -sine * joint.d, cosine * joint.d),
-            }
-        });
         let mut bodies = dynamics.map(|joint| joint.link);
         if let Some(payload) = &spindle.payload {
             bodies[5] = bodies[5].joined(payload);
         }
         let stiffness = robot.compliances_at(theta).map(|compliance| 1.0 / compliance);
-        Ok(Self { dynamics, steps, bodies, stiffness })
+        Ok(Self { dynamics, bodies, stiffness })
     }
 
     fn felt_gravity(&self, j: usize, variant: Variant) -> f64 {
@@ -124,9 +114,8 @@ impl Arm<6> {
     /// [`Missing::Dynamics`] for a robot without masses.
     pub fn six(robot: &Robot, spindle: &Spindle, variant: Variant, theta: &[f64; 6]) -> Result<Self, Missing> {
         let parts = Parts::new(robot, spindle, theta)?;
-        let joints = std::array::from_fn(|j| Joint::new(parts.steps[j], Axis::Z, Some(parts.bodies[j])));
         Ok(Self {
-            chain: Chain::new(joints, spindle.flange_from_tool),
+            chain: robot.chain(&parts.bodies, spindle.flange_from_tool),
             drive: Drive {
                 stiffness: parts.stiffness.into(),
                 damping: parts.dynamics.map(|joint| joint.damping).into(),
@@ -153,16 +142,16 @@ impl Arm<18> {
         let bearing = |j: usize| Vector3::new(0.0, 0.0, parts.dynamics[j].bearing);
         let from_bearing = |j: usize| Pose { translation: -bearing(j), ..Pose::identity() };
         let to_bearing = |j: usize| Pose { translation: bearing(j), ..Pose::identity() };
-        let joints = std::array::from_fn(|k| {
+        let links = std::array::from_fn(|k| {
             let j = k / 3;
             match k % 3 {
                 0 => {
-                    let step = parts.steps[j].then(&to_bearing(j));
+                    let step = robot.rows()[j].then(&to_bearing(j));
                     let step = if j == 0 { step } else { from_bearing(j - 1).then(&step) };
-                    Joint::new(step, Axis::Z, None)
+                    Link::new(step, Axis::Z, None)
                 }
-                1 => Joint::new(Pose::identity(), Axis::X, None),
-                _ => Joint::new(Pose::identity(), Axis::Y, Some(parts.bodies[j].placed(&from_bearing(j)))),
+                1 => Link::new(Pose::identity(), Axis::X, None),
+                _ => Link::new(Pose::identity(), Axis::Y, Some(parts.bodies[j].placed(&from_bearing(j)))),
             }
         });
         let each = |motor: &dyn Fn(usize) -> f64, other: &dyn Fn(usize) -> f64| {
@@ -170,7 +159,7 @@ impl Arm<18> {
         };
         let gravity = f64::from(u8::from(variant != Variant::Springs));
         Ok(Self {
-            chain: Chain::new(joints, from_bearing(5).then(&spindle.flange_from_tool)),
+            chain: Chain::new(links, from_bearing(5).then(&spindle.flange_from_tool)),
             drive: Drive {
                 stiffness: each(&|j| parts.stiffness[j], &|j| normal[j].stiffness),
                 damping: each(&|j| parts.dynamics[j].damping, &|j| normal[j].damping),

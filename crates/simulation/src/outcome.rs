@@ -15,15 +15,11 @@ pub struct EvaluationSettings {
     pub height: f64,
     /// Cutoff of the Gaussian filter. m
     pub cutoff: f64,
-    /// Figures to compare with.
-    pub published: Option<Published>,
 }
 
-/// Figures of others for the same pass.
+/// Figures of a pass that publications give.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Published {
-    /// Whose.
-    pub source: String,
+pub struct PassFigures {
     /// Forces along the feed and towards the wall, for the variant that was run.
     pub forces: Option<[Statistics; 2]>,
     /// Roughness.

@@ -2,19 +2,12 @@
 
 use super::super::reader::{Field, Table};
 use crate::input::InputError;
+use stead_model::published::Published;
 use stead_simulation::milling::PassCut;
-use stead_simulation::outcome::{EvaluationSettings, Published, Statistics};
+use stead_simulation::outcome::{EvaluationSettings, PassFigures, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::linear_at;
-
-/// The fields of a simulation file that make a [`EvaluationSettings`].
-pub(super) struct LookFields<'a, 'b> {
-    /// `window_s`, `wall_height_mm` and `cutoff_mm` of `[simulation]`.
-    pub keys: Option<&'b [Field<'a>]>,
-    /// `[published]`.
-    pub published: Field<'a>,
-}
 
 /// Cutoff of the filter where the file does not say: ISO 21920-3 for a profile of this roughness. m
 const CUTOFF: f64 = 2.5e-3;
@@ -24,41 +17,39 @@ const STEPS_PER_SWING: f64 = 4.0;
 const DAMPED: f64 = 0.5;
 
 /// Reads what is looked at: `window_s`, between which times forces are summed up, `wall_height_mm`, where the profile of the wall
-/// is taken (the middle of the depth of cut), `cutoff_mm` of the filter (2.5), and `[published]`.
+/// is taken (the middle of the depth of cut), and `cutoff_mm` of the filter (2.5).
 ///
 /// # Errors
 /// [`InputError`] with file, line and field.
-pub(super) fn look_from(
-    fields: &LookFields<'_, '_>,
+pub(super) fn evaluation_from(
+    keys: Option<&[Field<'_>]>,
     setup: &Setup,
     cut: &PassCut,
 ) -> Result<EvaluationSettings, InputError> {
-    let mut look =
-        EvaluationSettings { window: None, height: cut.section.axial_depth / 2.0, cutoff: CUTOFF, published: None };
-    if let Some([window, height, cutoff]) = fields.keys {
+    let mut settings = EvaluationSettings { window: None, height: cut.section.axial_depth / 2.0, cutoff: CUTOFF };
+    if let Some([window, height, cutoff]) = keys {
         let duration = setup.motion.duration();
         let allowed =
             format!("two times [from, to] from 0 to {duration:.4}, the duration of the pass, the first below");
         let within = |value: f64| (0.0..=duration).contains(&value);
-        look.window = window.optional(|field| field.wide_interval_where(&allowed, within))?;
+        settings.window = window.optional(|field| field.wide_interval_where(&allowed, within))?;
         let depth_mm = cut.section.axial_depth * 1e3;
         let on_wall = format!("a number from 0 to axial_depth_mm = {depth_mm}");
         let inside = |value: f64| (0.0..=depth_mm).contains(&value);
         if let Some(mm) = height.optional(|field| field.number_where(&on_wall, inside))? {
-            look.height = mm / 1e3;
+            settings.height = mm / 1e3;
         }
         let filter = |field: &Field<'_>| field.number_where("a number from 0.08 to 25", |v| (0.08..=25.0).contains(&v));
         if let Some(mm) = cutoff.optional(filter)? {
-            look.cutoff = mm / 1e3;
+            settings.cutoff = mm / 1e3;
         }
     }
-    look.published = fields.published.optional(|field| published_from(&field.table()?, setup))?;
-    Ok(look)
+    Ok(settings)
 }
 
 /// Reads `[published]`: `source`, for each variant an optional table with `force_x_n` and `force_y_n` (smallest, largest, mean and
 /// root mean square; y towards the wall), and an optional table `profile` with `ra_um`, `rq_um` and `rt_um`.
-fn published_from(table: &Table<'_>, setup: &Setup) -> Result<Published, InputError> {
+pub(super) fn published_from(table: &Table<'_>, setup: &Setup) -> Result<Published<PassFigures>, InputError> {
     let words = ["springs", "gravity", "orthogonal", "backlash"];
     let [source, springs, gravity, orthogonal, backlash, profile] =
         table.fields(["source", words[0], words[1], words[2], words[3], "profile"])?;
@@ -78,7 +69,7 @@ fn published_from(table: &Table<'_>, setup: &Setup) -> Result<Published, InputEr
             [mean.positive()?, square.positive()?, total.positive()?].map(|um| um / 1e6);
         Ok(Roughness { mean, root_mean_square, total })
     })?;
-    Ok(Published { source: source.string()?.to_owned(), forces, roughness })
+    Ok(Published { source: source.string()?.to_owned(), figures: PassFigures { forces, roughness } })
 }
 
 fn statistics_from(field: &Field<'_>) -> Result<Statistics, InputError> {

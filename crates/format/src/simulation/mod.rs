@@ -15,14 +15,15 @@ use super::source::Source;
 use crate::input::{InputError, InputFile};
 use arm::{ArmFields, FEED, setup_from};
 pub(super) use arm::{damping_scale_from, variant_from};
-use look::{LookFields, check_duration, check_step, look_from};
+use look::{check_duration, check_step, evaluation_from, published_from};
 pub(super) use milling::{KEYS as MILLING_KEYS, milling_from};
 use stability::analysis_from;
 pub(super) use stability::max_depth_from;
 use std::path::Path;
 use stead_model::cutting::Cutter;
+use stead_model::published::Published;
 use stead_simulation::milling::PassCut;
-use stead_simulation::outcome::EvaluationSettings;
+use stead_simulation::outcome::{EvaluationSettings, PassFigures};
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
 
@@ -41,6 +42,8 @@ pub struct SimulationRun {
     pub evaluation: EvaluationSettings,
     /// What is to be found out of its stability.
     pub analysis: AnalysisSettings,
+    /// Published figures to set beside those of the simulated pass.
+    pub published: Option<Published<PassFigures>>,
     /// The files that were read: config, robot.
     pub inputs: Vec<InputFile>,
 }
@@ -112,8 +115,9 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
         check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
         check_duration(&setup, &cut, &feed)?;
     }
-    let evaluation = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap, evaluation, analysis, inputs })
+    let evaluation = evaluation_from(keys.as_ref().map(|keys| &keys[2..]), &setup, &cut)?;
+    let published = published.optional(|field| published_from(&field.table()?, &setup))?;
+    Ok(SimulationRun { setup, cutter, cut, gap, evaluation, analysis, published, inputs })
 }
 
 /// The width of the slot that the pass is part of: the cutter has to fit into it.

@@ -11,7 +11,7 @@ use stead_assessment::published::{PublishedTables, Quantity};
 /// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
 /// tables agree.
 pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
-    let published = context.published.as_ref().map(|(published, _)| published);
+    let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut text = aligned(&configuration_rows(assessment, published), &[0, 1, 2]);
     for robot in assessment.robots.iter().filter(|robot| robot.maps.iter().any(|(_, map)| map.count() == 0)) {
         for (name, map) in robot.maps.iter().filter(|(_, map)| map.count() == 0) {

@@ -16,7 +16,8 @@ use crate::picture;
 use crate::stability::PathStability;
 use std::path::PathBuf;
 use stead_format::Run;
-use stead_format::input::{InputFile, Reference};
+use stead_format::input::InputFile;
+use stead_model::published::Published;
 use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
@@ -33,7 +34,7 @@ pub struct Context {
     /// The assumptions behind the times of the moves.
     pub transfer: TransferSettings,
     /// Figures to compare with, where there are any.
-    pub reference: Option<Reference>,
+    pub reference: Option<Published<[f64; 4]>>,
     /// How deep may be cut along the path, where that was asked for.
     pub stability: Option<PathStability>,
 }

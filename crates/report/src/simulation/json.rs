@@ -44,11 +44,11 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
             profile
         }),
         "modes": found.modes.iter().map(mode).collect::<Vec<_>>(),
-        "published": run.evaluation.published.as_ref().map(|published| json!({
+        "published": run.published.as_ref().map(|published| json!({
             "source": published.source,
-            "force_x": published.forces.as_ref().map(|forces| statistics(&forces[0])),
-            "force_y": published.forces.as_ref().map(|forces| statistics(&forces[1])),
-            "profile": published.roughness.as_ref().map(roughness),
+            "force_x": published.figures.forces.as_ref().map(|forces| statistics(&forces[0])),
+            "force_y": published.figures.forces.as_ref().map(|forces| statistics(&forces[1])),
+            "profile": published.figures.roughness.as_ref().map(roughness),
         })),
     }))
 }

@@ -44,7 +44,7 @@ fn forces(run: &SimulationRun, found: &Simulation) -> String {
         row.extend([min, max, mean, root_mean_square].map(|force| fixed(*force, 2)));
         row
     };
-    let published = run.evaluation.published.as_ref().and_then(|published| published.forces.as_ref());
+    let published = run.published.as_ref().and_then(|published| published.figures.forces.as_ref());
     for (axis, name) in ["along the feed", "towards the wall"].into_iter().enumerate() {
         rows.push(row(name.to_owned(), &forces[axis]));
         rows.extend(published.map(|published| row("  published".to_owned(), &published[axis])));
@@ -64,7 +64,7 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
     };
     let mut rows = vec![header, row("wall".to_owned(), raw)];
     rows.push(row(format!("filtered, {} mm", figures(run.evaluation.cutoff * 1e3)), filtered));
-    let published = run.evaluation.published.as_ref().and_then(|published| published.roughness.as_ref());
+    let published = run.published.as_ref().and_then(|published| published.figures.roughness.as_ref());
     rows.extend(published.map(|published| row("  published".to_owned(), published)));
     format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
 }
