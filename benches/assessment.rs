@@ -8,6 +8,7 @@ use std::path::Path;
 use stead_assessment::comparison::{Comparison, assess};
 use stead_assessment::map::{Elbow, Map};
 use stead_format::read_assessment;
+use stead_numerics::monitor::Monitor;
 
 fn main() {
     divan::main();
@@ -23,9 +24,9 @@ fn published() -> Comparison {
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
     let comparison = published();
-    let maps = assess(&comparison, &|_, _| true).expect("the shipped study is good");
+    let maps = assess(&comparison, &Monitor::silent()).expect("the shipped study is good");
     let circles: usize = maps.robots.iter().flat_map(|robot| &robot.maps).map(|(_, map)| map.count()).sum();
-    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&comparison), &|_, _| true));
+    bencher.counter(ItemsCount::new(circles)).bench_local(|| assess(black_box(&comparison), &Monitor::silent()));
 }
 
 /// One map of the KR 500 on one processor, with so many times finer a grid.
@@ -38,7 +39,9 @@ fn one_map_finer_by(bencher: Bencher, fineness: usize) {
     grid.counts = grid.counts.map(|count| (count - 1) * fineness + 1);
     let class = Elbow::Up.forward_class(robot);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
-    let map = || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &|| true));
+    let silent = Monitor::silent();
+    let map =
+        || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &silent, &|| {}));
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
 }

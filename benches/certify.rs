@@ -7,10 +7,11 @@
 
 use std::error::Error;
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 use stead_format::read_run;
-use stead_placement::certify::{State, Watch, best};
-use stead_placement::control::Unwatched;
+use stead_numerics::monitor::{Monitor, Progress};
+use stead_placement::certify::best;
 use stead_placement::place::place;
 
 /// Run, gap in per cent, and the time allowed for the certificate on two cores. s
@@ -21,22 +22,6 @@ const FLOORS: [(&str, f64, f64); 4] = [
     ("caro-2013-k1-0.8", 0.75, 240.0),
 ];
 
-/// Lets a search run to its end, and keeps when it first said anything.
-struct Clock {
-    started: Instant,
-    /// Time until the tables were there. s
-    tables: Option<f64>,
-}
-
-impl Watch for Clock {
-    fn goes_on(&mut self, state: &State) -> bool {
-        if state.nodes > 0 {
-            self.tables.get_or_insert(self.started.elapsed().as_secs_f64());
-        }
-        true
-    }
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo adds `--bench`.
     let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
@@ -45,14 +30,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, percent, allowed) in FLOORS.into_iter().filter(|(name, ..)| name.contains(&wanted)) {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("configs/{name}.toml"));
         let run = read_run(&file)?;
-        let outcome = place(&run.problem, &run.search, &run.transfer, &Unwatched)?;
-        let value = outcome.cases[0].plan.mean;
-        let mut clock = Clock { started: Instant::now(), tables: None };
-        let bound = best(&run.problem, value, percent / 100.0, true, &mut clock)?;
+        let outcome = place(&run.problem, &run.search, &run.transfer, &Monitor::silent())?;
+        let value = outcome.cases.best.plan.mean;
+        let started = Instant::now();
+        // Time until the tables were there. s
+        let tables = Arc::new(OnceLock::new());
+        let first = Arc::clone(&tables);
+        let monitor = Monitor::new(move |progress| {
+            if matches!(progress, Progress::Bound { nodes: 1.., .. }) {
+                first.get_or_init(|| started.elapsed().as_secs_f64());
+            }
+        });
+        let bound = best(&run.problem, value, percent / 100.0, true, &monitor)?;
         println!(
             "{name:<16}  {percent:>5}  {allowed:>9}  {:>7.1}  {:>14.1}  {:.7}  {:.7}  {} ({:?})",
-            clock.started.elapsed().as_secs_f64(),
-            clock.tables.unwrap_or_default(),
+            started.elapsed().as_secs_f64(),
+            tables.get().copied().unwrap_or_default(),
             value * 1e3,
             bound.bound * 1e3,
             bound.nodes,

@@ -1,8 +1,8 @@
-//! Speed of the kernel and of the planner on the published case: `cargo bench`.
+//! Speed of the evaluator and of the planner on the published case: `cargo bench`.
 //!
 //! The number after a name is the kind of instructions: 0 plain, then what else the processor has (AVX2, AVX-512).
 //!
-//! `kernel` counts poses: path point x beta, all posture classes, with joint angles, limits, 1/kappa and score. `planner`
+//! `evaluator` counts poses: path point x beta, all posture classes, with joint angles, limits, 1/kappa and score. `planner`
 //! counts edges: for each allowed state every predecessor within the band of beta, with the joint steps checked. `worth` is
 //! both together, once per placement.
 
@@ -15,26 +15,27 @@ use divan::{Bencher, black_box};
 use published::{poses, problem};
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::Instructions;
-use stead_placement::kernel::{Flips, Kernel, States};
-use stead_placement::redundancy::band::{self, Step};
-use stead_placement::redundancy::{Extremum, Planner};
+use stead_placement::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_placement::redundancy::Planner;
+use stead_placement::redundancy::transition::{self, Step};
+use stead_placement::sense::Sense;
 
 fn main() {
     divan::main();
 }
 
 #[divan::bench(args = instructions())]
-fn kernel(bencher: Bencher, instructions: usize) {
+fn evaluator(bencher: Bencher, instructions: usize) {
     let problem = problem();
-    let kernel =
-        Kernel::new(&problem, &problem.redundancy, Flips::Both).with_instructions(Instructions::all()[instructions]);
-    let mut states = States::new(problem.redundancy.beta_count, 3);
+    let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both)
+        .with_instructions(Instructions::all()[instructions]);
+    let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
     let poses = poses(20);
     bencher.counter(ItemsCount::new(poses.len() * points * problem.redundancy.beta_count)).bench_local(|| {
         for pose in &poses {
             for point in 0..points {
-                kernel.evaluate(point, black_box(pose), &mut states);
+                evaluator.evaluate(point, black_box(pose), &mut states);
             }
         }
     });
@@ -49,28 +50,27 @@ fn instructions() -> Vec<usize> {
 fn planner(bencher: Bencher, instructions: usize) {
     let problem = problem();
     let planner = Planner::new(&problem);
-    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
+    let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
     let count = problem.redundancy.beta_count;
     let pose = [0.0, -1.64, -0.214, 1.378];
-    let step = |point: usize| Step {
-        instructions: Instructions::all()[instructions],
-        ..planner.step(point, Extremum::Smallest)
-    };
+    let step =
+        |point: usize| Step { instructions: Instructions::all()[instructions], ..planner.step(point, Sense::Min) };
     // One segment, so that its states stay as near to the processor as those of the planner, which keeps two points.
     let span = problem.task.segments()[2].clone();
-    let mut segment: Vec<(Step, States)> = span
+    let mut segment: Vec<(Step, StateGrid)> = span
         .map(|point| {
-            let mut states = States::new(count, planner.pad());
-            kernel.evaluate(point, &pose, &mut states);
+            let mut states = StateGrid::new(count, planner.pad());
+            evaluator.evaluate(point, &pose, &mut states);
             PostureClass::ALL.into_iter().for_each(|class| states.wrap_around(class));
             (step(point), states)
         })
         .collect();
-    let alive = |(_, states): &(Step, States)| PostureClass::ALL.map(|class| states.is_alive(class));
+    let alive = |(_, states): &(Step, StateGrid)| PostureClass::ALL.map(|class| states.is_alive(class));
     assert!(segment.iter().all(|item| alive(item) == alive(&segment[0])), "a class ends within the segment");
     let classes: Vec<PostureClass> =
         PostureClass::ALL.into_iter().filter(|class| segment[0].1.is_alive(*class)).collect();
-    let scores = |states: &States| classes.iter().flat_map(|class| states.scores(*class)).copied().collect::<Vec<_>>();
+    let scores =
+        |states: &StateGrid| classes.iter().flat_map(|class| states.scores(*class)).copied().collect::<Vec<_>>();
     let kept: Vec<Vec<f64>> = segment.iter().map(|(_, states)| scores(states)).collect();
     let edges: usize = segment[1..]
         .iter()
@@ -81,18 +81,18 @@ fn planner(bencher: Bencher, instructions: usize) {
         .sum();
     let mut way = vec![0; count];
     bencher.counter(ItemsCount::new(edges)).bench_local(|| {
-        // The scores as the kernel left them, in place of the costs of the last time.
+        // The scores as the evaluator left them, in place of the costs of the last time.
         for ((_, states), kept) in segment.iter_mut().zip(&kept) {
             for (class, kept) in classes.iter().zip(kept.chunks(kept.len() / classes.len())) {
                 states.scores_mut(*class).copy_from_slice(kept);
             }
         }
         for class in &classes {
-            band::begin(&mut segment[0].1, *class, 1.0);
+            transition::begin(&mut segment[0].1, *class, 1.0);
             for place in 1..segment.len() {
                 let (before, now) = segment.split_at_mut(place);
                 let (before, (step, now)) = (&before[place - 1].1, &mut now[0]);
-                band::advance(before, now, *class, step, &mut way);
+                transition::advance(before, now, *class, step, &mut way);
                 now.wrap_around(*class);
             }
         }
@@ -100,14 +100,14 @@ fn planner(bencher: Bencher, instructions: usize) {
 }
 
 #[divan::bench]
-fn worth(bencher: Bencher) {
+fn objective(bencher: Bencher) {
     let problem = problem();
     let planner = Planner::new(&problem);
     let mut workspace = planner.workspace();
     let poses = poses(20);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
-            black_box(planner.worth(pose, Extremum::Smallest, None, &mut workspace));
+            black_box(planner.objective(pose, Sense::Min, None, &mut workspace));
         }
     });
 }

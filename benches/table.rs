@@ -11,7 +11,8 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
 use stead_placement::lookup::{BetaGrid, LookupTable};
-use stead_placement::redundancy::{Extremum, Planner};
+use stead_placement::redundancy::Planner;
+use stead_placement::sense::Sense;
 
 fn main() {
     let problem = problem();
@@ -24,7 +25,7 @@ fn main() {
         .iter()
         .filter_map(|pose| {
             let looked = table.objective(pose, &grid, None, &mut looking).mean()?;
-            Some((looked / planner.worth(pose, Extremum::Smallest, None, &mut space).mean()? - 1.0).abs())
+            Some((looked / planner.objective(pose, Sense::Min, None, &mut space).mean()? - 1.0).abs())
         })
         .collect();
     errors.sort_by(f64::total_cmp);
@@ -45,7 +46,7 @@ fn build(bencher: Bencher) {
 
 /// A placement through the table, on a grid of beta of so many values.
 #[divan::bench(args = [120, 360, 720])]
-fn worth(bencher: Bencher, count: usize) {
+fn objective(bencher: Bencher, count: usize) {
     let problem = problem();
     let table = LookupTable::new(&problem).expect("the published case suits a table");
     let grid = BetaGrid::new(&problem, count);
@@ -67,7 +68,7 @@ fn planned(bencher: Bencher) {
     let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
-            black_box(planner.worth(pose, Extremum::Smallest, None, &mut workspace));
+            black_box(planner.objective(pose, Sense::Min, None, &mut workspace));
         }
     });
 }

@@ -10,15 +10,15 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead_format::read_run;
-use stead_placement::appraiser::Appraiser;
-use stead_placement::genetic::{Individual, distinct, rank};
+use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
-use stead_placement::outcome::Goal;
 use stead_placement::problem::Interval;
 use stead_placement::redundancy::Planner;
 use stead_placement::refine::refine;
+use stead_placement::search::{Candidate, distinct, rank};
+use stead_placement::sense::Sense;
 
-/// Basins of the grid that are refined, for each goal.
+/// Basins of the grid that are refined, for each sense.
 const REFINED: usize = 16;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(table) => println!("through a table of {} states", table.shape().states()),
         Err(unsuited) => println!("without a table: {unsuited}"),
     }
-    let appraiser = Appraiser::new(&planner, table.as_ref().ok());
+    let evaluator = Evaluator::new(&planner, table.as_ref().ok());
     let cell = &run.problem.cell;
     let [x, y, z] = cell.position;
     let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
@@ -48,26 +48,30 @@ fn main() -> Result<(), Box<dyn Error>> {
             })
         })
         .collect();
-    let scanned: Vec<Individual> = poses
+    let scanned: Vec<Candidate> = poses
         .par_iter()
         .map_init(
-            || appraiser.workspace(),
-            |workspace, pose| Individual { pose: *pose, scheme: None, worth: appraiser.worth(pose, None, workspace) },
+            || evaluator.workspace(),
+            |workspace, pose| Candidate {
+                pose: *pose,
+                scheme: None,
+                objective: evaluator.objective(pose, None, workspace),
+            },
         )
         .collect();
-    let feasible = scanned.iter().filter(|i| i.worth.mean().is_some()).count();
+    let feasible = scanned.iter().filter(|i| i.objective.mean().is_some()).count();
     println!("{} placements scanned, {feasible} of them feasible", scanned.len());
-    for goal in [Goal::Best, Goal::Worst] {
-        let mut sorted: Vec<Individual> = scanned.iter().filter(|i| i.worth.mean().is_some()).cloned().collect();
-        sorted.sort_by(|a, b| rank(goal, a.worth, b.worth));
+    for sense in Sense::BOTH {
+        let mut sorted: Vec<Candidate> = scanned.iter().filter(|i| i.objective.mean().is_some()).cloned().collect();
+        sorted.sort_by(|a, b| rank(sense, a.objective, b.objective));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&appraiser, &basin.pose, goal, None));
+        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.pose, sense, None));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
-        reports.sort_by(|a, b| match goal {
-            Goal::Best => a.end_mean.total_cmp(&b.end_mean),
-            Goal::Worst => b.end_mean.total_cmp(&a.end_mean),
+        reports.sort_by(|a, b| match sense {
+            Sense::Min => a.end_mean.total_cmp(&b.end_mean),
+            Sense::Max => b.end_mean.total_cmp(&a.end_mean),
         });
-        println!("{goal:?}: the first three of {} refined basins", reports.len());
+        println!("{sense:?}: the first three of {} refined basins", reports.len());
         for report in reports.iter().take(3) {
             println!(
                 "  {:.7} mm at x {:.1} y {:.1} z {:.1} mm, Q4 {:.4} (grid {:.7} mm)",

@@ -10,7 +10,7 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead_format::read_run;
-use stead_placement::control::Unwatched;
+use stead_numerics::monitor::Monitor;
 use stead_placement::place::place;
 use stead_placement::settings::{PostureSearch, SearchSettings};
 
@@ -29,9 +29,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for postures in ways.iter().copied() {
         for seed in 1..=seeds {
             let settings = SearchSettings { seed, postures, ..run.search };
-            let outcome = place(&run.problem, &settings, &run.transfer, &Unwatched);
+            let outcome = place(&run.problem, &settings, &run.transfer, &Monitor::silent());
             let (best, worst) = match &outcome {
-                Ok(outcome) => (outcome.cases[0].plan.mean * 1e3, outcome.cases[2].plan.mean * 1e3),
+                Ok(outcome) => (outcome.cases.best.plan.mean * 1e3, outcome.cases.worst.plan.mean * 1e3),
                 Err(_) => (f64::INFINITY, 0.0),
             };
             println!("{postures:?} seed {seed}: best {best:.6} mm, worst {worst:.6} mm");

@@ -23,11 +23,11 @@
 //!
 //! ```no_run
 //! use std::path::Path;
-//! use stead::{config, placement};
+//! use stead::{config, numerics::monitor::Monitor, placement};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let run = config::read_run(Path::new("configs/caro-2013.toml"))?;
-//! let outcome = placement::place::place(&run.problem, &run.search, &run.transfer, &placement::control::Unwatched)?;
-//! for case in &outcome.cases {
+//! let outcome = placement::place::place(&run.problem, &run.search, &run.transfer, &Monitor::silent())?;
+//! for case in outcome.cases.all() {
 //!     assert!(case.plan.mean >= 0.0);
 //! }
 //! # Ok(())
@@ -47,6 +47,7 @@ pub use stead_calibration::{compensation, identification};
 pub use stead_format as config;
 pub use stead_format::input;
 pub use stead_model::{cutting, robot, stiffness, task};
+pub use stead_numerics as numerics;
 pub use stead_numerics::simd as lanes;
 pub use stead_placement as placement;
 pub use stead_report as report;

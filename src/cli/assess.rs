@@ -1,7 +1,7 @@
 //! `stead assess`: maps of circularity, then files, then tables.
 
 use super::arguments::AssessOptions;
-use super::progress::Steps;
+use super::progress::Terminal;
 use super::{Failure, on_threads, out_folder, say};
 use std::time::Instant;
 use stead_assessment::comparison::assess;
@@ -27,12 +27,11 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config)?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
 
-    let steps = Steps::start("circularity maps");
+    let shown = Terminal::start().show(None);
     let started = Instant::now();
-    let (assessment, threads) =
-        on_threads(options.threads, || assess(&run.comparison, &|done, of| steps.show(done, of)))?;
+    let (assessment, threads) = on_threads(options.threads, || assess(&run.comparison, &shown.monitor))?;
     let wall = started.elapsed().as_secs_f64();
-    steps.finish();
+    drop(shown);
     let assessment = assessment.inspect_err(|_| out.give_up())?;
 
     let published = run.published.map(|published| {

@@ -1,21 +1,22 @@
 //! The certificate that `stead place` adds where it is asked for.
 
-use super::progress::Watcher;
+use super::progress::Terminal;
 use super::{Failure, on_threads, say};
 use std::time::{Duration, Instant};
 use stead_format::Run;
-use stead_placement::certify::{self, Bound, Unfit, Watch};
-use stead_placement::control::Control;
-use stead_placement::outcome::{CANCELLED, Case, Goal, Outcome};
+use stead_numerics::monitor::{Monitor, Stop};
+use stead_placement::certify::{self, Bound, End, Unfit};
+use stead_placement::outcome::{CANCELLATION, Case, Cases, Outcome};
+use stead_placement::sense::Sense;
 use stead_placement::settings::CertificateSettings;
-use stead_report::certificate::{Certificate, Proof, ending};
+use stead_report::certificate::{Certificate, Ended, Proof, ending};
 
 /// What goes into every bound.
 struct Job<'a> {
     run: &'a Run,
     settings: CertificateSettings,
     threads: Option<usize>,
-    watcher: &'a Watcher,
+    terminal: &'a Terminal,
     deadline: Option<Instant>,
 }
 
@@ -35,14 +36,14 @@ pub(super) fn certified(
     settings: CertificateSettings,
     outcome: &Outcome,
     threads: Option<usize>,
-    watcher: &Watcher,
+    terminal: &Terminal,
 ) -> Result<Certificate, Failure> {
     let started = Instant::now();
     // A limit beyond what a clock holds is none.
     let limit = settings.time_limit.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
     let deadline = limit.and_then(|limit| started.checked_add(limit));
-    let job = Job { run, settings, threads, watcher, deadline };
-    let [best, _, worst, _] = &outcome.cases;
+    let job = Job { run, settings, threads, terminal, deadline };
+    let Cases { best, worst, .. } = &outcome.cases;
     let (best, worst) = match certify::certifiable(&run.problem) {
         Err(unfit) => (Err(unfit.to_string()), Err(unfit.to_string())),
         Ok(()) => (job.best(best)?, job.worst(worst)?),
@@ -59,7 +60,7 @@ impl Job<'_> {
     /// A lower bound of all placements, with the rate of beta.
     fn best(&self, case: &Case) -> Result<Result<Proof, String>, Failure> {
         let (problem, value) = (&self.run.problem, case.plan.mean);
-        self.proof(Goal::Best, case, value, |watch| certify::best(problem, value, self.settings.gap, true, watch))
+        self.proof(Sense::Min, case, value, |monitor| certify::best(problem, value, self.settings.gap, true, monitor))
     }
 
     /// An upper bound of all placements, with the rate of beta dropped.
@@ -68,33 +69,37 @@ impl Job<'_> {
         let Some(value) = certify::relaxed_value(problem, &case.placement) else {
             return Ok(Err("the worst placement has no value with these limits relaxed".to_owned()));
         };
-        self.proof(Goal::Worst, case, value, |watch| certify::worst(problem, value, self.settings.gap, watch))
+        self.proof(Sense::Max, case, value, |monitor| certify::worst(problem, value, self.settings.gap, monitor))
     }
 
     /// Runs a search for a bound on the threads asked for.
     fn proof(
         &self,
-        goal: Goal,
+        sense: Sense,
         case: &Case,
         value: f64,
-        search: impl FnOnce(&mut dyn Watch) -> Result<Bound, Unfit> + Send,
+        search: impl FnOnce(&Monitor) -> Result<Bound, Unfit> + Send,
     ) -> Result<Result<Proof, String>, Failure> {
-        if self.watcher.should_stop() {
-            return Ok(Err("interrupted before it began".to_owned()));
+        let shown = self.terminal.show(self.deadline);
+        match shown.monitor.stop() {
+            Some(Stop::Asked) => return Ok(Err("interrupted before it began".to_owned())),
+            Some(Stop::Deadline) => return Ok(Err("the time limit was over before it began".to_owned())),
+            None => {}
         }
-        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            return Ok(Err("the time limit was over before it began".to_owned()));
-        }
-        if value <= CANCELLED {
+        if value <= CANCELLATION {
             return Ok(Err(
                 "the plan balances the deflection to nothing, which no bound can be compared with".to_owned()
             ));
         }
-        let mut closing = self.watcher.closing(goal, value, self.settings.gap, self.deadline);
-        let (bound, _) = on_threads(self.threads, || search(&mut closing))?;
+        let (bound, _) = on_threads(self.threads, || search(&shown.monitor))?;
         let proof = bound.map_err(|unfit| unfit.to_string()).map(|bound| {
-            let end = closing.finish(bound.end);
-            Proof::new(&self.run.problem, goal, case.placement, bound, end)
+            let end = match bound.end {
+                End::Reached => Ended::Reached,
+                End::Exhausted => Ended::Exhausted,
+                End::Stopped(Stop::Asked) => Ended::Interrupted,
+                End::Stopped(Stop::Deadline) => Ended::TimeLimit,
+            };
+            Proof::new(&self.run.problem, sense, case.placement, bound, end)
         });
         Ok(proof)
     }

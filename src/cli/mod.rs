@@ -29,7 +29,7 @@ use std::process::ExitCode;
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
-use stead_placement::place::NothingFeasible;
+use stead_placement::place::Infeasible;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
@@ -47,7 +47,7 @@ enum Failure {
     Output(ReportError),
     /// No placement is feasible.
     #[error("{0}")]
-    Nothing(#[from] NothingFeasible),
+    Nothing(#[from] Infeasible),
     /// No robot can mill the benchmark, or nobody wants to know any more.
     #[error("{0}")]
     Assessment(#[from] AssessError),

@@ -2,13 +2,13 @@
 
 use super::arguments::PlaceOptions;
 use super::certify::{certified, warn_unfit};
-use super::progress::Watcher;
+use super::progress::Terminal;
 use super::score::{mention_cancellation, path_stability};
 use super::{Failure, files_written, on_threads, out_folder, print, say};
 use serde_json::Value;
 use std::time::Instant;
 use stead_format::read_run_to_certify;
-use stead_placement::control::Control;
+use stead_placement::outcome::Cases;
 use stead_placement::place::place;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
 use stead_report::document::{self, Timing};
@@ -22,22 +22,25 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
     warn_unfit(&run);
 
-    let watcher = Watcher::start();
+    let terminal = Terminal::start();
+    let shown = terminal.show(None);
     let started = Instant::now();
-    let (outcome, threads) = on_threads(options.threads, || place(&run.problem, &search, &run.transfer, &watcher))?;
+    let (outcome, threads) =
+        on_threads(options.threads, || place(&run.problem, &search, &run.transfer, &shown.monitor))?;
     let wall = started.elapsed().as_secs_f64();
-    watcher.finish();
+    let was_stopped = shown.monitor.should_stop();
+    drop(shown);
     let outcome = outcome.inspect_err(|nothing| {
         if options.json {
             print(&document::bytes(&evaluation::infeasible_json(nothing, &Context::new(&run, search))));
         }
         out.give_up();
-        if watcher.should_stop() {
+        if was_stopped {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
 
-    let [best, _, worst, _] = &outcome.cases;
+    let Cases { best, worst, .. } = &outcome.cases;
     let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
     let stability = match &run.path_stability {
         Some(analysis) => Some(on_threads(options.threads, || path_stability(&run.problem, analysis, plans))?.0?),
@@ -58,12 +61,12 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             },
         ),
     };
-    mention_cancellation(&run.problem, outcome.cases[0].plan.mean);
+    mention_cancellation(&run.problem, outcome.cases.best.plan.mean);
     if outcome.interrupted {
         say("interrupted: the results are the best found so far, not the end of the search");
     }
     if let Some(settings) = run.certificate {
-        let certificate = certified(&run, settings, &outcome, options.threads, &watcher)?;
+        let certificate = certified(&run, settings, &outcome, options.threads, &terminal)?;
         shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate)));
         if let Value::Object(entries) = &mut document {
             entries.insert("certificate".to_owned(), certificate_json(&certificate));

@@ -3,7 +3,7 @@
 use super::arguments::ScoreOptions;
 use super::{Failure, on_threads, print, say};
 use stead_format::read_run;
-use stead_placement::outcome::{CANCELLED, Plan, PlanPoint};
+use stead_placement::outcome::{CANCELLATION, Plan, PlanPoint};
 use stead_placement::place::score;
 use stead_placement::problem::{Criterion, Placement, Problem};
 use stead_report::document;
@@ -59,7 +59,7 @@ pub(super) fn path_stability(
 
 /// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
 pub(super) fn mention_cancellation(problem: &Problem, mean: f64) {
-    if mean <= CANCELLED && problem.criterion == Criterion::default() {
+    if mean <= CANCELLATION && problem.criterion == Criterion::default() {
         say(
             "note: the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
              makes the score the worst case over force errors",

@@ -4,8 +4,9 @@ use super::benchmark::{Benchmark, MAX_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{DataSheet, Robot};
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// What is to be assessed, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,28 +171,21 @@ pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Assesses every robot of the comparison. `progress` is told how many rows of maps are done, and of how many; it says whether to
-/// go on.
+/// Assesses every robot of the comparison, row by row of its maps.
 ///
 /// # Errors
-/// [`AssessError`] when no robot can mill the circle anywhere on the grid, or when `progress` said to stop.
-pub fn assess(
-    comparison: &Comparison,
-    progress: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Assessment, AssessError> {
-    let rows = comparison.robots.len() * 2 * comparison.grid.counts[1];
+/// [`AssessError`] when no robot can mill the circle anywhere on the grid, or when `monitor` asked to stop.
+pub fn assess(comparison: &Comparison, monitor: &Monitor) -> Result<Assessment, AssessError> {
+    let total = comparison.robots.len() * 2 * comparison.grid.counts[1];
     let done = AtomicUsize::new(0);
-    let stopped = AtomicBool::new(false);
     let row_done = || {
-        if !progress(done.fetch_add(1, Ordering::Relaxed) + 1, rows) {
-            stopped.store(true, Ordering::Relaxed);
-        }
-        !stopped.load(Ordering::Relaxed)
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        monitor.report(Progress::Steps { stage: "circularity maps", done, total });
     };
     let mut robots: Vec<RobotResult> = Vec::with_capacity(comparison.robots.len());
     for robot in &comparison.robots {
-        robots.push(comparison.robot(robot, &row_done));
-        if stopped.load(Ordering::Relaxed) {
+        robots.push(comparison.robot(robot, monitor, &row_done));
+        if monitor.should_stop() {
             return Err(AssessError::Interrupted);
         }
     }
@@ -233,7 +227,7 @@ impl RobotResult {
 }
 
 impl Comparison {
-    fn robot(&self, robot: &Robot, row_done: &(dyn Fn() -> bool + Sync)) -> RobotResult {
+    fn robot(&self, robot: &Robot, monitor: &Monitor, row_done: &(dyn Fn() + Sync)) -> RobotResult {
         let sheet = *robot.data_sheet();
         let force = self.benchmark.in_plane_force();
         let rated_load = sheet.payload.map(|payload| self.rated_share * payload * self.selection.gravity / force);
@@ -244,7 +238,7 @@ impl Comparison {
             };
             let class = elbow.forward_class(robot);
             let loads = [1.0, rated_load.unwrap_or(1.0)];
-            (name, Map::new(&self.benchmark, robot, class, self.grid, loads, row_done))
+            (name, Map::new(&self.benchmark, robot, class, self.grid, loads, monitor, row_done))
         });
         let mut configurations = Vec::with_capacity(4);
         let loads = [(Load::Test, Some(1.0)), (Load::Rated, rated_load)];

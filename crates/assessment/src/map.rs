@@ -2,8 +2,8 @@
 
 use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 use stead_model::robot::{PostureClass, Robot};
+use stead_numerics::monitor::Monitor;
 
 /// Centres of circles: the nodes of a square grid, in the coordinates of the benchmark's plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,8 +80,8 @@ pub struct Map<const N: usize> {
 }
 
 impl<const N: usize> Map<N> {
-    /// Mills every circle of the grid in one posture class. `row_done` is called after each row; once it has said no, the rest
-    /// is left undone and the map is of no use. Rows of the grid are shared among the threads of rayon's pool;
+    /// Mills every circle of the grid in one posture class. `row_done` is called after each row. Once the monitor asks to
+    /// stop, the rest is left undone and the map is of no use. Rows of the grid are shared among the threads of rayon's pool;
     /// the result does not depend on their number.
     pub fn new(
         benchmark: &Benchmark,
@@ -89,20 +89,18 @@ impl<const N: usize> Map<N> {
         class: PostureClass,
         grid: Grid,
         loads: [f64; N],
-        row_done: &(dyn Fn() -> bool + Sync),
+        monitor: &Monitor,
+        row_done: &(dyn Fn() + Sync),
     ) -> Self {
         let deflected = DeflectedCircle::new(benchmark, robot);
-        let goes_on = AtomicBool::new(true);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
             let mill = |index: usize| deflected.circularity(grid.place(index), class, loads, profile);
-            if !goes_on.load(Ordering::Relaxed) {
+            if monitor.should_stop() {
                 return vec![Err(Obstacle::Reach); grid.counts[0]];
             }
             let nodes: Vec<_> = (first..first + grid.counts[0]).map(mill).collect();
-            if !row_done() {
-                goes_on.store(false, Ordering::Relaxed);
-            }
+            row_done();
             nodes
         });
         Self { grid, nodes: rows.collect::<Vec<_>>().concat() }

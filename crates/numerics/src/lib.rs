@@ -1,5 +1,7 @@
-//! What every job computes with: numbers that carry derivatives, the widest vectors of the processor, and warnings.
+//! What every job computes with: numbers that carry derivatives, the widest vectors of the processor, warnings, and
+//! the monitor of long jobs.
 
 pub mod message;
+pub mod monitor;
 pub mod scalar;
 pub mod simd;

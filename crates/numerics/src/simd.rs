@@ -7,7 +7,7 @@ use pulp::{Arch, Scalar256b, Simd, WithSimd, bytemuck};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 /// Most lanes that any processor has here: rows that are read in lanes go on this far beyond their end.
-pub const MOST_LANES: usize = 8;
+pub const MAX_LANES: usize = 8;
 
 /// Which instructions of the processor are used: chosen once, the same results for all.
 #[derive(Debug, Clone, Copy)]
@@ -126,17 +126,17 @@ impl<S: Simd> Lanes<S> {
 
     /// The numbers, and zeros after the last lane.
     #[inline(always)]
-    pub fn to_array(self) -> [f64; MOST_LANES] {
-        let mut array = [0.0; MOST_LANES];
+    pub fn to_array(self) -> [f64; MAX_LANES] {
+        let mut array = [0.0; MAX_LANES];
         self.store(&mut array, 0);
         array
     }
 
     /// Small whole numbers, and zeros after the last lane.
     #[inline(always)]
-    pub fn to_whole(self) -> [i16; MOST_LANES] {
+    pub fn to_whole(self) -> [i16; MAX_LANES] {
         let shifted = (self + SHIFT).to_array();
-        let mut whole = [0; MOST_LANES];
+        let mut whole = [0; MAX_LANES];
         for (whole, shifted) in whole.iter_mut().zip(shifted) {
             *whole = shifted.to_bits() as i16;
         }

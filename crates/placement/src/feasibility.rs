@@ -1,9 +1,9 @@
 //! Why a state or a placement is not allowed: which constraint is broken, and by how much.
 
-use super::criterion::{State, state};
+use super::evaluate::reference::{State, state};
 use super::outcome::{Blocked, DeflectionMap, MapCell};
 use super::problem::Problem;
-use super::redundancy::NoPlan;
+use super::redundancy::NoFeasiblePlan;
 use rayon::prelude::*;
 use std::fmt;
 use stead_model::robot::{Posture, Unreachable, turns::Range};
@@ -224,7 +224,7 @@ impl fmt::Display for Finding {
 
 /// Which constraint fails at which points of a placement that has no plan, in any posture or in a given scheme (one
 /// posture per segment).
-pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, none: &NoPlan) -> Vec<Finding> {
+pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, none: &NoFeasiblePlan) -> Vec<Finding> {
     let beta_count = problem.redundancy.beta_count;
     let nearest_of = |point: usize| {
         let only = scheme.map(|postures| postures[problem.task.path().segment_of(point)]);
@@ -270,7 +270,8 @@ pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::redundancy::{Extremum, Planner};
+    use crate::redundancy::Planner;
+    use crate::sense::Sense;
     use crate::testing::five_segments;
     use stead_model::robot::angles::yaw_from_q4;
 
@@ -297,7 +298,7 @@ mod tests {
         let map = deflection_map(&problem, &pose);
         let blocked = map.rows.iter().filter(|row| row.iter().all(Result::is_err)).count();
         let planner = Planner::new(&problem);
-        let none = planner.plan(&pose, Extremum::Smallest, None, &mut planner.workspace());
+        let none = planner.plan(&pose, Sense::Min, None, &mut planner.workspace());
         assert_eq!(none.err().map_or(0, |n| n.blocked_points.len()), blocked);
         assert_eq!((map.rows.len(), map.rows[0].len()), (105, 24));
     }
@@ -308,7 +309,7 @@ mod tests {
         problem.redundancy.beta_count = 24;
         let planner = Planner::new(&problem);
         let far = [0.0, -4.0, -0.4, 0.0];
-        let none = planner.plan(&far, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+        let none = planner.plan(&far, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let findings = diagnose(&problem, &far, None, &none);
         assert_eq!(findings.first().map(|f| f.points), Some((0, 20)));
         let text = findings[0].to_string();
@@ -316,7 +317,7 @@ mod tests {
         problem.constraints.min_inverse_condition = 0.95;
         let planner = Planner::new(&problem);
         let near = [0.0, -1.8, -0.4, 0.0];
-        let none = planner.plan(&near, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+        let none = planner.plan(&near, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let text = diagnose(&problem, &near, None, &none)[0].to_string();
         assert!(text.contains("1/kappa") && text.contains("below 0.95"), "{text}");
     }

@@ -1,31 +1,31 @@
 //! The main job: where to put the workpiece.
 //!
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
-//! - [`criterion`]: the score of one state, the ordinary evaluator; [`kernel`]: the same for a whole batch of states.
+//! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
-//! - [`lookup`]: scores of upright tools sampled once over the cell; [`appraiser`]: a look at a placement, by table or planner.
-//! - [`genetic`]: the global search; [`refine`]: gradients from its basins to the optimum.
+//! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
+//!   planner.
+//! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
-//! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`control`]: progress out, a wish to stop in.
+//! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`sense`]: minimise or maximise.
 //!
 //! Where the paper (Caro et al. 2013) leaves a choice or has a misprint, this room does as follows. Eq. 8 is a plain
 //! rotation about z. The compliance is `J K_theta^-1 J^T` without a complementary term. kappa_F carries the factor 1/6 that
 //! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
-pub mod appraiser;
 pub mod certify;
-pub mod control;
-pub mod criterion;
+pub mod evaluate;
+pub mod evaluator;
 pub mod feasibility;
-pub mod genetic;
-pub mod kernel;
 pub mod lookup;
 pub mod outcome;
 pub mod place;
 pub mod problem;
 pub mod redundancy;
 pub mod refine;
+pub mod search;
+pub mod sense;
 pub mod settings;
 pub mod transfer;
 

@@ -2,6 +2,7 @@
 
 use super::lookup::{Accuracy, Shape, Unsuited};
 use super::problem::Placement;
+use super::sense::Sense;
 use nalgebra::Vector3;
 use stead_model::robot::Posture;
 
@@ -54,18 +55,53 @@ pub struct Plan {
     pub mean_deviation: Option<f64>,
 }
 
-/// One of the four cases of Table III.
+/// A placement with one of its plans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// 1: best placement, best plan. 2: best placement, worst plan. 3: worst placement, best plan. 4: worst placement,
-    /// worst plan.
-    pub number: u8,
+    /// Whether the placement is the best or the worst.
+    pub placement_sense: Sense,
+    /// Whether the plan is the best or the worst at this placement.
+    pub plan_sense: Sense,
     /// The placement.
     pub placement: Placement,
     /// The plan.
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
     pub cycle: Cycle,
+}
+
+impl Case {
+    /// Its number in Caro 2013, Table III: 1 best placement, best plan; 2 best placement, worst plan; 3 worst placement,
+    /// best plan; 4 worst placement, worst plan.
+    pub fn number(&self) -> u8 {
+        let second = |sense: Sense| u8::from(sense == Sense::Max);
+        1 + 2 * second(self.placement_sense) + second(self.plan_sense)
+    }
+}
+
+/// The four cases of Caro 2013, Table III.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cases {
+    /// Best placement, best plan.
+    pub best: Case,
+    /// Best placement, worst plan.
+    pub best_worst_plan: Case,
+    /// Worst placement, best plan.
+    pub worst: Case,
+    /// Worst placement, worst plan.
+    pub worst_worst_plan: Case,
+}
+
+impl Cases {
+    /// All four, in the order of their numbers.
+    pub fn all(&self) -> [&Case; 4] {
+        [&self.best, &self.best_worst_plan, &self.worst, &self.worst_worst_plan]
+    }
+
+    /// Mean deflection of a case over that of the first; `None` where the first is a cancellation.
+    pub fn ratio(&self, case: &Case) -> Option<f64> {
+        (self.best.plan.mean > CANCELLATION).then(|| case.plan.mean / self.best.plan.mean)
+    }
 }
 
 /// How long the cut takes.
@@ -90,12 +126,7 @@ pub struct Transfer {
 
 /// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
 /// nothing. m
-pub const CANCELLED: f64 = 1e-9;
-
-/// Mean deflection of a case (from 0) over that of the first; `None` where the first is a cancellation.
-pub fn ratio(cases: &[Case; 4], index: usize) -> Option<f64> {
-    (cases[0].plan.mean > CANCELLED).then(|| cases[index].plan.mean / cases[0].plan.mean)
-}
+pub const CANCELLATION: f64 = 1e-9;
 
 impl Cycle {
     /// Cutting and moves together; `None` where a move's time is not known. s
@@ -104,29 +135,20 @@ impl Cycle {
     }
 }
 
-/// Which way a search goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goal {
-    /// The placement with the smallest mean deflection under its best plan.
-    Best,
-    /// The placement with the largest mean deflection under its best plan (case 3: careless placement, careful plan).
-    Worst,
-}
-
 /// State of one genetic search after one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generation {
     /// Which search.
-    pub goal: Goal,
+    pub sense: Sense,
     /// Number of the generation; 0 is the random start.
     pub generation: usize,
-    /// Best mean deflection so far in the sense of the goal; `None` while nothing feasible was found. m
+    /// Best mean deflection so far in the sense of the sense; `None` while nothing feasible was found. m
     pub best: Option<f64>,
-    /// Mean of the mean deflections of the feasible individuals. m
+    /// Mean of the mean deflections of the feasible candidates. m
     pub average: Option<f64>,
-    /// Feasible individuals.
+    /// Feasible candidates.
     pub feasible: usize,
-    /// Individuals.
+    /// Candidates.
     pub population: usize,
     /// Placements evaluated so far.
     pub evaluations: usize,
@@ -168,7 +190,7 @@ pub struct MapCell {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
     /// Which search it finishes.
-    pub goal: Goal,
+    pub sense: Sense,
     /// Where it started, from the genetic search.
     pub start: Placement,
     /// Mean deflection at the start. m
@@ -201,7 +223,7 @@ pub struct Tabled {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// Cases 1 to 4.
-    pub cases: [Case; 4],
+    pub cases: Cases,
     /// The table that the searches looked through, or why there is none; `None` where none was asked for.
     pub tabled: Option<Result<Tabled, Unsuited>>,
     /// Both genetic searches, generation by generation.

@@ -1,24 +1,25 @@
 //! The placement job: search, refine, plan, map.
 
-use super::appraiser::Appraiser;
-use super::control::{Control, Progress};
-use super::criterion::{normal_part_by_parameters, state};
+use super::evaluate::reference::{normal_part_by_parameters, state};
+use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
-use super::genetic::{self, Found, Individual};
 use super::lookup::{LookupTable, Unsuited};
-use super::outcome::{Case, Goal, Outcome, Plan, PlanPoint, Refinement, Tabled};
+use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
-use super::redundancy::{Extremum, Planner, SegmentPlan, fine};
+use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
+use super::search::{self, Candidate, Found};
+use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// Why a placement job has no result.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NothingFeasible {
+pub struct Infeasible {
     /// The placement that comes nearest: of all tried the one with the fewest blocked points.
     pub placement: Placement,
     /// Whether it was the only one asked for, or the nearest of a search.
@@ -27,7 +28,7 @@ pub struct NothingFeasible {
     pub findings: Vec<Finding>,
 }
 
-impl std::fmt::Display for NothingFeasible {
+impl std::fmt::Display for Infeasible {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Placement { x, y, z, .. } = self.placement;
         if self.searched {
@@ -52,21 +53,21 @@ impl std::fmt::Display for NothingFeasible {
     }
 }
 
-impl std::error::Error for NothingFeasible {}
+impl std::error::Error for Infeasible {}
 
 /// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
 ///
-/// The result depends on the arguments alone, not on the number of threads. When `control` asks to stop, the search ends
+/// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, the search ends
 /// with its present generation, refinement is left out, and [`Outcome::interrupted`] is set.
 ///
 /// # Errors
-/// [`NothingFeasible`] when the search met no feasible placement.
+/// [`Infeasible`] when the search met no feasible placement.
 pub fn place(
     problem: &Problem,
     settings: &SearchSettings,
     transfer: &TransferSettings,
-    control: &dyn Control,
-) -> Result<Outcome, NothingFeasible> {
+    monitor: &Monitor,
+) -> Result<Outcome, Infeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
         Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
@@ -78,18 +79,18 @@ pub fn place(
     });
     let mut table = table.and_then(Result::ok);
     let search = |table: Option<&LookupTable<'_>>| {
-        let appraiser = Appraiser::new(&planner, table);
-        [Goal::Best, Goal::Worst].map(|goal| genetic::search(&appraiser, settings, goal, control))
+        let evaluator = Evaluator::new(&planner, table);
+        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
     };
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.misled && !f.interrupted) && !control.should_stop() {
+    if found.iter().any(|f| f.misled && !f.interrupted) && !monitor.should_stop() {
         (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }
     // A search that met nothing feasible goes on from what the other met.
-    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.worth.mean().is_some())) {
+    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.objective.mean().is_some())) {
         [true, true] => {}
         [true, false] => found[1].basins = found[0].basins.clone(),
         [false, true] => found[0].basins = found[1].basins.clone(),
@@ -99,31 +100,33 @@ pub fn place(
         }
     }
     let planner = Planner::finer(problem);
-    let (solutions, refinements) = finish(&Appraiser::new(&planner, table.as_ref()).looking_closer(2), &found, control)
-        .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
-    control.report(Progress::Finishing);
+    let (solutions, refinements) =
+        finish(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor)
+            .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
+    monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
-    let case = |number, solution: &Refined, extremum| {
-        let plans = match extremum {
-            Extremum::Smallest => Ok(solution.solution.plans.clone()),
-            Extremum::Largest => worst_plan(&planner, &solution.solution.pose, solution.scheme.as_deref()),
+    let case = |placement_sense, solution: &Refined, plan_sense| {
+        let plans = match plan_sense {
+            Sense::Min => Ok(solution.solution.plans.clone()),
+            Sense::Max => worst_plan(&planner, &solution.solution.pose, solution.scheme.as_deref()),
         };
         // A pose with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
         let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
         Case {
-            number,
+            placement_sense,
+            plan_sense,
             placement: solution.solution.placement(),
             plan: detailed(problem, &solution.solution.pose, &plans),
             cycle: cycle(problem, transfer, &plans),
         }
     };
     Ok(Outcome {
-        cases: [
-            case(1, best, Extremum::Smallest),
-            case(2, best, Extremum::Largest),
-            case(3, worst, Extremum::Smallest),
-            case(4, worst, Extremum::Largest),
-        ],
+        cases: Cases {
+            best: case(Sense::Min, best, Sense::Min),
+            best_worst_plan: case(Sense::Min, best, Sense::Max),
+            worst: case(Sense::Max, worst, Sense::Min),
+            worst_worst_plan: case(Sense::Max, worst, Sense::Max),
+        },
         tabled,
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
@@ -131,7 +134,7 @@ pub fn place(
         map_worst: deflection_map(problem, &worst.solution.pose),
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
-        interrupted: found.iter().any(|f| f.interrupted) || control.should_stop(),
+        interrupted: found.iter().any(|f| f.interrupted) || monitor.should_stop(),
     })
 }
 
@@ -149,14 +152,14 @@ pub struct Score {
 /// Plans one given placement, best and worst.
 ///
 /// # Errors
-/// [`NothingFeasible`] when it has no plan.
-pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, NothingFeasible> {
+/// [`Infeasible`] when it has no plan.
+pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasible> {
     let planner = Planner::finer(problem);
     let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let mut workspace = planner.workspace();
-    let tube = fine::Tube::full(planner.grid());
+    let spacing = off_grid::Spacing::full(planner.grid());
     let (Some(best), Ok(worst)) =
-        (planned(&planner, &pose, None, tube, &mut workspace), worst_plan(&planner, &pose, None))
+        (planned(&planner, &pose, None, spacing, &mut workspace), worst_plan(&planner, &pose, None))
     else {
         return Err(nothing(&planner, &pose, None, false));
     };
@@ -183,34 +186,30 @@ const HOPELESS: f64 = 0.03;
 
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
 /// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
-fn finish(
-    appraiser: &Appraiser<'_>,
-    found: &[Found; 2],
-    control: &dyn Control,
-) -> Option<([Refined; 2], Vec<Refinement>)> {
-    let jobs: Vec<(Goal, usize, &Individual)> = [Goal::Best, Goal::Worst]
+fn finish(evaluator: &Evaluator<'_>, found: &[Found; 2], monitor: &Monitor) -> Option<([Refined; 2], Vec<Refinement>)> {
+    let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
-        .flat_map(|(goal, f)| f.basins.iter().enumerate().map(move |(rank, individual)| (goal, rank, individual)))
+        .flat_map(|(sense, f)| f.basins.iter().enumerate().map(move |(rank, candidate)| (sense, rank, candidate)))
         .collect();
     let done = AtomicUsize::new(0);
-    let run = |jobs: &[(Goal, usize, &Individual)], of: usize| -> Vec<(Goal, Refined, Option<Refinement>)> {
-        let refined = |(goal, _, individual): &(Goal, usize, &Individual)| {
-            let refined = refine_one(appraiser, *goal, individual, control);
+    let run = |jobs: &[(Sense, usize, &Candidate)], of: usize| -> Vec<(Sense, Refined, Option<Refinement>)> {
+        let refined = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
+            let refined = refine_one(evaluator, *sense, candidate, monitor);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            control.report(Progress::Refined { goal: *goal, done, of });
-            refined.map(|(refined, report)| (*goal, refined, report))
+            monitor.report(Progress::Steps { stage: "refining", done, total: of });
+            refined.map(|(refined, report)| (*sense, refined, report))
         };
         jobs.par_iter().filter_map(refined).collect()
     };
     let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
     let mut results = run(&ahead, jobs.len());
-    let hopeful = |(goal, _, individual): &(Goal, usize, &Individual)| {
-        let first = results.iter().find(|(known, ..)| known == goal).map(|(_, refined, _)| refined.solution.mean());
-        match (appraiser.table(), first, individual.worth.mean()) {
-            (Some(_), Some(first), Some(mean)) => match goal {
-                Goal::Best => mean * (1.0 - HOPELESS) < first,
-                Goal::Worst => mean * (1.0 + HOPELESS) > first,
+    let hopeful = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
+        let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.mean());
+        match (evaluator.table(), first, candidate.objective.mean()) {
+            (Some(_), Some(first), Some(mean)) => match sense {
+                Sense::Min => mean * (1.0 - HOPELESS) < first,
+                Sense::Max => mean * (1.0 + HOPELESS) > first,
             },
             _ => true,
         }
@@ -219,15 +218,15 @@ fn finish(
     let of = ahead.len() + others.len();
     results.extend(run(&others, of));
     // In the order of the searches: a stable sort.
-    results.sort_by_key(|(goal, ..)| usize::from(*goal == Goal::Worst));
+    results.sort_by_key(|(sense, ..)| usize::from(*sense == Sense::Max));
     let mut refinements = Vec::new();
     let mut chosen: [Option<Refined>; 2] = [None, None];
-    for (goal, refined, report) in results {
+    for (sense, refined, report) in results {
         refinements.extend(report);
-        let slot = &mut chosen[usize::from(goal == Goal::Worst)];
-        let better = slot.as_ref().is_none_or(|known| match goal {
-            Goal::Best => refined.solution.mean() < known.solution.mean() * (1.0 - TIE),
-            Goal::Worst => refined.solution.mean() > known.solution.mean() * (1.0 + TIE),
+        let slot = &mut chosen[usize::from(sense == Sense::Max)];
+        let better = slot.as_ref().is_none_or(|known| match sense {
+            Sense::Min => refined.solution.mean() < known.solution.mean() * (1.0 - TIE),
+            Sense::Max => refined.solution.mean() > known.solution.mean() * (1.0 + TIE),
         });
         if better {
             *slot = Some(refined);
@@ -239,37 +238,37 @@ fn finish(
 
 /// Refines one basin, or only plans it where the job is to stop.
 fn refine_one(
-    appraiser: &Appraiser<'_>,
-    goal: Goal,
-    individual: &Individual,
-    control: &dyn Control,
+    evaluator: &Evaluator<'_>,
+    sense: Sense,
+    candidate: &Candidate,
+    monitor: &Monitor,
 ) -> Option<(Refined, Option<Refinement>)> {
-    let (pose, scheme) = (&individual.pose, individual.scheme.as_deref());
-    let (solution, report) = if control.should_stop() {
-        let planner = appraiser.planner();
-        let tube = fine::Tube::full(planner.grid());
-        (planned(planner, pose, scheme, tube, &mut planner.workspace())?, None)
+    let (pose, scheme) = (&candidate.pose, candidate.scheme.as_deref());
+    let (solution, report) = if monitor.should_stop() {
+        let planner = evaluator.planner();
+        let spacing = off_grid::Spacing::full(planner.grid());
+        (planned(planner, pose, scheme, spacing, &mut planner.workspace())?, None)
     } else {
-        let (solution, report) = refine(appraiser, pose, goal, scheme)?;
+        let (solution, report) = refine(evaluator, pose, sense, scheme)?;
         (solution, Some(report))
     };
-    Some((Refined { solution, scheme: individual.scheme.clone() }, report))
+    Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
 }
 
 fn worst_plan(
     planner: &Planner<'_>,
     pose: &[f64; 4],
     scheme: Option<&[Posture]>,
-) -> Result<Vec<SegmentPlan>, super::redundancy::NoPlan> {
-    let tube = fine::Tube::full(planner.grid());
-    planner.plan_fine(pose, Extremum::Largest, scheme, tube, &mut planner.workspace())
+) -> Result<Vec<SegmentPlan>, super::redundancy::NoFeasiblePlan> {
+    let spacing = off_grid::Spacing::full(planner.grid());
+    planner.plan_fine(pose, Sense::Max, scheme, spacing, &mut planner.workspace())
 }
 
-fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> NothingFeasible {
-    let none = planner.plan(pose, Extremum::Smallest, scheme, &mut planner.workspace());
+fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
+    let none = planner.plan(pose, Sense::Min, scheme, &mut planner.workspace());
     let findings = none.err().map(|none| diagnose(planner.problem(), pose, scheme, &none)).unwrap_or_default();
     let [x, y, z, yaw] = *pose;
-    NothingFeasible { placement: Placement { x, y, z, yaw }, searched, findings }
+    Infeasible { placement: Placement { x, y, z, yaw }, searched, findings }
 }
 
 /// A plan with everything that there is to say of each point, from the ordinary evaluator.

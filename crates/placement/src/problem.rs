@@ -162,7 +162,7 @@ impl Redundancy {
 }
 
 /// A joint step is never as large as half a turn. rad
-pub(super) const MOST_STEP: f64 = PI - 1e-6;
+pub(super) const MAX_JOINT_STEP: f64 = PI - 1e-6;
 
 /// Everything that defines the placement problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -220,7 +220,9 @@ impl Problem {
     /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path. rad
     pub fn joint_steps(&self, point: usize) -> [f64; 6] {
         let time = self.step_time(point);
-        std::array::from_fn(|j| self.robot.joints()[j].max_speed.map_or(MOST_STEP, |speed| MOST_STEP.min(speed * time)))
+        std::array::from_fn(|j| {
+            self.robot.joints()[j].max_speed.map_or(MAX_JOINT_STEP, |speed| MAX_JOINT_STEP.min(speed * time))
+        })
     }
 
     /// Largest step of beta from path point `point - 1` to `point`. rad

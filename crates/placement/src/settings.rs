@@ -25,7 +25,7 @@ pub enum Tables {
 pub struct SearchSettings {
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Individuals in a generation, at least 4.
+    /// Candidates in a generation, at least 4.
     pub population: usize,
     /// Generations after the random start.
     pub generations: usize,
@@ -70,7 +70,7 @@ impl Default for TransferSettings {
 /// How sharp a certificate ([`super::certify`]) is to be, and how long it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CertificateSettings {
-    /// How much better than the value found a placement may still be, relative to it: from [`Self::LEAST_GAP`] to below 1.
+    /// How much better than the value found a placement may still be, relative to it: from [`Self::MIN_GAP`] to below 1.
     pub gap: f64,
     /// Time for the certificate, of the best and of the worst placement together, where it is limited. What is reached by
     /// then depends on the machine. s
@@ -79,13 +79,13 @@ pub struct CertificateSettings {
 
 impl CertificateSettings {
     /// The finest gap that can be asked for: rounding and the digits of the files are well below.
-    pub const LEAST_GAP: f64 = 1e-6;
+    pub const MIN_GAP: f64 = 1e-6;
 
     /// The gap of so many per cent, where it can be asked for: not zero or below, not finer than rounding allows, and less
     /// than everything.
     pub fn gap(percent: f64) -> Option<f64> {
         // A number such as 0.0001 may come out a little low.
-        let least = Self::LEAST_GAP * (1.0 - 1e-12);
+        let least = Self::MIN_GAP * (1.0 - 1e-12);
         Some(percent / 100.0).filter(|gap| (least..1.0).contains(gap))
     }
 }

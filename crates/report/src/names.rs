@@ -1,13 +1,14 @@
 //! Names of things as files and pictures state them.
 
 use stead_model::robot::Posture;
-use stead_placement::outcome::{Blocked, Goal};
+use stead_placement::outcome::Blocked;
+use stead_placement::sense::Sense;
 
 /// `best` or `worst`.
-pub(super) fn goal(goal: Goal) -> &'static str {
-    match goal {
-        Goal::Best => "best",
-        Goal::Worst => "worst",
+pub(super) fn sense(sense: Sense) -> &'static str {
+    match sense {
+        Sense::Min => "best",
+        Sense::Max => "worst",
     }
 }
 
@@ -48,13 +49,6 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
 }
 
-/// What a case is: placement and plan.
-pub(super) fn case(number: u8) -> (&'static str, &'static str) {
-    let placement = if number <= 2 { "best" } else { "worst" };
-    let plan = if number % 2 == 1 { "best" } else { "worst" };
-    (placement, plan)
-}
-
 /// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
 pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
     let number = joint + 1;
@@ -73,13 +67,5 @@ mod tests {
         assert_eq!(postures_within(&long, 12), "3x12 4x18");
         let mixed: Vec<_> = (0..40).map(|k| Posture::ALL[k % 8]).collect();
         assert_eq!(postures_within(&mixed, 12), "40 segments");
-    }
-
-    #[test]
-    fn cases_are_those_of_table_iii() {
-        assert_eq!(
-            [1, 2, 3, 4].map(case),
-            [("best", "best"), ("best", "worst"), ("worst", "best"), ("worst", "worst")]
-        );
     }
 }

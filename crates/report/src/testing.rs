@@ -7,9 +7,10 @@ use stead_format::input::InputFile;
 use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
 use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
-use stead_placement::criterion::{State, state};
+use stead_placement::evaluate::reference::{State, state};
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::sense::Sense;
 use stead_placement::settings::{SearchSettings, TransferSettings};
 use stead_placement::testing::five_segments;
 
@@ -38,13 +39,18 @@ pub fn outcome() -> &'static Outcome {
     OUTCOME.get_or_init(|| {
         let best = Grid::new(Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw: yaw_from_q4(0.9258) });
         let worst = Grid::new(Placement { x: -0.18, y: -2.0, z: -0.25, yaw: 0.6 });
-        let cases = [best.case(1), best.case(2), worst.case(3), worst.case(4)];
-        let (low, high) = (cases[0].plan.mean, cases[2].plan.mean);
+        let cases = Cases {
+            best: best.case(Sense::Min, Sense::Min),
+            best_worst_plan: best.case(Sense::Min, Sense::Max),
+            worst: worst.case(Sense::Max, Sense::Min),
+            worst_worst_plan: worst.case(Sense::Max, Sense::Max),
+        };
+        let (low, high) = (cases.best.plan.mean, cases.worst.plan.mean);
         let mut convergence = Vec::new();
-        for (goal, end) in [(Goal::Best, low), (Goal::Worst, high)] {
-            convergence.extend((0..=51).map(|k| generation(goal, end, k)));
+        for (sense, end) in [(Sense::Min, low), (Sense::Max, high)] {
+            convergence.extend((0..=51).map(|k| generation(sense, end, k)));
         }
-        let refinements = vec![refinement(Goal::Best, &cases[0]), refinement(Goal::Worst, &cases[2])];
+        let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
         let (map_best, map_worst) = (best.map(), worst.map());
         Outcome {
             cases,
@@ -76,18 +82,18 @@ pub fn context() -> Context {
     }
 }
 
-fn generation(goal: Goal, end: f64, k: usize) -> Generation {
+fn generation(sense: Sense, end: f64, k: usize) -> Generation {
     let left = libm::exp(-(k as f64) / 9.0);
     let ripple = 1.0 + 0.08 * libm::sin(2.1 * k as f64);
-    let toward = if goal == Goal::Best { 1.0 } else { -0.25 };
+    let toward = if sense == Sense::Min { 1.0 } else { -0.25 };
     let best = (k > 0).then_some(end * (1.0 + toward * (0.01 + 2.0 * left)));
     let average = (k > 0).then_some(end * (1.05 + toward * (0.8 * ripple + 2.3 * left)));
-    Generation { goal, generation: k, best, average, feasible: 2 * k, population: 120, evaluations: 120 * (k + 1) }
+    Generation { sense, generation: k, best, average, feasible: 2 * k, population: 120, evaluations: 120 * (k + 1) }
 }
 
-fn refinement(goal: Goal, case: &Case) -> Refinement {
+fn refinement(sense: Sense, case: &Case) -> Refinement {
     Refinement {
-        goal,
+        sense,
         start: Placement { x: case.placement.x + 1e-3, ..case.placement },
         start_mean: case.plan.mean * 1.01,
         end: case.placement,
@@ -128,15 +134,15 @@ impl Grid {
         DeflectionMap { beta_count: problem().redundancy.beta_count, rows }
     }
 
-    fn case(&self, number: u8) -> Case {
-        let sign = if number % 2 == 1 { 1.0 } else { -1.0 };
+    fn case(&self, placement_sense: Sense, plan_sense: Sense) -> Case {
+        let sign = plan_sense.sign();
         let mut points = Vec::new();
         let mut postures = Vec::new();
         for range in problem().task.segments() {
             let plans = Posture::ALL.map(|posture| self.shortest(range.clone(), posture, sign));
             let best = plans.into_iter().zip(Posture::ALL).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
             let ((cost, betas), posture) = best.unwrap();
-            assert!(cost.is_finite(), "no plan for case {number}");
+            assert!(cost.is_finite(), "no {plan_sense:?} plan for the {placement_sense:?} placement");
             points.extend(range.clone().zip(betas).map(|(point, k)| self.plan_point(point, k, posture)));
             postures.push(posture);
         }
@@ -144,11 +150,12 @@ impl Grid {
         let (mean, max) = (scores().sum::<f64>() / points.len() as f64, scores().fold(0.0, f64::max));
         let plan = Plan { postures, mean, max, mean_deviation: None, points };
         let transfer = |k: usize| {
-            let duration = (number < 4 || k != 2).then_some(0.4 * k as f64);
+            let duration =
+                (placement_sense == Sense::Min || plan_sense == Sense::Min || k != 2).then_some(0.4 * k as f64);
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
         };
         let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { number, placement: self.placement, plan, cycle }
+        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.

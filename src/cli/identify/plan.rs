@@ -1,7 +1,7 @@
 //! `stead identify plan`: the measurements to take.
 
 use super::super::arguments::IdentifyPlanOptions;
-use super::super::progress::Steps;
+use super::super::progress::Terminal;
 use super::super::{Failure, on_threads, out_folder, say};
 use std::path::Path;
 use stead_calibration::identification::design::{DesignError, design_experiment};
@@ -14,9 +14,9 @@ pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config)?;
     keep_readings(&out.folder.path().join(SHEET))?;
     run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    let steps = Steps::start("choosing");
-    let result = on_threads(options.threads, || design_experiment(&run.request, &|done, of| steps.show(done, of)));
-    steps.finish();
+    let shown = Terminal::start().show(None);
+    let result = on_threads(options.threads, || design_experiment(&run.request, &shown.monitor));
+    drop(shown);
     let (planned, _) = result.inspect_err(|_| out.give_up())?;
     let planned = planned.map_err(|error| {
         out.give_up();

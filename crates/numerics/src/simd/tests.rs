@@ -22,8 +22,8 @@ impl<F: Function> WithSimd for InLanes<F> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         // The last lane of other numbers.
-        let mut a = [0.3; MOST_LANES];
-        let mut b = [-0.7; MOST_LANES];
+        let mut a = [0.3; MAX_LANES];
+        let mut b = [-0.7; MAX_LANES];
         (a[S::F64_LANES - 1], b[S::F64_LANES - 1]) = (self.a, self.b);
         let found = self.function.of(Lanes::load(simd, &a, 0), Lanes::load(simd, &b, 0));
         found.to_array()[S::F64_LANES - 1]

@@ -1,15 +1,16 @@
 //! The best placement: a lower bound of what placements are worth.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, End, Open, State, Watch, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, End, Open, halves, widest};
 use super::coarse_bounds::CoarseBounds;
 use super::lower_bound::Model;
 use super::model::{Unfit, certifiable, prepared};
 use super::region::Region;
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use rayon::prelude::*;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Bounds from below what placements of a problem are worth, until no placement can be better than `value` (mean score, m)
 /// by more than `gap` (relative).
@@ -19,16 +20,19 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
     let (model, whole) = prepared(problem, &compliances, with_rate);
+    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len() };
     // Of no placement anything is known until the tables are made.
-    let unknown = State { bound: 0.0, open: 1, nodes: 0 };
-    let Some(coarse) = CoarseBounds::new(&model, || watch.goes_on(&unknown)) else {
-        return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped, open: vec![(whole, 0.0)] });
+    let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
+        Ok(coarse) => coarse,
+        Err(stop) => {
+            let open = vec![(whole, 0.0)];
+            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
+        }
     };
-    let search = BranchAndBound { goal: Goal::Best, value, gap, with_rate, points: model.points.len() };
     let ceiling = search.ceiling();
     let mut nodes = 0;
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
@@ -37,7 +41,7 @@ pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, watch: &mu
         .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
         .collect();
     drop(coarse);
-    Ok(search.explore(start, nodes, watch, |open| parts(&model, open, ceiling)))
+    Ok(search.explore(start, nodes, monitor, |open| parts(&model, open, ceiling)))
 }
 
 /// The boxes that the coarse tables leave open.

@@ -1,27 +1,11 @@
 //! Boxes of placements, most promising first: the search that bounds from below and from above share.
 
 use super::region::Region;
-use crate::outcome::Goal;
+use crate::sense::Sense;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-/// How far the search has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
-    /// No placement has a mean score below, or, of the worst, above. m
-    pub bound: f64,
-    /// Boxes still open.
-    pub open: usize,
-    /// Boxes model so far.
-    pub nodes: usize,
-}
-
-/// The caller's side of a certificate. Called from one thread.
-pub trait Watch {
-    /// Takes the state of the search; false to end it with what it has.
-    fn goes_on(&mut self, state: &State) -> bool;
-}
+use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// A bound of what placements of the cell are worth: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
 #[derive(Debug, Clone, PartialEq)]
@@ -47,8 +31,8 @@ pub struct Bound {
 pub enum End {
     /// The gap asked for is reached.
     Reached,
-    /// The caller ended it.
-    Stopped,
+    /// The caller ended it, or the deadline has passed.
+    Stopped(Stop),
     /// What is left open is smaller than the tables can tell apart.
     Exhausted,
 }
@@ -93,7 +77,7 @@ pub(super) struct Open<T> {
 /// What a search is for.
 pub(super) struct BranchAndBound {
     /// From below, or from above.
-    pub goal: Goal,
+    pub sense: Sense,
     /// The mean score that is compared with. m
     pub value: f64,
     /// What is asked for, relative to the value.
@@ -134,11 +118,22 @@ impl<T> Ord for Queued<T> {
 }
 
 impl BranchAndBound {
+    /// Reports the state of the search: the bound (m), the boxes still open and those bounded so far. Returns why the search
+    /// should end with what it has, if it should.
+    pub fn report(&self, monitor: &Monitor, bound: f64, open: usize, nodes: usize) -> Option<Stop> {
+        let stage = match self.sense {
+            Sense::Min => "certifying best",
+            Sense::Max => "certifying worst",
+        };
+        monitor.report(Progress::Bound { stage, value: self.value, bound, gap: self.gap, open, nodes });
+        monitor.stop()
+    }
+
     /// 1 where great bounds come first, -1 where small ones do.
     fn sign(&self) -> f64 {
-        match self.goal {
-            Goal::Best => -1.0,
-            Goal::Worst => 1.0,
+        match self.sense {
+            Sense::Min => -1.0,
+            Sense::Max => 1.0,
         }
     }
 
@@ -158,7 +153,7 @@ impl BranchAndBound {
         &self,
         start: Vec<Open<T>>,
         mut nodes: usize,
-        watch: &mut dyn Watch,
+        monitor: &Monitor,
         parts: impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
     ) -> Bound {
         let (sign, count) = (self.sign(), self.points as f64);
@@ -168,7 +163,7 @@ impl BranchAndBound {
         let mut heap = BinaryHeap::new();
         for open in start {
             number += 1;
-            heap.push(queued(open, if self.goal == Goal::Best { number } else { u64::MAX - number }));
+            heap.push(queued(open, if self.sense == Sense::Min { number } else { u64::MAX - number }));
         }
         let mut stuck: Vec<Queued<T>> = Vec::new();
         let mut end = End::Reached;
@@ -177,8 +172,8 @@ impl BranchAndBound {
             if stuck.iter().any(|stuck| stuck.rank >= first.rank) {
                 break;
             }
-            if !watch.goes_on(&State { bound: first.open.bound / count, open: heap.len() + stuck.len(), nodes }) {
-                end = End::Stopped;
+            if let Some(stop) = self.report(monitor, first.open.bound / count, heap.len() + stuck.len(), nodes) {
+                end = End::Stopped(stop);
                 break;
             }
             let batch: Vec<_> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();

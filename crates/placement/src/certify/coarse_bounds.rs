@@ -7,6 +7,7 @@ use super::region::{Point, Region};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
+use stead_numerics::monitor::Stop;
 
 /// CoarseBounds tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
@@ -33,8 +34,11 @@ const ROWS: usize = 64;
 const MOST_LOOKED_AT: usize = 1000;
 
 impl CoarseBounds {
-    /// `None` where `goes_on`, asked again and again, says no before they are made.
-    pub fn new(model: &Model, mut goes_on: impl FnMut() -> bool) -> Option<Self> {
+    /// Makes them, unless `stop`, asked again and again, gives a reason to stop before that.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    pub fn new(model: &Model, stop: impl Fn() -> Option<Stop>) -> Result<Self, Stop> {
         let (extent, steps) = model.table.grid();
         let kinds = kinds(&model.points);
         let force_of = model.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
@@ -42,8 +46,8 @@ impl CoarseBounds {
         let mut entries = Vec::new();
         let numbers: Vec<usize> = (0..counts[0] * counts[1]).collect();
         for some in numbers.chunks(ROWS) {
-            if !goes_on() {
-                return None;
+            if let Some(stop) = stop() {
+                return Err(stop);
             }
             let rows: Vec<Vec<Affine>> =
                 some.par_iter().map(|row| row_of(model, &kinds, [row / counts[1], row % counts[1]], steps)).collect();
@@ -56,7 +60,7 @@ impl CoarseBounds {
             levels.extend(next);
             half = half.map(|h| 2.0 * h);
         }
-        Some(Self { levels, extent, steps, force_of, forces: kinds.len() })
+        Ok(Self { levels, extent, steps, force_of, forces: kinds.len() })
     }
 
     /// What they take. bytes

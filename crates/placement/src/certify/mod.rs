@@ -42,7 +42,7 @@ mod worst;
 mod tests;
 
 pub use best::best;
-pub use branch_and_bound::{Bound, End, State, Watch};
+pub use branch_and_bound::{Bound, End};
 pub use model::{Unfit, certifiable};
 pub use region::Region;
 pub use relaxed::relaxed_value;

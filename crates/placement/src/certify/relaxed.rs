@@ -1,6 +1,6 @@
 //! What a placement is worth with the limits between neighbouring points dropped, by the ordinary evaluator.
 
-use crate::criterion::state;
+use crate::evaluate::reference::state;
 use crate::problem::{Placement, Problem};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};

@@ -2,15 +2,16 @@
 //!
 //! Dropping limits lowers what a placement is worth, so this is no upper bound of values with the rate of beta or joint steps.
 
-use super::branch_and_bound::{Bound, BranchAndBound, Open, Watch, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
 use super::compliance_table::{ComplianceTable, Steps};
 use super::lower_bound::Model;
 use super::model::{Unfit, certifiable, prepared};
 use super::region::Region;
 use super::upper_bound::{BoxBounds, Inherited};
-use crate::outcome::Goal;
 use crate::problem::Problem;
+use crate::sense::Sense;
 use std::sync::Arc;
+use stead_numerics::monitor::Monitor;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first bounds.
 const STEPS: Steps = Steps { length: 0.05, headings: 64 };
@@ -30,17 +31,17 @@ type Looked = Open<Option<Arc<Inherited>>>;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, watch: &mut dyn Watch) -> Result<Bound, Unfit> {
+pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unfit> {
     certifiable(problem)?;
     let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
     let (model, whole) = prepared(problem, &compliances, false);
     let (extent, _) = model.table.grid();
     let model = Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model };
-    let search = BranchAndBound { goal: Goal::Worst, value, gap, with_rate: false, points: model.points.len() };
+    let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len() };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
     let start = first(&model, whole).into_iter().map(unknown).collect();
-    Ok(search.explore(start, 0, watch, |open| parts(&model, open, ceiling)))
+    Ok(search.explore(start, 0, monitor, |open| parts(&model, open, ceiling)))
 }
 
 /// The boxes to begin with, together all of the cell.

@@ -4,10 +4,10 @@
 //! the azimuth, which is kept while the others change. Each has a step of its own that grows with success and shrinks without.
 
 use super::{BetaGrid, LookupTable, Workspace};
-use crate::genetic::rank;
-use crate::outcome::Goal;
 use crate::problem::Placement;
-use crate::redundancy::Worth;
+use crate::redundancy::Objective;
+use crate::search::rank;
+use crate::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;
 use stead_model::robot::Posture;
@@ -24,16 +24,16 @@ const GROWTH: f64 = 1.7;
 const MAX_EVALUATIONS: usize = 150;
 
 impl LookupTable<'_> {
-    /// The best placement (in the sense of the goal) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
+    /// The best placement (in the sense of the sense) that steps from `start` (x, y, z in m, yaw in rad) lead to, what it is
     /// worth by the table, and the number of placements looked at; never worse than the start.
     pub fn coordinate_search(
         &self,
         start: &[f64; 4],
-        goal: Goal,
+        sense: Sense,
         scheme: Option<&[Posture]>,
         grid: &BetaGrid,
         workspace: &mut Workspace,
-    ) -> ([f64; 4], Worth, usize) {
+    ) -> ([f64; 4], Objective, usize) {
         let mut best = *start;
         let mut worth = self.objective(start, grid, scheme, workspace);
         let mut evaluations = 1;
@@ -47,7 +47,7 @@ impl LookupTable<'_> {
                     }
                     evaluations += 1;
                     let there = self.objective(&pose, grid, scheme, workspace);
-                    let better = rank(goal, there, worth) == Ordering::Less;
+                    let better = rank(sense, there, worth) == Ordering::Less;
                     if better {
                         (best, worth) = (pose, there);
                         // The next step goes the same way first.

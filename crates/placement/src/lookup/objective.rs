@@ -4,7 +4,7 @@
 
 use super::interpolate::{PlacedPath, PolarPoint, Rows};
 use super::{BetaGrid, LookupTable};
-use crate::redundancy::Worth;
+use crate::redundancy::Objective;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 
@@ -41,7 +41,7 @@ impl LookupTable<'_> {
         grid: &BetaGrid,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
-    ) -> Worth {
+    ) -> Objective {
         let placed = self.place(pose);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
@@ -75,11 +75,11 @@ impl LookupTable<'_> {
             segments += usize::from(blocked == 0);
         }
         if points > 0 {
-            Worth::Infeasible { points, segments: 0 }
+            Objective::Infeasible { points, segments: 0 }
         } else if segments > 0 {
-            Worth::Infeasible { points, segments }
+            Objective::Infeasible { points, segments }
         } else {
-            Worth::Feasible(sum / self.points.len() as f64)
+            Objective::Feasible(sum / self.points.len() as f64)
         }
     }
 

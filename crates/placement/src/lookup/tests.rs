@@ -1,10 +1,10 @@
 //! The table against the ordinary evaluator and the planner, and with parts of the formula broken on purpose.
 
 use super::super::feasibility::explain;
-use super::super::genetic::rank;
-use super::super::outcome::Goal;
 use super::super::problem::{Interval, Placement, Redundancy};
-use super::super::redundancy::{Extremum, Worth};
+use super::super::redundancy::Objective;
+use super::super::search::rank;
+use super::super::sense::Sense;
 use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;
 use super::*;
@@ -154,7 +154,7 @@ fn worth_agrees_with_the_planner() {
         let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
         let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
         for (k, pose) in drawn_poses(&problem, 40).iter().enumerate() {
-            let planned = planner.worth(pose, Extremum::Smallest, None, &mut space);
+            let planned = planner.objective(pose, Sense::Min, None, &mut space);
             let looked = table.objective(pose, &grid, None, &mut looking);
             // A fresh workspace, with nothing kept from the placement before, says the same.
             assert_eq!(table.objective(pose, &grid, None, &mut table.workspace(&grid)), looked);
@@ -169,14 +169,14 @@ fn worth_agrees_with_the_planner() {
             above += usize::from(looked > planned * (1.0 + 1e-4));
             feasible += 1;
             if error < 1e-4
-                && let Ok(plans) = planner.plan(pose, Extremum::Smallest, None, &mut space)
+                && let Ok(plans) = planner.plan(pose, Sense::Min, None, &mut space)
             {
                 let mut scheme: Vec<_> = plans.iter().map(|plan| plan.posture).collect();
                 let held = table.objective(pose, &grid, Some(&scheme), &mut looking).mean().unwrap();
                 assert!((held / looked - 1.0).abs() < 1e-3);
                 scheme[2] = stead_model::robot::Posture::ALL[(usize::from(scheme[2].number()) + 3) % 8];
                 let other = table.objective(pose, &grid, Some(&scheme), &mut looking);
-                assert!(rank(Goal::Best, other, Worth::Feasible(held * (1.0 - 1e-6))).is_gt());
+                assert!(rank(Sense::Min, other, Objective::Feasible(held * (1.0 - 1e-6))).is_gt());
             }
         }
         assert!(feasible > 12 && close * 10 >= feasible * close_share, "{close} of {feasible}");
@@ -195,9 +195,9 @@ fn what_nothing_reaches_is_counted_as_the_planner_counts_it() {
     let (mut space, mut looking) = (planner.workspace(), table.workspace(&grid));
     let (mut blocked, mut apart) = (0, 0);
     for pose in drawn_poses(&problem, 30) {
-        let planned = planner.worth(&pose, Extremum::Smallest, None, &mut space);
+        let planned = planner.objective(&pose, Sense::Min, None, &mut space);
         let looked = table.objective(&pose, &grid, None, &mut looking);
-        if let (Worth::Infeasible { points: a, .. }, Worth::Infeasible { points: b, .. }) = (planned, looked) {
+        if let (Objective::Infeasible { points: a, .. }, Objective::Infeasible { points: b, .. }) = (planned, looked) {
             blocked += a;
             apart += a.abs_diff(b);
         }
@@ -223,7 +223,7 @@ fn a_long_path_keeps_its_digits() {
     let table = LookupTable::new(&problem).unwrap();
     let grid = BetaGrid::of(&planner);
     let pose = [0.0, -1.8, -0.4, 0.7];
-    let planned = planner.worth(&pose, Extremum::Smallest, None, &mut planner.workspace()).mean().unwrap();
+    let planned = planner.objective(&pose, Sense::Min, None, &mut planner.workspace()).mean().unwrap();
     let looked = table.objective(&pose, &grid, None, &mut table.workspace(&grid)).mean().unwrap();
     assert!((looked / planned - 1.0).abs() < 2e-5, "{looked} {planned}");
 }
@@ -234,7 +234,7 @@ fn steps_of_beta_are_the_planners() {
     for planner in [Planner::new(&problem), Planner::finer(&problem)] {
         let grid = BetaGrid::of(&planner);
         for (point, reach) in grid.reaches.iter().enumerate() {
-            assert_eq!(*reach, planner.step(point, Extremum::Smallest).reach);
+            assert_eq!(*reach, planner.step(point, Sense::Min).reach);
         }
     }
 }
@@ -246,10 +246,10 @@ fn polishing_gets_better_inside_the_cell() {
     let table = LookupTable::new(&problem).unwrap();
     let grid = BetaGrid::new(&problem, 120);
     let mut workspace = table.workspace(&grid);
-    for (goal, start) in [(Goal::Best, [0.1, -1.8, -0.4, 1.0]), (Goal::Worst, [-0.1, -2.0, -0.4, 0.6])] {
+    for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let before = table.objective(&start, &grid, None, &mut workspace);
-        let (end, worth, evaluations) = table.coordinate_search(&start, goal, None, &grid, &mut workspace);
-        assert!(rank(goal, worth, before).is_lt() && evaluations > 20, "{goal:?} {before:?} {worth:?}");
+        let (end, worth, evaluations) = table.coordinate_search(&start, sense, None, &grid, &mut workspace);
+        assert!(rank(sense, worth, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {worth:?}");
         assert_eq!(worth, table.objective(&end, &grid, None, &mut workspace));
         let [x, y, z, yaw] = end;
         assert!(problem.cell.contains(&Placement { x, y, z, yaw }), "{end:?}");

@@ -1,6 +1,5 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
-use super::super::control::Unwatched;
 use super::super::lookup::Unsuited;
 use super::super::settings::{PostureSearch, Tables};
 use super::super::testing::{five_segments, with_uncertainty};
@@ -15,17 +14,18 @@ fn four_cases_are_ordered_and_complete() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 40;
     for postures in [PostureSearch::Exact, PostureSearch::Genetic] {
-        // A random scheme is rarely feasible, so the published way needs more individuals to find any.
+        // A random scheme is rarely feasible, so the published way needs more candidates to find any.
         let population = if postures == PostureSearch::Genetic { 80 } else { 16 };
         let settings = SearchSettings { postures, population, ..small() };
-        let outcome = place(&problem, &settings, &TransferSettings::default(), &Unwatched).unwrap();
-        let means: Vec<f64> = outcome.cases.iter().map(|c| c.plan.mean).collect();
+        let outcome = place(&problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap();
+        let means = outcome.cases.all().map(|case| case.plan.mean);
+        assert_eq!(outcome.cases.all().map(Case::number), [1, 2, 3, 4]);
         assert!(means[0] <= means[1] && means[2] <= means[3] && means[0] <= means[2], "{means:?}");
-        assert!(outcome.cases.iter().all(|c| c.plan.points.len() == 105 && c.plan.postures.len() == 5));
-        assert_eq!(outcome.cases[0].placement, outcome.cases[1].placement);
-        assert!(outcome.refinements.iter().all(|r| match r.goal {
-            Goal::Best => r.end_mean <= r.start_mean,
-            Goal::Worst => r.end_mean >= r.start_mean,
+        assert!(outcome.cases.all().iter().all(|c| c.plan.points.len() == 105 && c.plan.postures.len() == 5));
+        assert_eq!(outcome.cases.best.placement, outcome.cases.best_worst_plan.placement);
+        assert!(outcome.refinements.iter().all(|r| match r.sense {
+            Sense::Min => r.end_mean <= r.start_mean,
+            Sense::Max => r.end_mean >= r.start_mean,
         }));
         assert!(!outcome.interrupted);
     }
@@ -36,7 +36,7 @@ fn a_cell_out_of_reach_says_why() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 24;
     problem.cell.position[1] = super::super::problem::Interval { min: -6.0, max: -5.0 };
-    let nothing = place(&problem, &small(), &TransferSettings::default(), &Unwatched).unwrap_err();
+    let nothing = place(&problem, &small(), &TransferSettings::default(), &Monitor::silent()).unwrap_err();
     assert!(nothing.searched && !nothing.findings.is_empty());
     assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");
 }
@@ -47,14 +47,14 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     problem.redundancy.beta_count = 40;
     let run = |problem: &Problem, tables: Tables| {
         let settings = SearchSettings { tables, population: 24, generations: 8, basins: 2, ..small() };
-        place(problem, &settings, &TransferSettings::default(), &Unwatched).unwrap()
+        place(problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap()
     };
     let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
     assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3), "{:?}", with.tabled);
     assert_eq!(without.tabled, None);
     // The ordinary evaluator has the last word, and the table never costs more than it finds.
-    assert!(with.cases[0].plan.mean <= without.cases[0].plan.mean * 1.001);
-    assert!(with.cases[2].plan.mean >= without.cases[2].plan.mean * 0.999);
+    assert!(with.cases.best.plan.mean <= without.cases.best.plan.mean * 1.001);
+    assert!(with.cases.worst.plan.mean >= without.cases.worst.plan.mean * 0.999);
     let mut tilted = problem.clone();
     let mut wrenches = tilted.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
@@ -74,10 +74,10 @@ fn a_search_notices_that_its_table_misleads() {
     let wrong = LookupTable::new(&weaker).unwrap();
     let planner = Planner::new(&problem);
     let misled = |table: Option<&LookupTable<'_>>| {
-        let found = genetic::search(&Appraiser::new(&planner, table), &small(), Goal::Best, &Unwatched);
-        assert_eq!(found.basins[0].worth.mean(), {
+        let found = search::search(&Evaluator::new(&planner, table), &small(), Sense::Min, &Monitor::silent());
+        assert_eq!(found.basins[0].objective.mean(), {
             let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());
-            planner.worth(pose, Extremum::Smallest, scheme, &mut planner.workspace()).mean()
+            planner.objective(pose, Sense::Min, scheme, &mut planner.workspace()).mean()
         });
         found.misled
     };
@@ -86,15 +86,11 @@ fn a_search_notices_that_its_table_misleads() {
 
 #[test]
 fn stopping_early_still_returns_a_result() {
-    struct Stop;
-    impl Control for Stop {
-        fn should_stop(&self) -> bool {
-            true
-        }
-    }
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
     let mut problem = five_segments();
     problem.redundancy.beta_count = 24;
-    let outcome = place(&problem, &small(), &TransferSettings::default(), &Stop).unwrap();
+    let outcome = place(&problem, &small(), &TransferSettings::default(), &stopped).unwrap();
     assert!(outcome.interrupted && outcome.refinements.is_empty());
     // Two populations, and what is planned of them.
     assert!((33..=36).contains(&outcome.evaluations), "{}", outcome.evaluations);

@@ -5,46 +5,28 @@
 //! joint by its speed, and the posture not at all.
 //!
 //! The plan is made in steps:
-//! 1. [`band`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
+//! 1. [`transition`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
 //!    turn (twice where the two flips of a class yield differently: [`Flips`]). This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
-//!    Between points closer than a step of the grid takes, the steps found are spread over as many points as each takes (`pace`).
-//! 2. `turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
+//!    Between points closer than a step of the grid takes, the steps found are spread over as many points as each takes (`rate_limit`).
+//! 2. `joint_turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
-//! 3. `exact`: only where that fails, dynamic programming over (beta, turns) in one posture.
-//! 4. [`fine`]: beta off the grid, by dynamic programming in an ever narrower tube around the plan.
+//! 3. `reference_dp`: only where that fails, dynamic programming over (beta, turns) in one posture.
+//! 4. [`off_grid`]: beta off the grid, by dynamic programming on ever narrower grids around the plan.
 
-pub mod band;
-mod exact;
-pub mod fine;
-mod pace;
+mod forward_pass;
+mod joint_turns;
+pub mod off_grid;
+mod rate_limit;
+mod reference_dp;
 mod segment;
-mod sweep;
-mod turns;
+pub mod transition;
 
-use super::kernel::{Flips, Kernel, States};
+use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Problem, Redundancy};
+use super::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, turns::Range};
 use stead_numerics::simd::Instructions;
-
-/// Which plan is wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extremum {
-    /// The plan with the smallest mean score.
-    Smallest,
-    /// The plan with the largest.
-    Largest,
-}
-
-impl Extremum {
-    /// +1 or -1: scores times this are minimised.
-    pub fn sign(self) -> f64 {
-        match self {
-            Extremum::Smallest => 1.0,
-            Extremum::Largest => -1.0,
-        }
-    }
-}
 
 /// The plan of one segment.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,9 +43,9 @@ pub struct SegmentPlan {
     pub cost: f64,
 }
 
-/// What a placement is worth on the grid.
+/// The objective value of a placement: the mean score under its best (or worst) plan on the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Worth {
+pub enum Objective {
     /// The mean score under the plan asked for. m
     Feasible(f64),
     /// Nothing to plan: number of path points that no posture allows, and of segments that no one posture gets through.
@@ -75,19 +57,19 @@ pub enum Worth {
     },
 }
 
-impl Worth {
+impl Objective {
     /// The mean score, where there is one. m
     pub fn mean(self) -> Option<f64> {
         match self {
-            Worth::Feasible(mean) => Some(mean),
-            Worth::Infeasible { .. } => None,
+            Objective::Feasible(mean) => Some(mean),
+            Objective::Infeasible { .. } => None,
         }
     }
 }
 
 /// Why a placement has no plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NoPlan {
+pub struct NoFeasiblePlan {
     /// Path points that have no allowed state in any posture asked for.
     pub blocked_points: Vec<usize>,
     /// Segments (from 0) whose points are all allowed but that no posture gets through, with the first point that cannot
@@ -100,8 +82,8 @@ pub struct NoPlan {
 pub struct Planner<'a> {
     problem: &'a Problem,
     grid: Redundancy,
-    kernels: Vec<Kernel<'a>>,
-    pace: pace::Pace,
+    evaluators: Vec<BatchEvaluator<'a>>,
+    rate_limit: rate_limit::RateLimit,
     steps: Vec<[f64; 6]>,
     /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
     ranges: [Option<Range>; 6],
@@ -111,16 +93,16 @@ pub struct Planner<'a> {
 /// Largest change of the beta number at every path point from the one before, on a grid: where points are so close that the
 /// rate of beta allows less than a step between neighbours, a step after every few of them.
 pub fn beta_steps(problem: &Problem, grid: &Redundancy) -> Vec<usize> {
-    let pace = pace::Pace::new(problem, grid);
-    (0..problem.task.points().len()).map(|point| pace.step(point).0).collect()
+    let rate_limit = rate_limit::RateLimit::new(problem, grid);
+    (0..problem.task.points().len()).map(|point| rate_limit.step(point).0).collect()
 }
 
 /// Space of one thread to plan in.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    before: States,
-    now: States,
-    record: sweep::Record,
+    before: StateGrid,
+    now: StateGrid,
+    record: forward_pass::Record,
 }
 
 /// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
@@ -150,8 +132,11 @@ impl<'a> Planner<'a> {
         Self {
             problem,
             grid,
-            kernels: Flips::of(&problem.robot).iter().map(|flips| Kernel::new(problem, &grid, *flips)).collect(),
-            pace: pace::Pace::new(problem, &grid),
+            evaluators: Flips::of(&problem.robot)
+                .iter()
+                .map(|flips| BatchEvaluator::new(problem, &grid, *flips))
+                .collect(),
+            rate_limit: rate_limit::RateLimit::new(problem, &grid),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
@@ -172,7 +157,7 @@ impl<'a> Planner<'a> {
 
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
-        self.pace.widest()
+        self.rate_limit.widest()
     }
 
     /// Space for one thread.
@@ -181,27 +166,27 @@ impl<'a> Planner<'a> {
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         Workspace {
-            before: States::new(count, pad),
-            now: States::new(count, pad),
-            record: sweep::Record::new(longest, count),
+            before: StateGrid::new(count, pad),
+            now: StateGrid::new(count, pad),
+            record: forward_pass::Record::new(longest, count),
         }
     }
 
     /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best or worst plan on the grid, with
     /// the posture scheme found exactly or given (one posture per segment).
-    pub fn worth(
+    pub fn objective(
         &self,
         pose: &[f64; 4],
-        extremum: Extremum,
+        sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
-    ) -> Worth {
+    ) -> Objective {
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
             let found =
-                self.segment(span.clone(), pose, extremum, only, workspace, if points > 0 { None } else { Some(0.0) });
+                self.segment(span.clone(), pose, sense, only, workspace, if points > 0 { None } else { Some(0.0) });
             points += found.blocked.len();
             if points > 0 {
                 continue;
@@ -212,53 +197,56 @@ impl<'a> Planner<'a> {
             }
         }
         if points > 0 {
-            Worth::Infeasible { points, segments: 0 }
+            Objective::Infeasible { points, segments: 0 }
         } else if segments > 0 {
-            Worth::Infeasible { points, segments }
+            Objective::Infeasible { points, segments }
         } else {
-            Worth::Feasible(sum / self.problem.task.points().len() as f64)
+            Objective::Feasible(sum / self.problem.task.points().len() as f64)
         }
     }
 
     /// The best or worst plan on the grid of beta, one entry per segment.
     ///
     /// # Errors
-    /// [`NoPlan`] when some point or segment has none.
+    /// [`NoFeasiblePlan`] when some point or segment has none.
     pub fn plan(
         &self,
         pose: &[f64; 4],
-        extremum: Extremum,
+        sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
-    ) -> Result<Vec<SegmentPlan>, NoPlan> {
-        let choices = self.choices(pose, extremum, scheme, workspace, 0.0)?;
-        Ok(turns::settle(self.problem, choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect()))
+    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        let choices = self.choices(pose, sense, scheme, workspace, 0.0)?;
+        Ok(joint_turns::select_joint_paths(
+            self.problem,
+            choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect(),
+        ))
     }
 
     /// The best or worst plan with beta off the grid, one entry per segment.
     ///
     /// Beta is refined in every posture class that comes within a fifth of the best one on the grid, so that a coarse grid
-    /// does not settle the posture.
+    /// does not select_joint_paths the posture.
     ///
     /// # Errors
-    /// [`NoPlan`] when some point or segment has no plan on the grid.
+    /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
     pub fn plan_fine(
         &self,
         pose: &[f64; 4],
-        extremum: Extremum,
+        sense: Sense,
         scheme: Option<&[Posture]>,
-        tube: fine::Tube,
+        spacing: off_grid::Spacing,
         workspace: &mut Workspace,
-    ) -> Result<Vec<SegmentPlan>, NoPlan> {
-        let choices = self.choices(pose, extremum, scheme, workspace, CLOSE)?;
+    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        let choices = self.choices(pose, sense, scheme, workspace, CLOSE)?;
         let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
-                let mut plan = turns::settle(self.problem, vec![choice]).pop()?;
-                fine::refine(self.problem, pose, extremum, tube, &mut plan);
+                let mut plan = joint_turns::select_joint_paths(self.problem, vec![choice]).pop()?;
+                off_grid::refine(self.problem, pose, sense, spacing, &mut plan);
                 Some(plan)
             });
-            let sign = extremum.sign();
+            let sign = sense.sign();
             let plan = plans.min_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)))?;
             // The refined betas may be driven in other flips and turns just as well.
             let postures = match only {
@@ -266,10 +254,10 @@ impl<'a> Planner<'a> {
                 None => self.alike(plan.posture),
             };
             let span = plan.points.clone();
-            let again = turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
-            Some(again.unwrap_or_else(|| turns::Choice::of(plan)))
+            let again = joint_turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
+            Some(again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan)))
         });
-        Ok(turns::settle(self.problem, refined.collect()))
+        Ok(joint_turns::select_joint_paths(self.problem, refined.collect()))
     }
 
     /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
@@ -277,16 +265,16 @@ impl<'a> Planner<'a> {
     fn choices(
         &self,
         pose: &[f64; 4],
-        extremum: Extremum,
+        sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
         margin: f64,
-    ) -> Result<Vec<Vec<turns::Choice>>, NoPlan> {
-        let mut failure = NoPlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
+    ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
+        let mut failure = NoFeasiblePlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
         let mut all = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let found = self.segment(span.clone(), pose, extremum, only, workspace, Some(margin));
+            let found = self.segment(span.clone(), pose, sense, only, workspace, Some(margin));
             if !found.choices.is_empty() {
                 all.push(found.choices);
             } else if found.blocked.is_empty() {

@@ -1,15 +1,16 @@
 //! The plans of one segment: which postures it can be driven in, and at what cost.
 
-use super::super::criterion;
-use super::sweep::{Pass, Sweep};
-use super::{Extremum, Planner, Workspace, exact, turns};
+use super::super::evaluate::reference;
+use super::forward_pass::{ForwardPass, Pass};
+use super::{Planner, Workspace, joint_turns, reference_dp};
+use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
 
 /// What a segment offers.
 pub(super) struct Found {
     /// The cheapest plans.
-    pub choices: Vec<turns::Choice>,
+    pub choices: Vec<joint_turns::SegmentChoice>,
     /// Points without an allowed state in any posture asked for.
     pub blocked: Vec<usize>,
     /// The first point that the posture that gets farthest cannot get to.
@@ -17,30 +18,32 @@ pub(super) struct Found {
 }
 
 impl Planner<'_> {
-    /// Sweeps one segment with every kernel that evaluates a posture asked for, and takes from all together the cheapest
+    /// Sweeps one segment with every evaluator that evaluates a posture asked for, and takes from all together the cheapest
     /// plans; with no `margin`, only the blocked points are found.
     pub(super) fn segment(
         &self,
         span: Span<usize>,
         pose: &[f64; 4],
-        extremum: Extremum,
+        sense: Sense,
         only: Option<Posture>,
         workspace: &mut Workspace,
         margin: Option<f64>,
     ) -> Found {
         let mut found = Found { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
-        let is_spread = margin.is_some() && self.pace.is_spread(&span);
-        for kernel in self.kernels.iter().filter(|kernel| only.is_none_or(|posture| kernel.flips().contains(posture))) {
+        let is_spread = margin.is_some() && self.rate_limit.is_spread(&span);
+        for evaluator in
+            self.evaluators.iter().filter(|evaluator| only.is_none_or(|posture| evaluator.flips().contains(posture)))
+        {
             let postures =
-                |posture: &Posture| kernel.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
+                |posture: &Posture| evaluator.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
             // With steps saved up first; where they cannot be spread, without.
-            for is_paced in [true, false].into_iter().skip(usize::from(!is_spread)) {
-                let pass = Pass { kernel, span: &span, pose, extremum, is_paced };
-                let sweep = self.sweep(pass, only, workspace, margin.is_none());
-                found.blocked.retain(|point| sweep.blocked.binary_search(point).is_ok());
+            for is_accumulated in [true, false].into_iter().skip(usize::from(!is_spread)) {
+                let pass = Pass { evaluator, span: &span, pose, sense, is_accumulated };
+                let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
+                found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
                 let Some(margin) = margin else { break };
-                found.farthest = found.farthest.max(sweep.farthest(&span));
-                if self.choose(pass, postures, &sweep, workspace, margin, &mut found.choices) {
+                found.farthest = found.farthest.max(forward_pass.farthest(&span));
+                if self.choose(pass, postures, &forward_pass, workspace, margin, &mut found.choices) {
                     break;
                 }
             }
@@ -50,9 +53,9 @@ impl Planner<'_> {
 
     /// The postures of a class that yield like the given one, itself among them.
     pub(super) fn alike(&self, posture: Posture) -> Vec<Posture> {
-        let kernel = self.kernels.iter().find(|kernel| kernel.flips().contains(posture));
+        let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));
         let postures = posture.class().postures().into_iter();
-        postures.filter(|p| kernel.is_some_and(|kernel| kernel.flips().contains(*p))).collect()
+        postures.filter(|p| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p))).collect()
     }
 
     /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside its
@@ -62,12 +65,12 @@ impl Planner<'_> {
         &self,
         pass: Pass<'_>,
         is_asked: impl Fn(&Posture) -> bool,
-        outcome: &Sweep,
+        outcome: &ForwardPass,
         workspace: &mut Workspace,
         margin: f64,
-        found: &mut Vec<turns::Choice>,
+        found: &mut Vec<joint_turns::SegmentChoice>,
     ) -> bool {
-        let Pass { span, pose, extremum, is_paced, .. } = pass;
+        let Pass { span, pose, sense, is_accumulated, .. } = pass;
         let mut has_all = outcome.ends.iter().any(Option::is_some);
         // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
@@ -75,8 +78,10 @@ impl Planner<'_> {
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let sign = extremum.sign();
-        let limit = |found: &[turns::Choice]| found.first().map(|best| best.cost * sign + margin * best.cost.abs());
+        let sign = sense.sign();
+        let limit = |found: &[joint_turns::SegmentChoice]| {
+            found.first().map(|best| best.cost * sign + margin * best.cost.abs())
+        };
         for (cost, class) in order {
             if limit(found).is_some_and(|limit| cost >= limit) {
                 break;
@@ -84,14 +89,14 @@ impl Planner<'_> {
             let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
             let betas = self.trace(pass, class, outcome, workspace);
             let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-            if is_paced {
-                self.pace.smooth(self.problem, span, &mut path);
+            if is_accumulated {
+                self.rate_limit.smooth(self.problem, span, &mut path);
             }
-            let unwound = turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps);
-            let choice = if is_paced {
+            let unwound = joint_turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps);
+            let choice = if is_accumulated {
                 unwound.and_then(|choice| self.repriced(pose, choice))
             } else {
-                unwound.or_else(|| exact::plan(self, span, pose, extremum, &postures, workspace))
+                unwound.or_else(|| reference_dp::plan(self, span, pose, sense, &postures, workspace))
             };
             has_all &= choice.is_some();
             found.extend(choice);
@@ -105,12 +110,12 @@ impl Planner<'_> {
     }
 
     /// A plan with its own cost, where all its states are allowed.
-    fn repriced(&self, pose: &[f64; 4], mut choice: turns::Choice) -> Option<turns::Choice> {
-        let posture = choice.ways.first()?.posture;
+    fn repriced(&self, pose: &[f64; 4], mut choice: joint_turns::SegmentChoice) -> Option<joint_turns::SegmentChoice> {
+        let posture = choice.joint_paths.first()?.posture;
         choice.cost = 0.0;
         for (point, beta) in choice.points.clone().zip(&choice.betas) {
-            let state = criterion::state(self.problem, point, pose, *beta, posture).ok()?;
-            if !turns::is_allowed(self.problem, &state) {
+            let state = reference::state(self.problem, point, pose, *beta, posture).ok()?;
+            if !joint_turns::is_allowed(self.problem, &state) {
                 return None;
             }
             choice.cost += state.score();

@@ -1,8 +1,8 @@
 //! The planner against check values, and against plain dynamic programming over every real configuration.
 
-use super::sweep::Pass;
+use super::forward_pass::Pass;
 use super::*;
-use crate::criterion::state;
+use crate::evaluate::reference::state;
 use crate::testing::{compensated, five_segments, with_laws};
 use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
@@ -20,17 +20,17 @@ fn with_prototype_steps(mut problem: Problem) -> Problem {
     problem
 }
 
-fn worth(problem: &Problem, pose: &[f64; 4], extremum: Extremum) -> Worth {
+fn objective(problem: &Problem, pose: &[f64; 4], sense: Sense) -> Objective {
     let planner = Planner::new(problem);
     let mut workspace = planner.workspace();
-    planner.worth(pose, extremum, None, &mut workspace)
+    planner.objective(pose, sense, None, &mut workspace)
 }
 
 #[test]
 fn agrees_with_the_prototype_at_the_published_optimum() {
     let problem = with_prototype_steps(five_segments());
-    let best = worth(&problem, &published_optimum(), Extremum::Smallest).mean().unwrap();
-    let worst = worth(&problem, &published_optimum(), Extremum::Largest).mean().unwrap();
+    let best = objective(&problem, &published_optimum(), Sense::Min).mean().unwrap();
+    let worst = objective(&problem, &published_optimum(), Sense::Max).mean().unwrap();
     // Printed with four and three digits.
     assert!((best * 1e3 - 0.5357).abs() < 1e-3 * 0.5357, "{best}");
     assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
@@ -107,20 +107,20 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         for k in 0..8 {
             let f = f64::from(k);
             let pose = [-0.3 + 0.07 * f, -1.64 - 0.05 * f, -0.6 + 0.04 * f, -3.0 + 0.8 * f + 0.2 * index as f64];
-            for extremum in [Extremum::Smallest, Extremum::Largest] {
+            for sense in [Sense::Min, Sense::Max] {
                 for scheme in [None, Some([3, 4, 3, 1, 5].map(|n| Posture::from_number(n).unwrap()))] {
-                    let found = planner.plan(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace);
+                    let found = planner.plan(&pose, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace);
                     let mut expected = 0.0;
                     for (segment, span) in problem.task.segments().iter().enumerate() {
                         let only = scheme.map(|s| vec![s[segment]]);
                         let postures = only.unwrap_or(Posture::ALL.to_vec());
-                        let choice = exact::plan(&planner, span, &pose, extremum, &postures, &mut workspace);
+                        let choice = reference_dp::plan(&planner, span, &pose, sense, &postures, &mut workspace);
                         expected += choice.map_or(f64::INFINITY, |c| c.cost);
                     }
                     let cost = found.as_ref().map_or(f64::INFINITY, |plans| plans.iter().map(|p| p.cost).sum());
                     compared += 1;
-                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {pose:?} {extremum:?} {scheme:?}");
-                    let worth = planner.worth(&pose, extremum, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
+                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {pose:?} {sense:?} {scheme:?}");
+                    let worth = planner.objective(&pose, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
                     assert_eq!(worth.is_some(), cost.is_finite());
                     if let Ok(plans) = found {
                         feasible += 1;
@@ -150,14 +150,14 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let f = f64::from(k);
             let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
             for span in problem.task.segments() {
-                let kernel = &planner.kernels[0];
-                let pass = Pass { kernel, span, pose: &pose, extremum: Extremum::Smallest, is_paced: false };
-                let sweep = planner.sweep(pass, None, &mut workspace, false);
+                let evaluator = &planner.evaluators[0];
+                let pass = Pass { evaluator, span, pose: &pose, sense: Sense::Min, is_accumulated: false };
+                let forward_pass = planner.forward_pass(pass, None, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
-                    let judge = exact::plan(&planner, span, &pose, Extremum::Smallest, &postures, &mut workspace);
+                    let judge = reference_dp::plan(&planner, span, &pose, Sense::Min, &postures, &mut workspace);
                     let (found, expected) =
-                        (sweep.ends[class.index()].map(|end| end.0), judge.map(|choice| choice.cost));
+                        (forward_pass.ends[class.index()].map(|end| end.0), judge.map(|choice| choice.cost));
                     assert_eq!(found.is_some(), expected.is_some(), "{class:?} {span:?} {pose:?}");
                     if let (Some(found), Some(expected)) = (found, expected) {
                         compared += 1;
@@ -174,22 +174,22 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
 fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
     let problem = with_prototype_steps(five_segments());
     let pose = published_optimum();
-    for extremum in [Extremum::Smallest, Extremum::Largest] {
+    for sense in [Sense::Min, Sense::Max] {
         let planner = Planner::new(&problem);
-        let mut plans = planner.plan(&pose, extremum, None, &mut planner.workspace()).unwrap();
+        let mut plans = planner.plan(&pose, sense, None, &mut planner.workspace()).unwrap();
         let before: f64 = plans.iter().map(|p| p.cost).sum();
         for plan in &mut plans {
-            fine::refine(&problem, &pose, extremum, fine::Tube::full(&problem.redundancy), plan);
-            let replayed = fine::replay(&problem, &pose, plan).unwrap();
+            off_grid::refine(&problem, &pose, sense, off_grid::Spacing::full(&problem.redundancy), plan);
+            let replayed = off_grid::replay(&problem, &pose, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }
         assert_sound(&problem, &pose, &plans);
         let after: f64 = plans.iter().map(|p| p.cost).sum();
-        assert!(after * extremum.sign() <= before * extremum.sign());
+        assert!(after * sense.sign() <= before * sense.sign());
         let mut fine_grid = problem.clone();
         fine_grid.redundancy.beta_count = 1440;
-        let grid = worth(&fine_grid, &pose, extremum).mean().unwrap() * 105.0;
-        assert!(after * extremum.sign() < grid * extremum.sign() + 2e-4 * grid, "{before} {after} {grid}");
+        let grid = objective(&fine_grid, &pose, sense).mean().unwrap() * 105.0;
+        assert!(after * sense.sign() < grid * sense.sign() + 2e-4 * grid, "{before} {after} {grid}");
     }
 }
 
@@ -198,18 +198,18 @@ fn says_which_points_and_segments_have_no_plan() {
     let problem = five_segments();
     let planner = Planner::new(&problem);
     let far = [0.0, -4.0, -0.4, 0.0];
-    let none = planner.plan(&far, Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    let none = planner.plan(&far, Sense::Min, None, &mut planner.workspace()).unwrap_err();
     assert_eq!(none.blocked_points.len(), 105);
     assert_eq!(
-        planner.worth(&far, Extremum::Smallest, None, &mut planner.workspace()),
-        Worth::Infeasible { points: 105, segments: 0 }
+        planner.objective(&far, Sense::Min, None, &mut planner.workspace()),
+        Objective::Infeasible { points: 105, segments: 0 }
     );
     // With joints that may hardly move, points are allowed but no segment can be followed.
     let mut joints = problem.robot.joints().clone();
     joints.iter_mut().for_each(|j| j.max_speed = Some(1e-6));
     let stiff = Problem { robot: Robot::new("slow", joints).unwrap(), ..problem.clone() };
     let planner = Planner::new(&stiff);
-    let none = planner.plan(&published_optimum(), Extremum::Smallest, None, &mut planner.workspace()).unwrap_err();
+    let none = planner.plan(&published_optimum(), Sense::Min, None, &mut planner.workspace()).unwrap_err();
     assert!(none.blocked_points.is_empty());
     assert_eq!(none.broken_segments, [(0, 1), (1, 22), (2, 43), (3, 64), (4, 85)]);
 }
@@ -220,27 +220,27 @@ fn plans_of_blocks_are_those_of_whole_segments() {
     problem.redundancy.beta_count = 60;
     problem.redundancy.max_beta_rate *= 3.0;
     let planner = Planner::new(&problem);
-    let (pose, extremum) = (published_optimum(), Extremum::Largest);
+    let (pose, sense) = (published_optimum(), Sense::Max);
     let mut compared = 0;
-    for kernel in &planner.kernels {
+    for evaluator in &planner.evaluators {
         for span in problem.task.segments() {
-            let pass = Pass { kernel, span, pose: &pose, extremum, is_paced: false };
+            let pass = Pass { evaluator, span, pose: &pose, sense, is_accumulated: false };
             let mut whole = planner.workspace();
-            let sweep = planner.sweep(pass, None, &mut whole, false);
+            let forward_pass = planner.forward_pass(pass, None, &mut whole, false);
             // Blocks that end with the segment, that do not, and of the least length.
             for most in [5, 7, 1, 19, 20, 21].map(|steps| steps * 4 * 60) {
                 let mut blocks = planner.workspace();
-                blocks.record = sweep::Record::with_most(span.len(), 60, most);
-                let again = planner.sweep(pass, None, &mut blocks, false);
-                assert_eq!(again.ends, sweep.ends);
-                for class in PostureClass::ALL.into_iter().filter(|class| sweep.ends[class.index()].is_some()) {
+                blocks.record = forward_pass::Record::with_most(span.len(), 60, most);
+                let again = planner.forward_pass(pass, None, &mut blocks, false);
+                assert_eq!(again.ends, forward_pass.ends);
+                for class in PostureClass::ALL.into_iter().filter(|class| forward_pass.ends[class.index()].is_some()) {
                     compared += 1;
-                    let betas = planner.trace(pass, class, &sweep, &mut whole);
+                    let betas = planner.trace(pass, class, &forward_pass, &mut whole);
                     assert_eq!(planner.trace(pass, class, &again, &mut blocks), betas, "{span:?} {class:?} {most}");
                 }
             }
             let posture = Posture::ALL[2];
-            let search = exact::Search { planner: &planner, span, pose: &pose, extremum, posture };
+            let search = reference_dp::Search { planner: &planner, span, pose: &pose, sense, posture };
             let expected = search.plan(span.len(), &mut whole);
             assert!(expected.is_some());
             for block in [1, 4, 7, 20, 30] {
@@ -276,20 +276,20 @@ fn beta_keeps_its_pace_where_points_are_close() {
     // Near the best placement, where the rate of beta binds; steps of the path that are a third of a step of the grid.
     let pose = [0.0, -1.64, -0.214, 1.378];
     let dense = denser(&five_segments(), 10);
-    let extremum = Extremum::Smallest;
+    let sense = Sense::Min;
     let planner = Planner::new(&dense);
-    assert!(dense.task.segments().iter().all(|span| planner.pace.is_spread(span)));
+    assert!(dense.task.segments().iter().all(|span| planner.rate_limit.is_spread(span)));
     let mut workspace = planner.workspace();
-    let plans = planner.plan(&pose, extremum, None, &mut workspace).unwrap();
+    let plans = planner.plan(&pose, sense, None, &mut workspace).unwrap();
     assert_sound(&dense, &pose, &plans);
     let found = plans.iter().map(|plan| plan.cost).sum::<f64>() / dense.task.points().len() as f64;
-    let worth = planner.worth(&pose, extremum, None, &mut workspace).mean().unwrap();
+    let worth = planner.objective(&pose, sense, None, &mut workspace).mean().unwrap();
     assert!((found - worth).abs() < 1e-12 * found, "{found} {worth}");
     // A grid so fine that nothing is saved up, and beta held still.
     let mean = |beta_count: usize, share: f64| {
         let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
         let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
-        super::tests::worth(&Problem { redundancy, ..dense.clone() }, &pose, extremum).mean().unwrap()
+        super::tests::objective(&Problem { redundancy, ..dense.clone() }, &pose, sense).mean().unwrap()
     };
     let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
     // Spread steps leave the grid, so that they may come out a little below the finest.

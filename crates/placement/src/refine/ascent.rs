@@ -5,7 +5,7 @@
 //! and a trust region, again by clarabel, and leads to a pose where everything is planned anew.
 
 use super::super::problem::Problem;
-use super::super::redundancy::{Planner, Workspace, fine};
+use super::super::redundancy::{Planner, Workspace, off_grid};
 use super::linearise::{Curvature, UNITS, linearise};
 use super::solver::Run;
 use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
@@ -16,16 +16,16 @@ use stead_model::robot::Posture;
 /// The trust region at the start, at the most and at the end, in scaled variables.
 const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
 /// Iterations at the most.
-const MOST_ITERATIONS: usize = 40;
+const MAX_ITERATIONS: usize = 40;
 /// A step has to gain this share of what the model promises.
 const ARMIJO: f64 = 0.05;
 /// A promised gain of less than this share of the mean ends it.
-const LEAST_PROMISE: f64 = 1e-6;
+const MIN_PROMISE: f64 = 1e-6;
 
 /// Climbs from a solution; never returns a lower one.
 pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Run {
     let problem = planner.problem();
-    let tube = fine::Tube::full(planner.grid());
+    let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = start.clone();
     let mut iterations = 0;
     let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
@@ -35,7 +35,7 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
     let mut trust = TRUST.0;
     let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
     while trust >= TRUST.2 {
-        if iterations == MOST_ITERATIONS {
+        if iterations == MAX_ITERATIONS {
             return ended(best, iterations, "stopped at the largest number of iterations");
         }
         iterations += 1;
@@ -43,11 +43,11 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
             return ended(best, iterations, "the subproblem could not be solved");
         };
         let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
-        if promised < LEAST_PROMISE * best.mean() {
+        if promised < MIN_PROMISE * best.mean() {
             return ended(best, iterations, "converged: no first-order gain");
         }
         let pose = inside(problem, std::array::from_fn(|k| best.pose[k] + step[k] * UNITS[k]));
-        let candidate = planned(planner, &pose, scheme, tube, workspace);
+        let candidate = planned(planner, &pose, scheme, spacing, workspace);
         let Some(next) = candidate.filter(|next| next.mean() - best.mean() > ARMIJO * promised) else {
             trust = trust.min(step.amax()) / 3.0;
             continue;
@@ -109,7 +109,7 @@ pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&
             }
             let mut pose = solution.pose;
             pose[k] += side * SAMPLING * UNITS[k];
-            let near = planned(planner, &pose, scheme, fine::Tube::full(planner.grid()), &mut workspace);
+            let near = planned(planner, &pose, scheme, off_grid::Spacing::full(planner.grid()), &mut workspace);
             gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
         }
     }

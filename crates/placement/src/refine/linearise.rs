@@ -1,6 +1,6 @@
 //! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
 
-use super::super::criterion::{State, normal_part_by_parameters, state};
+use super::super::evaluate::reference::{State, normal_part_by_parameters, state};
 use super::super::problem::Problem;
 use super::{LENGTH_UNIT, Solution};
 use nalgebra::{Matrix5, SymmetricEigen};

@@ -22,10 +22,11 @@ pub mod linearise;
 pub mod solver;
 pub mod subproblem;
 
-use super::appraiser::{self, Appraiser};
-use super::outcome::{CANCELLED, Goal, Refinement};
+use super::evaluator::{self, Evaluator};
+use super::outcome::{CANCELLATION, Refinement};
 use super::problem::{Placement, Problem};
-use super::redundancy::{Extremum, Planner, SegmentPlan, Workspace, fine};
+use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
+use super::sense::Sense;
 use stead_model::robot::Posture;
 
 /// The unit of position in scaled variables. m
@@ -63,29 +64,29 @@ pub fn planned(
     planner: &Planner<'_>,
     pose: &[f64; 4],
     scheme: Option<&[Posture]>,
-    tube: fine::Tube,
+    spacing: off_grid::Spacing,
     workspace: &mut Workspace,
 ) -> Option<Solution> {
-    let plans = planner.plan_fine(pose, Extremum::Smallest, scheme, tube, workspace).ok()?;
+    let plans = planner.plan_fine(pose, Sense::Min, scheme, spacing, workspace).ok()?;
     Some(Solution { pose: *pose, plans })
 }
 
 /// Refines from one pose, with the posture scheme found anew in every round or kept as given. `None` when the pose has no
 /// plan to start from.
 pub fn refine(
-    appraiser: &Appraiser<'_>,
+    evaluator: &Evaluator<'_>,
     start: &[f64; 4],
-    goal: Goal,
+    sense: Sense,
     scheme: Option<&[Posture]>,
 ) -> Option<(Solution, Refinement)> {
-    let planner = appraiser.planner();
+    let planner = evaluator.planner();
     let problem = planner.problem();
     let mut workspace = planner.workspace();
-    let mut looks = appraiser.workspace();
-    let tube = fine::Tube::full(planner.grid());
-    let mut best = planned(planner, start, scheme, tube, &mut workspace)?;
+    let mut looks = evaluator.workspace();
+    let spacing = off_grid::Spacing::full(planner.grid());
+    let mut best = planned(planner, start, scheme, spacing, &mut workspace)?;
     let mut report = Refinement {
-        goal,
+        sense,
         start: best.placement(),
         start_mean: best.mean(),
         end: best.placement(),
@@ -95,7 +96,7 @@ pub fn refine(
         kkt_residual: f64::INFINITY,
         statuses: Vec::new(),
     };
-    let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLED;
+    let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLATION;
     if is_cancelled(&best) {
         report.statuses.push("converged: the deflection is cancelled".to_owned());
     }
@@ -103,13 +104,13 @@ pub fn refine(
         report.rounds += 1;
         let before = best.mean();
         let signature = signature(&best);
-        let (status, iterations) = match goal {
-            Goal::Best => {
+        let (status, iterations) = match sense {
+            Sense::Min => {
                 let run = solver::run(problem, &best);
                 best = run.solution;
                 (run.status, run.iterations)
             }
-            Goal::Worst => {
+            Sense::Max => {
                 let run = ascent::run(planner, &best, scheme, &mut workspace);
                 best = run.solution;
                 (run.status, run.iterations)
@@ -119,8 +120,8 @@ pub fn refine(
         report.statuses.push(status);
         // Plan anew at the new pose. For the best placement a better plan is welcome; for the worst one every plan is
         // already the best at its pose.
-        if goal == Goal::Best
-            && let Some(anew) = planned(planner, &best.pose, scheme, tube, &mut workspace)
+        if sense == Sense::Min
+            && let Some(anew) = planned(planner, &best.pose, scheme, spacing, &mut workspace)
             && anew.mean() < best.mean()
         {
             best = anew;
@@ -128,17 +129,17 @@ pub fn refine(
         let gained = (before - best.mean()).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
-            match poll(appraiser, &best, goal, scheme, &mut workspace, &mut looks) {
+            match poll(evaluator, &best, sense, scheme, &mut workspace, &mut looks) {
                 Some(better) => best = better,
                 None => break,
             }
         }
     }
-    report.kkt_residual = match goal {
+    report.kkt_residual = match sense {
         // Nothing is smaller than nothing.
         _ if is_cancelled(&best) => 0.0,
-        Goal::Best => subproblem::kkt_residual(problem, &best),
-        Goal::Worst => ascent::kkt_residual(planner, &best, scheme),
+        Sense::Min => subproblem::kkt_residual(problem, &best),
+        Sense::Max => ascent::kkt_residual(planner, &best, scheme),
     };
     report.end = best.placement();
     report.end_mean = best.mean();
@@ -149,21 +150,21 @@ pub fn refine(
 const POLLS: [f64; 2] = [0.03, 0.006];
 /// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
 fn poll(
-    appraiser: &Appraiser<'_>,
+    evaluator: &Evaluator<'_>,
     centre: &Solution,
-    goal: Goal,
+    sense: Sense,
     scheme: Option<&[Posture]>,
     workspace: &mut Workspace,
-    looks: &mut appraiser::Workspace,
+    looks: &mut evaluator::Workspace,
 ) -> Option<Solution> {
-    let planner = appraiser.planner();
+    let planner = evaluator.planner();
     let problem = planner.problem();
-    let tube = fine::Tube::full(planner.grid());
-    let sign = match goal {
-        Goal::Best => 1.0,
-        Goal::Worst => -1.0,
+    let spacing = off_grid::Spacing::full(planner.grid());
+    let sign = match sense {
+        Sense::Min => 1.0,
+        Sense::Max => -1.0,
     };
-    let mut look = |pose: &[f64; 4]| appraiser.table().and_then(|_| appraiser.worth(pose, scheme, looks).mean());
+    let mut look = |pose: &[f64; 4]| evaluator.table().and_then(|_| evaluator.objective(pose, scheme, looks).mean());
     let here = look(&centre.pose);
     let mut best: Option<Solution> = None;
     for distance in POLLS {
@@ -178,7 +179,7 @@ fn poll(
                 if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_no_better) {
                     continue;
                 }
-                let Some(near) = planned(planner, &pose, scheme, tube, workspace) else { continue };
+                let Some(near) = planned(planner, &pose, scheme, spacing, workspace) else { continue };
                 let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
                 if near.mean() * sign < known * sign {
                     best = Some(near);
@@ -208,13 +209,13 @@ fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
 /// A solution moved by a step of all variables (pose, then every beta), if there is an allowed one near there.
 ///
 /// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new pose the betas settle in a
-/// narrow tube around their step (a second-order correction).
+/// narrow spacing around their step (a second-order correction).
 fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) -> Option<Solution> {
     let mut plans = Vec::with_capacity(solution.plans.len());
     for plan in &solution.plans {
         let betas = betas[plan.points.clone()].to_vec();
         let mut shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
-        fine::refine(problem, &pose, Extremum::Smallest, SETTLING, &mut shifted);
+        off_grid::refine(problem, &pose, Sense::Min, SETTLING, &mut shifted);
         if !shifted.cost.is_finite() {
             return None;
         }
@@ -223,8 +224,8 @@ fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) 
     Some(Solution { pose, plans })
 }
 
-/// The tube in which betas settle after a step. rad
-const SETTLING: fine::Tube = fine::Tube { first: 4e-3, last: 1.2e-4 };
+/// The spacing in which betas settle after a step. rad
+const SETTLING: off_grid::Spacing = off_grid::Spacing { first: 4e-3, last: 1.2e-4 };
 
 #[cfg(test)]
 mod tests;

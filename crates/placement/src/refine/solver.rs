@@ -19,17 +19,17 @@ pub type Iterate = IterState<Vec<f64>, (), (), (), (), f64>;
 /// The trust region at the start, in scaled variables.
 const FIRST_TRUST: f64 = 0.1;
 /// The largest trust region.
-const MOST_TRUST: f64 = 0.4;
+const MAX_TRUST: f64 = 0.4;
 /// The trust region at which it ends.
 const LAST_TRUST: f64 = 1e-6;
 /// A promised gain of less than this share of the mean ends it.
-const LEAST_PROMISE: f64 = 1e-7;
-/// So many steps in a row that gain less than [`LEAST_GAIN`] of the mean end it.
+const MIN_PROMISE: f64 = 1e-7;
+/// So many steps in a row that gain less than [`MIN_GAIN`] of the mean end it.
 const LAZY_STEPS: usize = 3;
 /// See [`LAZY_STEPS`].
-const LEAST_GAIN: f64 = 1e-6;
+const MIN_GAIN: f64 = 1e-6;
 /// Iterations at the most.
-const MOST_ITERATIONS: u64 = 80;
+const MAX_ITERATIONS: u64 = 80;
 
 /// The solver: a solution that only gets better, and the trust region around it.
 #[derive(Debug, Clone)]
@@ -66,7 +66,7 @@ pub fn run_observed<'a>(
     let best = Arc::new(Mutex::new(start.clone()));
     let solver = SequentialConvex { problem, solution: Arc::clone(&best), trust: FIRST_TRUST, lazy: 0, ending: None };
     let executor = Executor::new((), solver)
-        .configure(|state| state.param(parameters(start)).max_iters(MOST_ITERATIONS))
+        .configure(|state| state.param(parameters(start)).max_iters(MAX_ITERATIONS))
         .timer(false);
     let outcome = observe(executor).run();
     let (status, iterations) = match &outcome {
@@ -115,7 +115,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
                     self.ending = Some(reason);
                     self.trust /= 4.0;
                 }
-                Ok(answer) if answer.promised < LEAST_PROMISE * mean => {
+                Ok(answer) if answer.promised < MIN_PROMISE * mean => {
                     self.ending = Some("converged: no first-order gain".to_owned());
                     break;
                 }
@@ -133,7 +133,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
                     match moved(self.problem, &known, pose, &betas) {
                         Some(candidate) if mean - candidate.mean() > 0.1 * answer.promised => {
                             if mean - candidate.mean() > 0.7 * answer.promised {
-                                self.trust = (2.0 * self.trust).min(MOST_TRUST);
+                                self.trust = (2.0 * self.trust).min(MAX_TRUST);
                             }
                             accepted = Some(candidate);
                         }
@@ -143,7 +143,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
             }
         }
         let next = accepted.unwrap_or(known);
-        self.lazy = if mean - next.mean() < LEAST_GAIN * mean { self.lazy + 1 } else { 0 };
+        self.lazy = if mean - next.mean() < MIN_GAIN * mean { self.lazy + 1 } else { 0 };
         if self.lazy >= LAZY_STEPS && self.ending.is_none() {
             self.ending = Some("converged: no more gain".to_owned());
         }

@@ -14,7 +14,7 @@ fn published_optimum() -> [f64; 4] {
 fn assert_allowed(problem: &Problem, solution: &Solution) {
     assert!(problem.cell.contains(&solution.placement()), "{:?}", solution.placement());
     for plan in &solution.plans {
-        let replayed = fine::replay(problem, &solution.pose, plan).unwrap();
+        let replayed = off_grid::replay(problem, &solution.pose, plan).unwrap();
         assert!((replayed.cost - plan.cost).abs() < 1e-10 * plan.cost);
         for (a, b) in replayed.joints.iter().flatten().zip(plan.joints.iter().flatten()) {
             assert!((a - b).abs() < 1e-9);
@@ -28,7 +28,7 @@ fn best_gets_better_and_stays_allowed() {
         [(five_segments(), published_optimum()), (five_segments_compensated(), [0.0, -1.7, -0.4, 0.7])]
     {
         let planner = Planner::finer(&problem);
-        let (solution, report) = refine(&Appraiser::new(&planner, None), &start, Goal::Best, None).unwrap();
+        let (solution, report) = refine(&Evaluator::new(&planner, None), &start, Sense::Min, None).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
         assert!(report.kkt_residual < 1e-3 * report.end_mean, "{report:?}");
@@ -43,7 +43,7 @@ fn best_gets_better_and_stays_allowed() {
                 if !problem.cell.contains(&Placement { x, y, z, yaw }) {
                     continue;
                 }
-                let near = planned(&planner, &pose, None, fine::Tube::full(planner.grid()), &mut workspace);
+                let near = planned(&planner, &pose, None, off_grid::Spacing::full(planner.grid()), &mut workspace);
                 assert!(near.is_none_or(|n| n.mean() > solution.mean() * (1.0 - 2e-5)), "variable {k} {side}");
             }
         }
@@ -59,7 +59,7 @@ fn margins_may_be_driven_to_their_kink() {
     let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
     problem.robot = problem.robot.with_uncertainty(known).unwrap();
     let planner = Planner::new(&problem);
-    let (solution, report) = refine(&Appraiser::new(&planner, None), &published_optimum(), Goal::Best, None).unwrap();
+    let (solution, report) = refine(&Evaluator::new(&planner, None), &published_optimum(), Sense::Min, None).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
     let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
@@ -77,7 +77,7 @@ fn worst_gets_worse_and_stays_allowed() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
     let (solution, report) =
-        refine(&Appraiser::new(&planner, None), &[0.2, -2.1, -0.3, -2.2], Goal::Worst, None).unwrap();
+        refine(&Evaluator::new(&planner, None), &[0.2, -2.1, -0.3, -2.2], Sense::Max, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
 }
@@ -86,7 +86,7 @@ fn worst_gets_worse_and_stays_allowed() {
 fn a_start_without_a_plan_is_refused() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    assert_eq!(refine(&Appraiser::new(&planner, None), &[0.0, -4.0, -0.4, 0.0], Goal::Best, None), None);
+    assert_eq!(refine(&Evaluator::new(&planner, None), &[0.0, -4.0, -0.4, 0.0], Sense::Min, None), None);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn constraints_bind_and_hold() {
     problem.constraints.max_deflection = Some(1.5e-3);
     let planner = Planner::finer(&problem);
     let (solution, report) =
-        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+        refine(&Evaluator::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Sense::Min, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
 }
@@ -110,7 +110,7 @@ fn joint_speeds_bind_and_hold() {
     problem.robot = stead_model::robot::Robot::new("slow", joints).unwrap();
     let planner = Planner::finer(&problem);
     let (solution, report) =
-        refine(&Appraiser::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Goal::Best, None).unwrap();
+        refine(&Evaluator::new(&planner, None), &[0.0, -1.7, -0.4, 0.7], Sense::Min, None).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
     let used = solution.plans.iter().flat_map(|plan| {
@@ -130,16 +130,16 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
     for problem in [five_segments(), five_segments_compensated()] {
         let planner = Planner::finer(&problem);
         let mut workspace = planner.workspace();
-        let tube = fine::Tube { first: 0.026, last: 1e-7 };
+        let spacing = off_grid::Spacing { first: 0.026, last: 1e-7 };
         let pose = [0.2, -2.1, -0.3, -2.2];
-        let here = planned(&planner, &pose, None, tube, &mut workspace).unwrap();
+        let here = planned(&planner, &pose, None, spacing, &mut workspace).unwrap();
         let gradient = ascent::pose_gradient(&problem, &here).unwrap();
         for k in 0..4 {
             let h = 1e-4;
             let mut at = |side: f64| {
                 let mut moved = pose;
                 moved[k] += side * h * linearise::UNITS[k];
-                planned(&planner, &moved, None, tube, &mut workspace).unwrap().mean()
+                planned(&planner, &moved, None, spacing, &mut workspace).unwrap().mean()
             };
             let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
             assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
@@ -151,8 +151,8 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
 fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
     for problem in [five_segments(), five_segments_compensated()] {
         let planner = Planner::finer(&problem);
-        let tube = fine::Tube::full(planner.grid());
-        let here = planned(&planner, &published_optimum(), None, tube, &mut planner.workspace()).unwrap();
+        let spacing = off_grid::Spacing::full(planner.grid());
+        let here = planned(&planner, &published_optimum(), None, spacing, &mut planner.workspace()).unwrap();
         let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
@@ -164,7 +164,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
                             4 => beta += side * h,
                             _ => pose[k] += side * h * linearise::UNITS[k],
                         }
-                        crate::criterion::state(&problem, point, &pose, beta, plan.posture).unwrap()
+                        crate::evaluate::reference::state(&problem, point, &pose, beta, plan.posture).unwrap()
                     };
                     let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
                     assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
@@ -181,8 +181,8 @@ fn a_cell_without_room_is_refined_in_beta_alone() {
     problem.cell.position = [pose[0], pose[1], pose[2]].map(|v| Interval { min: v, max: v });
     problem.cell.yaw = Interval { min: pose[3], max: pose[3] };
     let planner = Planner::finer(&problem);
-    for goal in [Goal::Best, Goal::Worst] {
-        let (solution, report) = refine(&Appraiser::new(&planner, None), &pose, goal, None).unwrap();
+    for sense in [Sense::Min, Sense::Max] {
+        let (solution, report) = refine(&Evaluator::new(&planner, None), &pose, sense, None).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean <= report.start_mean * (1.0 + 1e-12));
         assert!((0..4).all(|k| (solution.pose[k] - pose[k]).abs() < 1e-12), "{:?}", solution.pose);
@@ -205,8 +205,8 @@ fn argmin_observers_see_every_iteration() {
 
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    let tube = fine::Tube::full(planner.grid());
-    let start = planned(&planner, &[0.0, -1.7, -0.4, 0.7], None, tube, &mut planner.workspace()).unwrap();
+    let spacing = off_grid::Spacing::full(planner.grid());
+    let start = planned(&planner, &[0.0, -1.7, -0.4, 0.7], None, spacing, &mut planner.workspace()).unwrap();
     let costs = Arc::new(Mutex::new(Vec::new()));
     let observer = Costs(Arc::clone(&costs));
     let run = solver::run_observed(&problem, &start, |executor| executor.add_observer(observer, ObserverMode::Always));

@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::path::Path;
 use stead_assessment::comparison::assess;
 use stead_format::read_assessment;
+use stead_numerics::monitor::Monitor;
 
 /// The published study, table-compatible, on a coarse map, with one piece of the file replaced.
 fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
@@ -18,7 +19,7 @@ fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).unwrap();
     let run = read_assessment(&file).unwrap_or_else(|e| panic!("{e}"));
-    let assessment = assess(&run.comparison, &|_, _| true).unwrap();
+    let assessment = assess(&run.comparison, &Monitor::silent()).unwrap();
     let published = run.published.map(|published| {
         let agreement = published.figures.agreement(&assessment);
         (published, agreement)
@@ -42,7 +43,7 @@ fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
 #[test]
 fn tables_and_documents_tell_the_same() {
     let (comparison, context) = comparison("radius_mm", "radius_mm");
-    let assessment = assess(&comparison, &|_, _| true).unwrap();
+    let assessment = assess(&comparison, &Monitor::silent()).unwrap();
     let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let document = assess_json(&assessment, &context, &Timing { wall: 1.5, threads: 2 });
     let table = rows(&tables::circularity(&assessment, published).unwrap());
@@ -93,7 +94,7 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
                 x_mm = [2600, 2700]\ny_mm = [1300, 1500]\nstep_mm = 100\n";
     std::fs::write(folder.path().join("study.toml"), text).unwrap();
     let run = read_assessment(&folder.path().join("study.toml")).unwrap();
-    let assessment = assess(&run.comparison, &|_, _| true).unwrap();
+    let assessment = assess(&run.comparison, &Monitor::silent()).unwrap();
     let context = AssessmentContext {
         inputs: run.inputs,
         notes: run.notes,

@@ -18,8 +18,8 @@ use crate::document::bytes;
 use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_placement::certify::{Bound, Region};
-use stead_placement::outcome::Goal;
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::sense::Sense;
 use stead_placement::settings::CertificateSettings;
 
 /// What is known of how far the placements found are from the best and the worst there are.
@@ -41,7 +41,7 @@ pub struct Certificate {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proof {
     /// Whether nothing is better, or nothing is worse.
-    pub goal: Goal,
+    pub sense: Sense,
     /// The placement that it was compared with.
     pub placement: Placement,
     /// What no placement gets past.
@@ -80,9 +80,9 @@ impl Proof {
     }
 
     /// What was proven of a placement; which limits are relaxed follows from the problem and the bound.
-    pub fn new(problem: &Problem, goal: Goal, placement: Placement, bound: Bound, end: Ended) -> Self {
+    pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound, end: Ended) -> Self {
         let relaxed = relaxed(problem, &bound);
-        Self { goal, placement, bound, end, relaxed }
+        Self { sense, placement, bound, end, relaxed }
     }
 
     /// The gap in per cent, rounded up.
@@ -101,9 +101,9 @@ impl Proof {
     pub(crate) fn rounded_mm(&self, bound: f64) -> f64 {
         let scale = libm::pow(10.0, f64::from(BOUND_DECIMALS));
         let scaled = bound * 1e3 * scale;
-        let rounded = match self.goal {
-            Goal::Best => scaled.floor(),
-            Goal::Worst => scaled.ceil(),
+        let rounded = match self.sense {
+            Sense::Min => scaled.floor(),
+            Sense::Max => scaled.ceil(),
         };
         rounded / scale
     }

@@ -28,7 +28,7 @@ pub fn open_region(problem: &Problem, certificate: &Certificate) -> Result<Vec<u
     let rows = proofs.flat_map(|proof| {
         open_boxes(problem, proof).into_iter().map(|open| {
             let OpenBox { radius, z, turn, bound } = open;
-            let mut row = vec![names::goal(proof.goal).to_owned()];
+            let mut row = vec![names::sense(proof.sense).to_owned()];
             row.extend([radius, z].into_iter().flatten().map(|value| Unit::PLACE_MM.text(value)));
             row.extend(turn.map(|value| Unit::ANGLE_DEG.text(value)));
             let bound = proof.rounded_mm(bound);

@@ -1,14 +1,15 @@
 use super::super::testing::{outcome, problem};
 use super::*;
+use stead_numerics::monitor::Stop;
 use stead_placement::certify::End;
 
 /// Bounds about the best placement of the result, in mm.
-fn proof(goal: Goal, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
+fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
     let (value, bound) = (value_mm / 1e3, bound_mm / 1e3);
-    let end = if open.is_empty() { End::Reached } else { End::Stopped };
-    let bound = Bound { value, bound, with_rate: goal == Goal::Best, nodes: 7, end, open };
+    let end = if open.is_empty() { End::Reached } else { End::Stopped(Stop::Asked) };
+    let bound = Bound { value, bound, with_rate: sense == Sense::Min, nodes: 7, end, open };
     let end = if end == End::Reached { Ended::Reached } else { Ended::TimeLimit };
-    Proof::new(problem(), goal, outcome().cases[0].placement, bound, end)
+    Proof::new(problem(), sense, outcome().cases.best.placement, bound, end)
 }
 
 fn certificate(best: Proof) -> Certificate {
@@ -29,39 +30,39 @@ fn boxes() -> Vec<(Region, f64)> {
 
 #[test]
 fn bounds_are_rounded_to_where_they_hold_and_gaps_upwards() {
-    let best = proof(Goal::Best, 0.1, 0.099_500_08, Vec::new());
+    let best = proof(Sense::Min, 0.1, 0.099_500_08, Vec::new());
     assert_eq!((best.bound_mm(), best.gap_percent()), (0.0995, 0.5));
-    let worst = proof(Goal::Worst, 1.0, 1.001_000_01, Vec::new());
+    let worst = proof(Sense::Max, 1.0, 1.001_000_01, Vec::new());
     assert_eq!((worst.bound_mm(), worst.gap_percent()), (1.0010001, 0.1001));
     // What is reached exactly is not stated as missed by the last bits.
     let gap = 0.005;
-    let exact = proof(Goal::Best, 0.107_509_9, 0.107_509_9 * (1.0 - gap), Vec::new());
+    let exact = proof(Sense::Min, 0.107_509_9, 0.107_509_9 * (1.0 - gap), Vec::new());
     assert_eq!(exact.gap_percent(), 0.5);
 }
 
 #[test]
 fn relaxed_limits_are_named() {
     let mut problem = problem().clone();
-    let words = |problem: &Problem, goal| {
-        let bound = proof(goal, 1.0, 1.0, Vec::new()).bound;
-        Proof::new(problem, goal, outcome().cases[0].placement, bound, Ended::Reached).relaxed.join(", ")
+    let words = |problem: &Problem, sense| {
+        let bound = proof(sense, 1.0, 1.0, Vec::new()).bound;
+        Proof::new(problem, sense, outcome().cases.best.placement, bound, Ended::Reached).relaxed.join(", ")
     };
     let common = "steps and turns of the joints between path points, limits of joints 1, 4 and 6";
-    assert_eq!(words(&problem, Goal::Best), format!("{common}, max_deflection_mm"));
-    assert_eq!(words(&problem, Goal::Worst), format!("{common}, rate of beta, max_deflection_mm"));
+    assert_eq!(words(&problem, Sense::Min), format!("{common}, max_deflection_mm"));
+    assert_eq!(words(&problem, Sense::Max), format!("{common}, rate of beta, max_deflection_mm"));
     problem.constraints.max_deflection = None;
     problem.cell.yaw.max = 1.0;
-    assert_eq!(words(&problem, Goal::Best), format!("{common}, which yaw goes with which x and y"));
+    assert_eq!(words(&problem, Sense::Min), format!("{common}, which yaw goes with which x and y"));
     // A joint 5 that cannot be straight: the flips of the wrist do not reach equally far.
     let mut joints = problem.robot.joints().clone();
     joints[4].min = 0.1;
     problem.robot = stead_model::robot::Robot::new("bent", joints).unwrap();
-    assert!(words(&problem, Goal::Best).contains("joints 1, 4 and 6, limits of joint 5, "));
+    assert!(words(&problem, Sense::Min).contains("joints 1, 4 and 6, limits of joint 5, "));
 }
 
 #[test]
 fn sentences_state_the_bound_and_what_falls_short() {
-    let reached = certificate(proof(Goal::Best, 0.1075099, 0.106_972_39, Vec::new()));
+    let reached = certificate(proof(Sense::Min, 0.1075099, 0.106_972_39, Vec::new()));
     let text = certificate_text(&reached);
     let joined = text.replace('\n', " ");
     assert!(
@@ -72,12 +73,12 @@ fn sentences_state_the_bound_and_what_falls_short() {
     assert!(text.lines().all(|line| line.chars().count() <= 110), "{text}");
     assert_eq!(ending(&reached, reached.best.as_ref().unwrap()), None);
 
-    let open = certificate(proof(Goal::Best, 0.1, 0.09, boxes()));
+    let open = certificate(proof(Sense::Min, 0.1, 0.09, boxes()));
     let said = "the time limit of 20.0 s is over: a gap of 10 % is reached, 0.500 % was asked for; 2 boxes are open";
     assert_eq!(ending(&open, open.best.as_ref().unwrap()).as_deref(), Some(said));
 
     // Dropping a limit makes the worst placement better, so each one dropped is no bound of what it is with it.
-    let worst = Certificate { worst: Ok(proof(Goal::Worst, 1.0, 1.001, Vec::new())), ..reached.clone() };
+    let worst = Certificate { worst: Ok(proof(Sense::Max, 1.0, 1.001, Vec::new())), ..reached.clone() };
     let joined = certificate_text(&worst).replace('\n', " ");
     let parts = [
         "with the limits named below dropped: no feasible",
@@ -87,9 +88,9 @@ fn sentences_state_the_bound_and_what_falls_short() {
     assert!(parts.iter().all(|part| joined.contains(part)), "{joined}");
 
     // Where there is no bound yet, none is stated.
-    let nothing = certificate_text(&certificate(proof(Goal::Best, 0.1, 0.0, boxes())));
+    let nothing = certificate_text(&certificate(proof(Sense::Min, 0.1, 0.0, boxes())));
     assert!(nothing.contains("nothing is known") && !nothing.contains("below"), "{nothing}");
-    let worst = Certificate { worst: Ok(proof(Goal::Worst, 1.0, f64::INFINITY, boxes())), ..reached };
+    let worst = Certificate { worst: Ok(proof(Sense::Max, 1.0, f64::INFINITY, boxes())), ..reached };
     let nothing = certificate_text(&worst);
     assert!(nothing.contains("nothing is known") && !nothing.contains("above"), "{nothing}");
     assert_eq!(certificate_json(&worst)["worst"]["bound_mm"], serde_json::Value::Null);
@@ -98,7 +99,7 @@ fn sentences_state_the_bound_and_what_falls_short() {
 #[test]
 fn open_boxes_are_in_the_base_frame_for_an_arm_that_hangs_too() {
     let text = |problem: &Problem| {
-        let certificate = certificate(proof(Goal::Best, 0.1, 0.09, boxes()));
+        let certificate = certificate(proof(Sense::Min, 0.1, 0.09, boxes()));
         String::from_utf8(open_region(problem, &certificate).unwrap()).unwrap()
     };
     let standing = text(problem());
@@ -116,20 +117,20 @@ fn open_boxes_are_in_the_base_frame_for_an_arm_that_hangs_too() {
 #[test]
 fn the_picture_shows_what_is_open_and_the_placement() {
     let fills = |svg: &str| svg.matches("<polygon").count();
-    let open = picture::open_region(problem(), &proof(Goal::Best, 0.1, 0.09, boxes())).unwrap();
-    let closed = picture::open_region(problem(), &proof(Goal::Best, 0.1, 0.0995, Vec::new())).unwrap();
+    let open = picture::open_region(problem(), &proof(Sense::Min, 0.1, 0.09, boxes())).unwrap();
+    let closed = picture::open_region(problem(), &proof(Sense::Min, 0.1, 0.0995, Vec::new())).unwrap();
     assert_eq!(fills(&closed), 0);
     assert!(fills(&open) >= 4, "{}", fills(&open));
     assert!(open.contains("2 boxes of placements") && open.contains("0.09000 mm") && open.contains("0.09500 mm"));
     assert!(closed.contains("Nothing: no placement in the cell is better by more than 0.5000 %"));
     // A cell that is one place is drawn all the same.
     let mut point = problem().clone();
-    let placement = outcome().cases[0].placement;
+    let placement = outcome().cases.best.placement;
     for (range, at) in point.cell.position.iter_mut().zip([placement.x, placement.y, placement.z]) {
         (range.min, range.max) = (at, at);
     }
     let radius = libm::hypot(placement.x, placement.y);
     let whole = Region { middle: [radius, 0.0, 0.0], half: [0.0, 0.0, std::f64::consts::PI] };
-    let drawn = picture::open_region(&point, &proof(Goal::Best, 0.1, 0.09, vec![(whole, 0.9e-4)])).unwrap();
+    let drawn = picture::open_region(&point, &proof(Sense::Min, 0.1, 0.09, vec![(whole, 0.9e-4)])).unwrap();
     assert!(fills(&drawn) >= 2);
 }

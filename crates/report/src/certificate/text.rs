@@ -2,7 +2,7 @@
 
 use super::{Certificate, Ended, Proof};
 use crate::units::{Unit, figures, fixed};
-use stead_placement::outcome::Goal;
+use stead_placement::sense::Sense;
 
 /// Widest line.
 const WIDTH: usize = 110;
@@ -26,18 +26,18 @@ fn stated(proof: &Proof) -> String {
     let value = Unit::DEFLECTION_MM.text(proof.bound.value);
     let gap = percent(proof);
     if !proof.is_of_use() {
-        let name = match proof.goal {
-            Goal::Best => "best",
-            Goal::Worst => "worst",
+        let name = match proof.sense {
+            Sense::Min => "best",
+            Sense::Max => "worst",
         };
         return format!("Certificate, {name} placement: it ended before there was any bound of use; nothing is known.");
     }
-    let claim = match proof.goal {
-        Goal::Best => format!(
+    let claim = match proof.sense {
+        Sense::Min => format!(
             "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
              normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
         ),
-        Goal::Worst => format!(
+        Sense::Max => format!(
             "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has under its \
              best redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
              {gap} %. With these limits kept this is no bound: worse ones are possible then."

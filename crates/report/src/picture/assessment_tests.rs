@@ -10,6 +10,7 @@ use stead_assessment::map::{Elbow, Grid};
 use stead_assessment::ranking::Selection;
 use stead_model::robot::Pose;
 use stead_model::task::Wrench;
+use stead_numerics::monitor::Monitor;
 
 /// The benchmark of Klimchik 2017 for two of its robots, the tool along the flange axis and towards the plane, over a grid of
 /// so many steps to the metre.
@@ -46,7 +47,7 @@ fn small() -> &'static (Comparison, Assessment) {
     static SMALL: OnceLock<(Comparison, Assessment)> = OnceLock::new();
     SMALL.get_or_init(|| {
         let comparison = comparison(10);
-        let assessment = assess(&comparison, &|_, _| true).unwrap();
+        let assessment = assess(&comparison, &Monitor::silent()).unwrap();
         (comparison, assessment)
     })
 }
@@ -72,7 +73,7 @@ fn a_map_of_ten_thousand_circles_is_small() {
     let mut comparison = comparison(40);
     comparison.benchmark.points = 8;
     comparison.robots.truncate(1);
-    let assessment = assess(&comparison, &|_, _| true).unwrap();
+    let assessment = assess(&comparison, &Monitor::silent()).unwrap();
     let result = &assessment.robots[0];
     let circles: Vec<usize> = result.maps.iter().map(|(_, map)| map.count()).collect();
     assert!(circles.iter().sum::<usize>() > 10_000, "{circles:?}");

@@ -8,8 +8,9 @@ use crate::output::ReportError;
 use crate::units::fixed;
 use nalgebra::Vector3;
 use plotters::style::RGBColor;
-use stead_placement::outcome::{Case, Outcome};
+use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::problem::Problem;
+use stead_placement::sense::Sense;
 
 const SIZE: Pixel = (1110, 1180);
 /// Left edges of the two columns of panels.
@@ -27,7 +28,7 @@ const BASE: f64 = 300.0;
 /// # Errors
 /// [`ReportError::Format`] when the drawing fails.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> Result<String, ReportError> {
-    let [best, _, worst, _] = &outcome.cases;
+    let Cases { best, worst, .. } = &outcome.cases;
     picture("the picture of the cell", SIZE, |canvas| {
         canvas.text("The cell from above, in the robot base frame", (COLUMNS[0], 24), Lettering::new(17.0).bold())?;
         let near = Region::near(problem, [best, worst]);
@@ -58,7 +59,10 @@ fn overview(canvas: &Canvas<'_>, problem: &Problem, [best, worst]: [&Case; 2], n
 
 /// One placement with its surroundings.
 fn placement(canvas: &Canvas<'_>, problem: &Problem, case: &Case, colour: RGBColor, panel: Panel) -> Drawn {
-    let kind = if case.number <= 2 { "Best" } else { "Worst" };
+    let kind = match case.placement_sense {
+        Sense::Min => "Best",
+        Sense::Max => "Worst",
+    };
     let title = format!("{kind} placement: mean {} mm", fixed(case.plan.mean * 1e3, 4));
     let (left, top) = (panel.x.start, panel.y.end);
     canvas.text(&title, (left, top - 38), Lettering::new(13.0).bold().coloured(colour))?;

@@ -6,7 +6,8 @@ use super::colour::{BLUE, GREEN, GREY, RED};
 use crate::output::ReportError;
 use crate::units::fixed;
 use plotters::style::{BLACK, RGBColor, WHITE};
-use stead_placement::outcome::{Generation, Goal, Outcome};
+use stead_placement::outcome::{Cases, Generation, Outcome};
+use stead_placement::sense::Sense;
 
 /// Best and average mean deflection over the generations: the search for the best placement above, for the worst below.
 /// Dashed lines are the means after refinement.
@@ -16,15 +17,15 @@ use stead_placement::outcome::{Generation, Goal, Outcome};
 pub fn convergence(outcome: &Outcome) -> Result<String, ReportError> {
     picture("the picture of the convergence", (900, 820), |canvas| {
         canvas.text("Convergence of the genetic search", (85, 26), Lettering::new(17.0).bold())?;
-        let [best, _, worst, _] = &outcome.cases;
-        let search = |goal| outcome.convergence.iter().filter(|state| state.goal == goal).copied().collect();
-        Search { goal: Goal::Best, states: search(Goal::Best), refined: best.plan.mean }.draw(canvas, 72, 375)?;
-        Search { goal: Goal::Worst, states: search(Goal::Worst), refined: worst.plan.mean }.draw(canvas, 460, 763)
+        let Cases { best, worst, .. } = &outcome.cases;
+        let search = |sense| outcome.convergence.iter().filter(|state| state.sense == sense).copied().collect();
+        Search { sense: Sense::Min, states: search(Sense::Min), refined: best.plan.mean }.draw(canvas, 72, 375)?;
+        Search { sense: Sense::Max, states: search(Sense::Max), refined: worst.plan.mean }.draw(canvas, 460, 763)
     })
 }
 
 struct Search {
-    goal: Goal,
+    sense: Sense,
     states: Vec<Generation>,
     /// Mean deflection in the end. m
     refined: f64,
@@ -32,9 +33,9 @@ struct Search {
 
 impl Search {
     fn draw(&self, canvas: &Canvas<'_>, top: i32, bottom: i32) -> Drawn {
-        let (title, colour, least) = match self.goal {
-            Goal::Best => ("Best placement: smallest mean deflection under the best plan", GREEN, 0.0),
-            Goal::Worst => ("Worst placement: largest mean deflection under the best plan", RED, f64::INFINITY),
+        let (title, colour, least) = match self.sense {
+            Sense::Min => ("Best placement: smallest mean deflection under the best plan", GREEN, 0.0),
+            Sense::Max => ("Worst placement: largest mean deflection under the best plan", RED, f64::INFINITY),
         };
         let values = self.states.iter().flat_map(|state| [state.best, state.average]).flatten();
         let (low, high) =
@@ -84,7 +85,7 @@ impl Search {
     /// The legend, at the end of the curves and away from them.
     fn legend(&self, canvas: &Canvas<'_>, panel: &Panel, colour: RGBColor) -> Drawn {
         let (left, right) = (panel.x.end - 262, panel.x.end - 10);
-        let top = if self.goal == Goal::Best { panel.y.end + 10 } else { panel.y.start - 84 };
+        let top = if self.sense == Sense::Min { panel.y.end + 10 } else { panel.y.start - 84 };
         canvas.fill((left, top), (right, top + 74), WHITE)?;
         canvas.outline((left, top), (right, top + 74), GREY)?;
         let refined = format!("after refinement: {} mm", fixed(self.refined * 1e3, 4));

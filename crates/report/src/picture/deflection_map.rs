@@ -94,7 +94,7 @@ impl<'a> Picture<'a> {
     }
 
     fn title(&self, canvas: &Canvas<'_>) -> Drawn {
-        let kind = names::case(self.best.number).0;
+        let kind = names::sense(self.best.placement_sense);
         let title = format!("Deflection at the {kind} placement");
         canvas.text(&title, (LEFT, 24), Lettering::new(17.0).bold())?;
         let place = &self.best.placement;
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn plan_is_cut_at_segment_ends_and_where_beta_wraps() {
-        let mut plan = outcome().cases[0].plan.clone();
+        let mut plan = outcome().cases.best.plan.clone();
         plan.points.truncate(4);
         for (k, (segment, beta_deg)) in [(1, 150.0), (1, 170.0), (1, -170.0), (2, 0.0)].into_iter().enumerate() {
             (plan.points[k].segment, plan.points[k].beta) = (segment, f64::to_radians(beta_deg));

@@ -9,8 +9,8 @@ use crate::certificate::{OpenBox, Proof, open_boxes};
 use crate::output::ReportError;
 use crate::units::fixed;
 use stead_model::robot::angles::wrap;
-use stead_placement::outcome::Goal;
 use stead_placement::problem::Problem;
+use stead_placement::sense::Sense;
 
 /// Pixels between panels, and the side of a panel.
 const LEFT: [i32; 2] = [85, 635];
@@ -38,9 +38,9 @@ pub fn open_region(problem: &Problem, proof: &Proof) -> Result<String, ReportErr
 }
 
 fn heading(canvas: &Canvas<'_>, proof: &Proof, count: usize) -> Drawn {
-    let (title, past) = match proof.goal {
-        Goal::Best => ("What the certificate of the best placement leaves open", "better"),
-        Goal::Worst => ("What the certificate of the worst placement leaves open, rate of beta dropped", "worse"),
+    let (title, past) = match proof.sense {
+        Sense::Min => ("What the certificate of the best placement leaves open", "better"),
+        Sense::Max => ("What the certificate of the worst placement leaves open, rate of beta dropped", "worse"),
     };
     canvas.text(title, (LEFT[0], 24), Lettering::new(17.0).bold())?;
     let words = if count == 0 {
@@ -76,13 +76,13 @@ fn from_above(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[Op
     // The best box at every radius, in steps much finer than the coloured cells.
     let rings = Grid { from: [0.0, 0.0], to: [most.max(1.0), 1.0], counts: [16 * CELLS, 1] };
     let lowest =
-        rings.filled(boxes.iter().map(|open| ([open.radius.map(|r| r * 1e3), [0.0, 1.0]], open.bound)), proof.goal);
+        rings.filled(boxes.iter().map(|open| ([open.radius.map(|r| r * 1e3), [0.0, 1.0]], open.bound)), proof.sense);
     let levels: Vec<Option<usize>> = (0..CELLS * CELLS)
         .map(|k| {
             let [near, far] = radii(k % CELLS, k / CELLS);
             let [first, last] = rings.span(0, near, far);
             let here = lowest[first..=last].iter().copied().flatten();
-            here.reduce(|a, b| more_promising(proof.goal, a, b)).map(|bound| colours.level(bound))
+            here.reduce(|a, b| more_promising(proof.sense, a, b)).map(|bound| colours.level(bound))
         })
         .collect();
     panel.draw_grid(canvas)?;
@@ -110,7 +110,7 @@ fn turned(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[OpenBo
     let grid = Grid { from: [-180.0, radius[0]], to: [180.0, radius[1]], counts: [CELLS, CELLS] };
     let places = boxes.iter().map(|open| ([open.turn.map(f64::to_degrees), open.radius.map(|r| r * 1e3)], open.bound));
     let levels: Vec<Option<usize>> =
-        grid.filled(places, proof.goal).into_iter().map(|bound| bound.map(|bound| colours.level(bound))).collect();
+        grid.filled(places, proof.sense).into_iter().map(|bound| bound.map(|bound| colours.level(bound))).collect();
     let panel = panel(LEFT[1], [-180.0, 180.0], radius, ["yaw less azimuth (deg)", "distance from axis 1 (mm)"]);
     panel.draw_grid(canvas)?;
     grid.draw(canvas, &panel, &levels)?;
@@ -129,10 +129,10 @@ fn panel(left: i32, x: [f64; 2], y: [f64; 2], [x_label, y_label]: [&'static str;
     Panel { x_ticks: Ticks::round(&x, 8), y_ticks: Ticks::round(&y, 8), x, y, x_label, y_label }
 }
 
-fn more_promising(goal: Goal, a: f64, b: f64) -> f64 {
-    match goal {
-        Goal::Best => a.min(b),
-        Goal::Worst => a.max(b),
+fn more_promising(sense: Sense, a: f64, b: f64) -> f64 {
+    match sense {
+        Sense::Min => a.min(b),
+        Sense::Max => a.max(b),
     }
 }
 
@@ -154,13 +154,13 @@ impl Grid {
     }
 
     /// The most promising bound in each cell.
-    fn filled(&self, places: impl Iterator<Item = ([[f64; 2]; 2], f64)>, goal: Goal) -> Vec<Option<f64>> {
+    fn filled(&self, places: impl Iterator<Item = ([[f64; 2]; 2], f64)>, sense: Sense) -> Vec<Option<f64>> {
         let mut cells = vec![None; self.counts[0] * self.counts[1]];
         for ([across, up], bound) in places {
             let ([left, right], [low, high]) = (self.span(0, across[0], across[1]), self.span(1, up[0], up[1]));
             for row in low..=high {
                 for cell in &mut cells[row * self.counts[0]..][left..=right] {
-                    *cell = Some(cell.map_or(bound, |known| more_promising(goal, known, bound)));
+                    *cell = Some(cell.map_or(bound, |known| more_promising(sense, known, bound)));
                 }
             }
         }
@@ -193,9 +193,9 @@ impl Colours {
     fn new(proof: &Proof, boxes: &[OpenBox]) -> Self {
         let bounds = || boxes.iter().map(|open| open.bound).filter(|bound| bound.is_finite());
         let (low, high) = bounds().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(b), h.max(b)));
-        match proof.goal {
-            Goal::Best => Self { most: low, least: high },
-            Goal::Worst => Self { most: high, least: low },
+        match proof.sense {
+            Sense::Min => Self { most: low, least: high },
+            Sense::Max => Self { most: high, least: low },
         }
     }
 

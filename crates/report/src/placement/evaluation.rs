@@ -8,7 +8,7 @@ use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_placement::feasibility::{Explanation, Finding};
 use stead_placement::outcome::Plan;
-use stead_placement::place::{NothingFeasible, Score};
+use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::Placement;
 
 /// Degrees with the digits that a comparison with another program needs.
@@ -40,7 +40,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
-pub fn infeasible_json(nothing: &NothingFeasible, context: &Context) -> Value {
+pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
     let finding = |finding: &Finding| {
         json!({
             "segment": finding.segment,

@@ -93,12 +93,12 @@ fn tabled(tabled: &Result<Tabled, Unsuited>) -> Value {
 }
 
 fn cases(outcome: &Outcome, with_plans: bool) -> Value {
-    outcome.cases.iter().map(|entry| case(entry, with_plans)).collect()
+    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans)).collect()
 }
 
 fn case(case: &Case, with_plan: bool) -> Value {
     let mut value = json!({
-        "case": case.number,
+        "case": case.number(),
         "placement": placement(&case.placement),
         "mean_mm": number(Unit::DEFLECTION_MM, case.plan.mean),
         "max_mm": number(Unit::DEFLECTION_MM, case.plan.max),
@@ -139,7 +139,7 @@ fn transfer(transfer: &Transfer) -> Value {
 
 fn refinement(refinement: &Refinement) -> Value {
     json!({
-        "search": names::goal(refinement.goal),
+        "search": names::sense(refinement.sense),
         "start": placement(&refinement.start),
         "start_mean_mm": number(Unit::DEFLECTION_MM, refinement.start_mean),
         "end": placement(&refinement.end),

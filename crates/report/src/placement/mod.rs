@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::InputFile;
 use stead_model::published::Published;
-use stead_placement::outcome::Outcome;
+use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
 
@@ -72,15 +72,15 @@ pub fn write_placement(
     outcome: &Outcome,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let [best, best_worst, worst, worst_worst] = &outcome.cases;
+    let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
-    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst)?;
-    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst)?;
+    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan)?;
+    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan)?;
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
-        ("best-worst-plan.csv", tables::plan(&best_worst.plan)?),
+        ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
         ("worst.csv", tables::plan(&worst.plan)?),
-        ("worst-worst-plan.csv", tables::plan(&worst_worst.plan)?),
+        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
         ("deflection-map-best.csv", tables::deflection_map(problem, &outcome.map_best)?),

@@ -7,7 +7,7 @@ use crate::units::{Unit, fixed};
 use stead_model::published::Published;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
-use stead_placement::outcome::{Case, DeflectionMap, Generation, Plan, PlanPoint, Refinement, ratio};
+use stead_placement::outcome::{Cases, DeflectionMap, Generation, Plan, PlanPoint, Refinement};
 use stead_placement::problem::{Placement, Problem};
 
 const PLAN: [&str; 27] = [
@@ -73,7 +73,7 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn placements(cases: &[Case; 4], reference: Option<&Published<[f64; 4]>>) -> Result<Vec<u8>, ReportError> {
+pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Result<Vec<u8>, ReportError> {
     let mut header = vec![
         "case",
         "x_mm",
@@ -90,13 +90,13 @@ pub fn placements(cases: &[Case; 4], reference: Option<&Published<[f64; 4]>>) ->
         "transfer_s",
         "cycle_s",
     ];
-    header.extend(cases[0].plan.mean_deviation.map(|_| "mean_std_mm"));
-    let rows = cases.iter().enumerate().map(|(index, case)| {
-        let mut row = vec![case.number.to_string()];
+    header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
+    let rows = cases.all().into_iter().enumerate().map(|(index, case)| {
+        let mut row = vec![case.number().to_string()];
         row.extend(placement(&case.placement, true));
         row.push(names::postures(&case.plan.postures));
         row.extend([case.plan.mean, case.plan.max].map(|value| Unit::DEFLECTION_MM.text(value)));
-        row.push(Unit::PLAIN.text_or_empty(ratio(cases, index)));
+        row.push(Unit::PLAIN.text_or_empty(cases.ratio(case)));
         row.push(reference.map_or_else(String::new, |reference| reference.figures[index].to_string()));
         row.push(Unit::TIME_S.text(case.cycle.cutting));
         let total = case.cycle.total();
@@ -116,7 +116,7 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
     let header = ["search", "generation", "best_mm", "average_mm", "feasible", "population", "evaluations"];
     let rows = generations.iter().map(|state| {
         vec![
-            names::goal(state.goal).to_owned(),
+            names::sense(state.sense).to_owned(),
             state.generation.to_string(),
             Unit::DEFLECTION_MM.text_or_empty(state.best),
             Unit::DEFLECTION_MM.text_or_empty(state.average),
@@ -158,12 +158,12 @@ fn segment(path: &ToolPath, point: usize) -> String {
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn transfers(cases: &[Case]) -> Result<Vec<u8>, ReportError> {
+pub fn transfers(cases: &Cases) -> Result<Vec<u8>, ReportError> {
     let header = ["case", "after_segment", "duration_s", "travel_deg"];
-    let rows = cases.iter().flat_map(|case| {
+    let rows = cases.all().into_iter().flat_map(|case| {
         case.cycle.transfers.iter().map(|transfer| {
             vec![
-                case.number.to_string(),
+                case.number().to_string(),
                 transfer.after_segment.to_string(),
                 Unit::TIME_S.text_or_empty(transfer.duration),
                 Unit::ANGLE_DEG.text(transfer.travel),
@@ -196,7 +196,7 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
         "status",
     ];
     let rows = refinements.iter().map(|refinement| {
-        let mut row = vec![names::goal(refinement.goal).to_owned()];
+        let mut row = vec![names::sense(refinement.sense).to_owned()];
         row.extend(placement(&refinement.start, false));
         row.push(Unit::DEFLECTION_MM.text(refinement.start_mean));
         row.extend(placement(&refinement.end, false));

@@ -5,6 +5,7 @@ use crate::document::Timing;
 use crate::output::Folder;
 use crate::picture;
 use crate::testing::{assert_well_formed, context, outcome, problem};
+use stead_placement::outcome::{Case, Cases};
 
 fn rows(bytes: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(bytes);
@@ -18,7 +19,7 @@ fn column(rows: &[Vec<String>], name: &str) -> Vec<String> {
 
 #[test]
 fn a_plan_has_one_row_per_path_point() {
-    let rows = rows(&tables::plan(&outcome().cases[2].plan).unwrap());
+    let rows = rows(&tables::plan(&outcome().cases.worst.plan).unwrap());
     assert_eq!(rows.len(), 1 + 105);
     assert_eq!(
         rows[0].join(","),
@@ -29,7 +30,7 @@ fn a_plan_has_one_row_per_path_point() {
 
 #[test]
 fn lengths_are_in_mm_angles_in_degrees_and_turns_are_whole() {
-    let mut case = outcome().cases[0].clone();
+    let mut case = outcome().cases.best.clone();
     let point = &mut case.plan.points[0];
     point.position.x = 1e-3;
     point.normal_part = -8.3e-5;
@@ -63,12 +64,18 @@ fn placements_state_ratios_references_and_times() {
 #[test]
 fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
     let mut known = outcome().clone();
-    for (k, case) in known.cases.iter_mut().enumerate() {
+    let Cases { best, best_worst_plan, worst, worst_worst_plan } = &mut known.cases;
+    for (k, case) in [best, best_worst_plan, worst, worst_worst_plan].into_iter().enumerate() {
         case.plan.mean_deviation = Some(1e-6 * (k + 1) as f64);
         case.plan.points.iter_mut().for_each(|point| point.deviation = Some(2e-6 * (point.point + 1) as f64));
     }
     let pairs = [
-        (tables::plan(&known.cases[1].plan), tables::plan(&outcome().cases[1].plan), "std_mm", "0.0040000"),
+        (
+            tables::plan(&known.cases.best_worst_plan.plan),
+            tables::plan(&outcome().cases.best_worst_plan.plan),
+            "std_mm",
+            "0.0040000",
+        ),
         (
             tables::placements(&known.cases, None),
             tables::placements(&outcome().cases, None),
@@ -180,11 +187,11 @@ fn summary_states_inputs_and_settings_but_neither_plans_nor_timing() {
 
 #[test]
 fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
-    let [best, best_worst, ..] = &outcome().cases;
+    let Cases { best, best_worst_plan, .. } = &outcome().cases;
     let make = || {
         [
             picture::convergence(outcome()).unwrap(),
-            picture::deflection_map(problem(), &outcome().map_best, best, best_worst).unwrap(),
+            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan).unwrap(),
             picture::cell(problem(), outcome()).unwrap(),
         ]
     };
@@ -209,6 +216,13 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
             assert!(svg.contains(label), "{label}");
         }
     }
+}
+
+#[test]
+fn cases_are_those_of_table_iii() {
+    let told = outcome().cases.all().map(|case| [case.placement_sense, case.plan_sense].map(crate::names::sense));
+    assert_eq!(told, [["best", "best"], ["best", "worst"], ["worst", "best"], ["worst", "worst"]]);
+    assert_eq!(outcome().cases.all().map(Case::number), [1, 2, 3, 4]);
 }
 
 #[test]

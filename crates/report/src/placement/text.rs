@@ -6,7 +6,7 @@ use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::lookup::Unsuited;
-use stead_placement::outcome::{Outcome, ratio};
+use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
 
 /// Widest posture scheme that is written in full.
@@ -56,10 +56,10 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
 fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
     let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for case in &outcome.cases {
-        let (placement_word, plan_word) = names::case(case.number);
+    for case in outcome.cases.all() {
+        let [placement_word, plan_word] = [case.placement_sense, case.plan_sense].map(names::sense);
         let placement = &case.placement;
-        let mut row = vec![case.number.to_string(), placement_word.to_owned(), plan_word.to_owned()];
+        let mut row = vec![case.number().to_string(), placement_word.to_owned(), plan_word.to_owned()];
         row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
         row.push(fixed(placement.q4(), 4));
         row.push(fixed(placement.yaw.to_degrees(), 1));
@@ -71,18 +71,18 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
 
 fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> Vec<Vec<String>> {
     let mut header = vec!["case", "mean mm", "max mm"];
-    header.extend(outcome.cases[0].plan.mean_deviation.map(|_| "std mm"));
+    header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));
     header.push("ratio");
     if reference.is_some() {
         header.extend(["ref mm", "ref ratio"]);
     }
     header.extend(["cutting s", "moves s", "cycle s"]);
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for (index, case) in outcome.cases.iter().enumerate() {
-        let mut row = vec![case.number.to_string()];
+    for (index, case) in outcome.cases.all().into_iter().enumerate() {
+        let mut row = vec![case.number().to_string()];
         row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
         row.extend(case.plan.mean_deviation.map(|value| fixed(value * 1e3, 4)));
-        row.push(ratio(&outcome.cases, index).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
+        row.push(outcome.cases.ratio(case).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
         if let Some(Published { figures: case_mm, .. }) = reference {
             row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
         }

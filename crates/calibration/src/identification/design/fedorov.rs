@@ -8,6 +8,8 @@ use super::parameters::{InformationMatrix, MAX_PARAMETERS};
 use nalgebra::{SMatrix, SymmetricEigen};
 use rand::RngExt;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// The free numbers only, each in a unit in which the sum over a set of mean configurations has a diagonal of one.
 type Packed = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
@@ -156,22 +158,25 @@ pub fn values(criterion: &IOptimality, informations: &[InformationMatrix], sets:
     sets.iter().map(|set| criterion.value(&sum(set))).collect()
 }
 
-/// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `progress` is told how
-/// many more starts are done and says whether to go on. The result does not depend on the number of threads; ties go to the first.
+/// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `None` when
+/// `monitor` asked to stop. The result does not depend on the number of threads; ties go to the first.
 pub fn exchange(
     criterion: &IOptimality,
     informations: &[InformationMatrix],
     size: usize,
     starts: &[Vec<usize>],
-    progress: &(dyn Fn(usize) -> bool + Sync),
+    monitor: &Monitor,
 ) -> Option<ExactDesign> {
     let parts: Vec<Packed> = informations.iter().map(|information| criterion.packed(information)).collect();
+    let (done, total) = (AtomicUsize::new(0), starts.len() + 1);
     let improved: Vec<Option<ExactDesign>> = (0..=starts.len())
         .into_par_iter()
         .map(|start| {
             let set = if start == 0 { greedy(criterion, &parts, size) } else { starts[start - 1].clone() };
-            let chosen = improve(criterion, &parts, set, &|| progress(0));
-            if progress(1) { Some(chosen) } else { None }
+            let chosen = improve(criterion, &parts, set, monitor);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            monitor.report(Progress::Steps { stage: "choosing", done, total });
+            (!monitor.should_stop()).then_some(chosen)
         })
         .collect();
     let mut best: Option<ExactDesign> = None;
@@ -227,12 +232,7 @@ fn best_addition(
     best
 }
 
-fn improve(
-    criterion: &IOptimality,
-    parts: &[Packed],
-    mut set: Vec<usize>,
-    goes_on: &(dyn Fn() -> bool + Sync),
-) -> ExactDesign {
+fn improve(criterion: &IOptimality, parts: &[Packed], mut set: Vec<usize>, monitor: &Monitor) -> ExactDesign {
     let mut is_in = vec![false; parts.len()];
     set.iter().for_each(|index| is_in[*index] = true);
     let mut value = criterion.packed_value(&sum_of(parts, &set));
@@ -252,7 +252,7 @@ fn improve(
                 (set, value, has_changed) = (trial, exact, true);
             }
         }
-        if !has_changed || !goes_on() {
+        if !has_changed || monitor.should_stop() {
             break;
         }
     }

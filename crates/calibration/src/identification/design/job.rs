@@ -15,8 +15,8 @@ use super::request::{Request, TestCases};
 use super::unobservable::{Unobservable, WeaklyObserved, unobservable, weakly_observed};
 use nalgebra::{Matrix3, Vector6};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Frames, Pose};
+use stead_numerics::monitor::Monitor;
 
 /// A set of configurations to measure, and what it will tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,24 +111,19 @@ pub enum DesignError {
     Stopped,
 }
 
-/// Plans the measurements. `progress` is told how many starts of how many are done, and says whether to go on.
+/// Plans the measurements, start by start of the exchange.
 ///
 /// The plan is at least as good as the best of the random sets: that is one of the starts.
 ///
 /// # Errors
 /// [`DesignError`] when there is no plan.
-pub fn design_experiment(
-    request: &Request,
-    progress: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Design, DesignError> {
+pub fn design_experiment(request: &Request, monitor: &Monitor) -> Result<Design, DesignError> {
     check_counts(request)?;
     let size = request.configurations;
     let pool = Pool::new(request)?;
     let random = RandomSets::new(&pool);
     let starts = random.starts(request.starts.saturating_sub(1));
-    let (done, of) = (AtomicUsize::new(0), starts.len() + 1);
-    let watch = |more: usize| progress(done.fetch_add(more, Ordering::Relaxed) + more, of);
-    let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, &watch).ok_or(DesignError::Stopped)?;
+    let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, monitor).ok_or(DesignError::Stopped)?;
     let planned = pool.covariance(&chosen.set).filter(|_| chosen.value.is_finite());
     let planned = planned.ok_or(DesignError::NothingTold(size))?;
 

@@ -19,6 +19,7 @@ use std::f64::consts::PI;
 use stead_model::robot::testing::{kr270, odd_arms};
 use stead_model::robot::{Compliance, Frames, Robot};
 use stead_model::stiffness::equilibrium::{Load, displaced};
+use stead_numerics::monitor::Monitor;
 
 /// The arm to be found, not known well: every compliance is off by a quarter or more.
 fn guess() -> Robot {
@@ -59,7 +60,7 @@ fn request(seed: u64) -> Request {
 }
 
 fn planned(request: &Request) -> Design {
-    design_experiment(request, &|_, _| true).unwrap()
+    design_experiment(request, &Monitor::silent()).unwrap()
 }
 
 /// Candidates' informations, and the criterion over all numbers.
@@ -128,7 +129,7 @@ fn exchange_finds_the_best_of_all_sets() {
         assert_eq!(sets.len(), 1001);
         let best = values(&criterion, &informations, &sets).into_iter().fold(f64::INFINITY, f64::min);
         let starts: Vec<_> = (0..6).map(|draw| random_set(seed, draw, 4, 14)).collect();
-        let found = exchange(&criterion, &informations, 4, &starts, &|_| true).unwrap();
+        let found = exchange(&criterion, &informations, 4, &starts, &Monitor::silent()).unwrap();
         assert!((found.value / best - 1.0).abs() < 1e-9, "{} {best}", found.value);
     }
 }
@@ -295,7 +296,10 @@ fn candidates_keep_to_limits_levels_volume_and_deflection() {
         assert!(request.points.iter().all(|point| request.volume.contains(&flange.point(point))));
     }
     let none = Request { volume: Volume { min_radius: 9.0, ..Volume::OPEN }, ..request };
-    assert!(matches!(design_experiment(&none, &|_, _| true), Err(DesignError::TooFewCandidates { found: 0, .. })));
+    assert!(matches!(
+        design_experiment(&none, &Monitor::silent()),
+        Err(DesignError::TooFewCandidates { found: 0, .. })
+    ));
 }
 
 #[test]
@@ -322,7 +326,9 @@ fn the_plan_is_the_same_on_any_number_of_threads() {
         pool.install(|| planned(&request))
     };
     assert_eq!(on(1), on(3));
-    assert_eq!(design_experiment(&request, &|_, _| false), Err(DesignError::Stopped));
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert_eq!(design_experiment(&request, &stopped), Err(DesignError::Stopped));
 }
 
 #[test]
@@ -330,7 +336,7 @@ fn counts_that_cannot_do_are_refused() {
     let refused = |change: fn(&mut Request)| {
         let mut request = Request { candidates: 50, ..request(1) };
         change(&mut request);
-        design_experiment(&request, &|_, _| true).unwrap_err()
+        design_experiment(&request, &Monitor::silent()).unwrap_err()
     };
     assert!(matches!(refused(|r| r.configurations = 2), DesignError::Law(_)));
     assert!(matches!(

@@ -4,7 +4,8 @@ use super::super::coarse_bounds::CoarseBounds;
 use super::super::compliance_table::{AffineModel, ComplianceTable, Extent, Node, Steps};
 use super::super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
 use super::*;
-use crate::redundancy::{Extremum, Planner};
+use crate::redundancy::Planner;
+use crate::sense::Sense;
 
 /// The same with a table of other steps, of nodes about some radii and heights only.
 pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: Steps, levels: usize) -> Model {
@@ -225,7 +226,7 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
         (all().fold(f64::INFINITY, f64::min) - 0.06, all().fold(f64::NEG_INFINITY, f64::max) + 0.06)
     };
     let model = local(&setting, over(0), over(1), COARSE, 2);
-    let coarse = CoarseBounds::new(&model, || true).expect("nobody ends it");
+    let coarse = CoarseBounds::new(&model, || None).expect("nobody ends it");
     let planner = Planner::new(&setting.problem);
     let mut space = planner.workspace();
     let mut random = seeded(24);
@@ -238,7 +239,7 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
             let s = shares(&mut random);
             let inside = std::array::from_fn(|k| placement[k] + s[k] * half[k]);
             let pose = setting.pose(inside, -PI / 2.0);
-            if let Some(mean) = planner.worth(&pose, Extremum::Smallest, None, &mut space).mean() {
+            if let Some(mean) = planner.objective(&pose, Sense::Min, None, &mut space).mean() {
                 lowest = lowest.min(105.0 * mean);
                 feasible += 1;
             }

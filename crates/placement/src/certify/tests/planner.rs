@@ -6,7 +6,8 @@ use super::super::sliding_min::{NOTHING, SlidingMin};
 use super::minorants::local;
 use super::*;
 use crate::certify::compliance_table::Steps;
-use crate::redundancy::{Extremum, Planner};
+use crate::redundancy::Planner;
+use crate::sense::Sense;
 
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {
@@ -107,8 +108,7 @@ fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, ActiveCells)
     for _ in 0..8 {
         let s = shares(&mut random);
         let inside = std::array::from_fn(|k| region.middle[k] + s[k] * half[k]);
-        if let Some(mean) = planner.worth(&setting.pose(inside, -PI / 2.0), Extremum::Smallest, None, &mut space).mean()
-        {
+        if let Some(mean) = planner.objective(&setting.pose(inside, -PI / 2.0), Sense::Min, None, &mut space).mean() {
             value = value.min(105.0 * mean);
         }
     }
@@ -129,7 +129,7 @@ fn good(setting: &Setting) -> [f64; 3] {
     let at = |k: usize| [GOOD[0], GOOD[1], TAU / 60.0 * k as f64];
     let mut worth = |k: usize| {
         let pose = setting.pose(at(k), -PI / 2.0);
-        planner.worth(&pose, Extremum::Smallest, None, &mut space).mean().unwrap_or(f64::INFINITY)
+        planner.objective(&pose, Sense::Min, None, &mut space).mean().unwrap_or(f64::INFINITY)
     };
     let all: Vec<f64> = (0..60).map(&mut worth).collect();
     at((0..60).min_by(|a, b| all[*a].total_cmp(&all[*b])).unwrap())

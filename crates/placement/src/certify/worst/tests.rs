@@ -1,17 +1,20 @@
 //! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
 
-use super::super::branch_and_bound::{End, State};
+use super::super::branch_and_bound::End;
 use super::*;
 use crate::certify::compliance_table::{AffineModel, Node};
 use crate::certify::cost::CORNERS;
 use crate::certify::relaxed::{relaxed_value, score};
 use crate::problem::{Interval, Placement};
-use crate::redundancy::{Extremum, Planner};
+use crate::redundancy::Planner;
+use crate::sense::Sense;
 use crate::testing::five_segments;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::PostureClass;
+use stead_numerics::monitor::{Stop, StopHandle};
 
 fn model(problem: &Problem) -> Model {
     let (model, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
@@ -126,7 +129,7 @@ fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
         let pose = [placement.x, placement.y, placement.z, placement.yaw];
         let relaxed = relaxed_value(&problem, &placement);
-        let plan = planner.worth(&pose, Extremum::Smallest, None, &mut planner.workspace()).mean();
+        let plan = planner.objective(&pose, Sense::Min, None, &mut planner.workspace()).mean();
         match (relaxed, plan) {
             (Some(relaxed), Some(plan)) => assert!(relaxed <= plan && plan < 1.05 * relaxed, "{relaxed} {plan}"),
             (relaxed, plan) => assert!(plan.is_none(), "{relaxed:?} {plan:?}"),
@@ -134,13 +137,16 @@ fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     }
 }
 
-struct Patience(usize);
-
-impl Watch for Patience {
-    fn goes_on(&mut self, _: &State) -> bool {
-        self.0 = self.0.saturating_sub(1);
-        self.0 > 0
-    }
+/// Asks a job to stop at its n-th report.
+fn stopped_at(reports: usize) -> Monitor {
+    let (stop, seen) = (StopHandle::default(), AtomicUsize::new(0));
+    let handle = stop.clone();
+    Monitor::new(move |_| {
+        if seen.fetch_add(1, Ordering::SeqCst) + 1 >= reports {
+            handle.stop();
+        }
+    })
+    .with_stop(stop)
 }
 
 /// A small cell about the worst placement, with that placement.
@@ -158,7 +164,7 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
     let value = relaxed_value(&problem, &placement).unwrap();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| worst(&problem, value, 5e-3, &mut Patience(usize::MAX)).unwrap())
+        pool.install(|| worst(&problem, value, 5e-3, &Monitor::silent()).unwrap())
     };
     let one = run(1);
     assert_eq!(one.end, End::Reached, "{} {}", one.bound, one.nodes);
@@ -170,8 +176,8 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
 fn what_is_ended_early_is_a_bound_all_the_same() {
     let (problem, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
-    let found = worst(&problem, 0.5 * value, 1e-3, &mut Patience(12)).unwrap();
-    assert_eq!(found.end, End::Stopped);
+    let found = worst(&problem, 0.5 * value, 1e-3, &stopped_at(12)).unwrap();
+    assert_eq!(found.end, End::Stopped(Stop::Asked));
     assert!(found.bound >= value && !found.open.is_empty());
 }
 
@@ -181,7 +187,7 @@ fn the_worst_of_the_papers_cell_is_certified() {
     let problem = five_segments();
     let (_, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
-    let found = worst(&problem, value, 1e-3, &mut Patience(usize::MAX)).unwrap();
+    let found = worst(&problem, value, 1e-3, &Monitor::silent()).unwrap();
     assert_eq!(found.end, End::Reached);
     assert!(found.bound >= value && found.gap() <= 1e-3);
 }

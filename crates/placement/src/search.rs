@@ -8,14 +8,14 @@
 //! Candidates are looked at through a table where the task allows one ([`super::lookup`]), and then the basins that go on, and
 //! the best of every generation, are looked at by the planner: only averages are the table's.
 //!
-//! Random numbers are counter-based: every individual of every generation has its own stream, so the result depends on the
+//! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
 
-use super::appraiser::Appraiser;
-use super::control::{Control, Progress};
-use super::outcome::{Generation, Goal};
+use super::evaluator::Evaluator;
+use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
-use super::redundancy::Worth;
+use super::redundancy::Objective;
+use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -23,23 +23,24 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// One candidate.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Individual {
+pub struct Candidate {
     /// x, y, z (m) and yaw (rad).
     pub pose: [f64; 4],
     /// One posture per segment, in the genetic mode.
     pub scheme: Option<Vec<Posture>>,
     /// What it is worth under its best plan.
-    pub worth: Worth,
+    pub objective: Objective,
 }
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// The best individuals of distinct basins, best first; if nothing was feasible, the one that came nearest.
-    pub basins: Vec<Individual>,
+    /// The best candidates of distinct basins, best first; if nothing was feasible, the one that came nearest.
+    pub basins: Vec<Candidate>,
     /// Generation by generation.
     pub history: Vec<Generation>,
     /// Placements evaluated.
@@ -54,7 +55,7 @@ pub struct Found {
 const ELITE: f64 = 0.05;
 /// Share of the children that have two parents; the others are mutants of one.
 const CROSSOVER: f64 = 0.8;
-/// Individuals that fight for the place of a parent.
+/// Candidates that fight for the place of a parent.
 const TOURNAMENT: usize = 3;
 /// How far outside its parents a child may be, relative to their distance.
 const OVERSHOOT: f64 = 0.25;
@@ -66,27 +67,27 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 /// Basins kept in mind during the search.
 const ARCHIVE: usize = 64;
 
-/// Order of two individuals, better first.
-pub fn rank(goal: Goal, a: Worth, b: Worth) -> Ordering {
+/// Order of two candidates, better first.
+pub fn rank(sense: Sense, a: Objective, b: Objective) -> Ordering {
     match (a, b) {
-        (Worth::Feasible(a), Worth::Feasible(b)) => match goal {
-            Goal::Best => a.total_cmp(&b),
-            Goal::Worst => b.total_cmp(&a),
+        (Objective::Feasible(a), Objective::Feasible(b)) => match sense {
+            Sense::Min => a.total_cmp(&b),
+            Sense::Max => b.total_cmp(&a),
         },
-        (Worth::Feasible(_), Worth::Infeasible { .. }) => Ordering::Less,
-        (Worth::Infeasible { .. }, Worth::Feasible(_)) => Ordering::Greater,
-        (Worth::Infeasible { points: p, segments: s }, Worth::Infeasible { points: q, segments: t }) => {
+        (Objective::Feasible(_), Objective::Infeasible { .. }) => Ordering::Less,
+        (Objective::Infeasible { .. }, Objective::Feasible(_)) => Ordering::Greater,
+        (Objective::Infeasible { points: p, segments: s }, Objective::Infeasible { points: q, segments: t }) => {
             (p, s).cmp(&(q, t))
         }
     }
 }
 
 /// Searches the cell.
-pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, control: &dyn Control) -> Found {
-    let problem = appraiser.planner().problem();
+pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> Found {
+    let problem = evaluator.planner().problem();
     let cell = &problem.cell;
-    let mut population = initial(problem, settings, goal);
-    evaluate(appraiser, &mut population, 0);
+    let mut population = initial(problem, settings, sense);
+    evaluate(evaluator, &mut population, 0);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -97,41 +98,54 @@ pub fn search(appraiser: &Appraiser<'_>, settings: &SearchSettings, goal: Goal, 
             let elite = ((population.len() as f64 * ELITE).ceil() as usize).min(population.len() - 1);
             let children = (elite..settings.population)
                 .map(|index| {
-                    let mut random = stream(settings.seed, goal, generation, index);
-                    breed(cell, settings, &population, goal, generation, &mut random)
+                    let mut random = stream(settings.seed, sense, generation, index);
+                    breed(cell, settings, &population, sense, generation, &mut random)
                 })
                 .collect::<Vec<_>>();
             population.truncate(elite);
             population.extend(children);
-            evaluate(appraiser, &mut population, elite);
+            evaluate(evaluator, &mut population, elite);
             evaluations += settings.population - elite;
         }
-        population.sort_by(|a, b| rank(goal, a.worth, b.worth));
-        archive.extend(population.iter().filter(|i| i.worth.mean().is_some()).cloned());
-        archive.sort_by(|a, b| rank(goal, a.worth, b.worth));
+        population.sort_by(|a, b| rank(sense, a.objective, b.objective));
+        archive.extend(population.iter().filter(|i| i.objective.mean().is_some()).cloned());
+        archive.sort_by(|a, b| rank(sense, a.objective, b.objective));
         archive = distinct(cell, &archive, ARCHIVE);
-        let figures = figures(goal, generation, &population, evaluations);
+        let figures = figures(sense, generation, &population, evaluations);
         history.push(figures);
         best.push(population[0].clone());
-        control.report(Progress::Generation { generation: figures, of: settings.generations });
-        if control.should_stop() {
+        monitor.report(Progress::Search {
+            stage: stage(sense),
+            done: generation,
+            total: settings.generations,
+            best: figures.best,
+        });
+        if monitor.should_stop() {
             interrupted = true;
             break;
         }
     }
     archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
-    appraiser.check(&mut history, &best, goal);
-    let settled = appraiser.settle(archive, goal, settings.basins, control);
+    evaluator.check(&mut history, &best, sense);
+    let settled = evaluator.settle(archive, sense, settings.basins, monitor);
     evaluations += settled.looks;
     Found { basins: settled.basins, history, evaluations, misled: settled.misled, interrupted }
 }
 
-/// The random numbers of one individual: seed and place decide, nothing else.
-fn stream(seed: u64, goal: Goal, generation: usize, index: usize) -> ChaCha8Rng {
+/// The name of a search in reports of progress.
+fn stage(sense: Sense) -> &'static str {
+    match sense {
+        Sense::Min => "best placement",
+        Sense::Max => "worst placement",
+    }
+}
+
+/// The random numbers of one candidate: seed and place decide, nothing else.
+fn stream(seed: u64, sense: Sense, generation: usize, index: usize) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let side = match goal {
-        Goal::Best => 0,
-        Goal::Worst => 1_u64 << 63,
+    let side = match sense {
+        Sense::Min => 0,
+        Sense::Max => 1_u64 << 63,
     };
     random.set_stream(side | (generation as u64) << 32 | index as u64);
     random
@@ -143,10 +157,10 @@ fn bounds(cell: &Cell) -> [(f64, f64); 4] {
     [(x.min, x.max), (y.min, y.max), (z.min, z.max), (cell.yaw.min, cell.yaw.max)]
 }
 
-/// A Latin hypercube: along every gene, one individual in each of equal slices.
-fn initial(problem: &Problem, settings: &SearchSettings, goal: Goal) -> Vec<Individual> {
+/// A Latin hypercube: along every gene, one candidate in each of equal slices.
+fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Candidate> {
     let size = settings.population;
-    let mut random = stream(settings.seed, goal, 0, size);
+    let mut random = stream(settings.seed, sense, 0, size);
     let slices: [Vec<usize>; 4] = std::array::from_fn(|_| {
         let mut order: Vec<usize> = (0..size).collect();
         for k in (1..size).rev() {
@@ -158,14 +172,14 @@ fn initial(problem: &Problem, settings: &SearchSettings, goal: Goal) -> Vec<Indi
     let segments = problem.task.segments().len();
     (0..size)
         .map(|index| {
-            let mut random = stream(settings.seed, goal, 0, index);
+            let mut random = stream(settings.seed, sense, 0, index);
             let pose = std::array::from_fn(|k| {
                 let share = (slices[k][index] as f64 + random.random::<f64>()) / size as f64;
                 bounds[k].0 + share * (bounds[k].1 - bounds[k].0)
             });
             let scheme = (settings.postures == PostureSearch::Genetic)
                 .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
-            Individual { pose, scheme, worth: Worth::Infeasible { points: usize::MAX, segments: 0 } }
+            Candidate { pose, scheme, objective: Objective::Infeasible { points: usize::MAX, segments: 0 } }
         })
         .collect()
 }
@@ -174,11 +188,11 @@ fn random_posture(random: &mut impl Rng) -> Posture {
     Posture::ALL[random.random_range(0..8)]
 }
 
-fn evaluate(appraiser: &Appraiser<'_>, population: &mut [Individual], from: usize) {
+fn evaluate(evaluator: &Evaluator<'_>, population: &mut [Candidate], from: usize) {
     population[from..].par_iter_mut().for_each_init(
-        || appraiser.workspace(),
-        |workspace, individual| {
-            individual.worth = appraiser.worth(&individual.pose, individual.scheme.as_deref(), workspace);
+        || evaluator.workspace(),
+        |workspace, candidate| {
+            candidate.objective = evaluator.objective(&candidate.pose, candidate.scheme.as_deref(), workspace);
         },
     );
 }
@@ -187,15 +201,15 @@ fn evaluate(appraiser: &Appraiser<'_>, population: &mut [Individual], from: usiz
 fn breed(
     cell: &Cell,
     settings: &SearchSettings,
-    population: &[Individual],
-    goal: Goal,
+    population: &[Candidate],
+    sense: Sense,
     generation: usize,
     random: &mut ChaCha8Rng,
-) -> Individual {
-    let mother = tournament(population, goal, random);
+) -> Candidate {
+    let mother = tournament(population, sense, random);
     let mut child = mother.clone();
     if random.random::<f64>() < CROSSOVER {
-        let father = tournament(population, goal, random);
+        let father = tournament(population, sense, random);
         for k in 0..4 {
             let share = random.random_range(-OVERSHOOT..1.0 + OVERSHOOT);
             let apart = father.pose[k] - mother.pose[k];
@@ -229,11 +243,11 @@ fn breed(
     child
 }
 
-fn tournament<'p>(population: &'p [Individual], goal: Goal, random: &mut ChaCha8Rng) -> &'p Individual {
+fn tournament<'p>(population: &'p [Candidate], sense: Sense, random: &mut ChaCha8Rng) -> &'p Candidate {
     let mut winner = &population[random.random_range(0..population.len())];
     for _ in 1..TOURNAMENT {
         let rival = &population[random.random_range(0..population.len())];
-        if rank(goal, rival.worth, winner.worth) == Ordering::Less {
+        if rank(sense, rival.objective, winner.objective) == Ordering::Less {
             winner = rival;
         }
     }
@@ -246,10 +260,10 @@ fn normal(random: &mut impl Rng) -> f64 {
     libm::sqrt(-2.0 * libm::log(1.0 - u)) * libm::cos(TAU * v)
 }
 
-fn figures(goal: Goal, generation: usize, population: &[Individual], evaluations: usize) -> Generation {
-    let means: Vec<f64> = population.iter().filter_map(|i| i.worth.mean()).collect();
+fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluations: usize) -> Generation {
+    let means: Vec<f64> = population.iter().filter_map(|i| i.objective.mean()).collect();
     Generation {
-        goal,
+        sense,
         generation,
         best: means.first().copied(),
         average: (!means.is_empty()).then(|| means.iter().sum::<f64>() / means.len() as f64),
@@ -259,22 +273,22 @@ fn figures(goal: Goal, generation: usize, population: &[Individual], evaluations
     }
 }
 
-/// Of individuals sorted from the best, those that are not in the basin of a better one: at most `most`.
-pub fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individual> {
-    let mut basins: Vec<Individual> = Vec::new();
-    for individual in sorted {
+/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `most`.
+pub fn distinct(cell: &Cell, sorted: &[Candidate], most: usize) -> Vec<Candidate> {
+    let mut basins: Vec<Candidate> = Vec::new();
+    for candidate in sorted {
         if basins.len() == most {
             break;
         }
         let is_new = basins.iter().all(|known| {
             let far = (0..3).any(|k| {
                 let width = cell.position[k].width();
-                width > 0.0 && (known.pose[k] - individual.pose[k]).abs() / width > BASIN.0
+                width > 0.0 && (known.pose[k] - candidate.pose[k]).abs() / width > BASIN.0
             });
-            far || wrap(known.pose[3] - individual.pose[3]).abs() > BASIN.1
+            far || wrap(known.pose[3] - candidate.pose[3]).abs() > BASIN.1
         });
         if is_new {
-            basins.push(individual.clone());
+            basins.push(candidate.clone());
         }
     }
     basins
@@ -282,7 +296,6 @@ pub fn distinct(cell: &Cell, sorted: &[Individual], most: usize) -> Vec<Individu
 
 #[cfg(test)]
 mod tests {
-    use super::super::control::Unwatched;
     use super::super::lookup::LookupTable;
     use super::super::redundancy::Planner;
     use super::super::testing::five_segments;
@@ -302,8 +315,8 @@ mod tests {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 pool.install(|| {
                     let table = looks_through_table.then(|| LookupTable::new(&problem).unwrap());
-                    let appraiser = Appraiser::new(&planner, table.as_ref());
-                    search(&appraiser, &SearchSettings { seed, ..small() }, Goal::Best, &Unwatched)
+                    let evaluator = Evaluator::new(&planner, table.as_ref());
+                    search(&evaluator, &SearchSettings { seed, ..small() }, Sense::Min, &Monitor::silent())
                 })
             };
             let one = run(1, 1);
@@ -317,33 +330,34 @@ mod tests {
     fn best_only_gets_better_and_stays_in_the_cell() {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
-        for (goal, postures) in [
-            (Goal::Best, PostureSearch::Exact),
-            (Goal::Worst, PostureSearch::Exact),
-            (Goal::Best, PostureSearch::Genetic),
+        for (sense, postures) in [
+            (Sense::Min, PostureSearch::Exact),
+            (Sense::Max, PostureSearch::Exact),
+            (Sense::Min, PostureSearch::Genetic),
         ] {
             let planner = Planner::new(&problem);
-            let appraiser = Appraiser::new(&planner, None);
-            let found = search(&appraiser, &SearchSettings { postures, ..small() }, goal, &Unwatched);
+            let evaluator = Evaluator::new(&planner, None);
+            let found = search(&evaluator, &SearchSettings { postures, ..small() }, sense, &Monitor::silent());
             let best: Vec<f64> = found.history.iter().filter_map(|g| g.best).collect();
-            let sign = if goal == Goal::Best { 1.0 } else { -1.0 };
+            let sign = if sense == Sense::Min { 1.0 } else { -1.0 };
             assert!(best.windows(2).all(|pair| pair[1] * sign <= pair[0] * sign));
             assert_eq!(found.history.len(), 7);
-            for individual in &found.basins {
-                let [x, y, z, yaw] = individual.pose;
+            for candidate in &found.basins {
+                let [x, y, z, yaw] = candidate.pose;
                 assert!(problem.cell.contains(&Placement { x, y, z, yaw }));
-                assert_eq!(individual.scheme.is_some(), postures == PostureSearch::Genetic);
+                assert_eq!(candidate.scheme.is_some(), postures == PostureSearch::Genetic);
             }
         }
     }
 
     #[test]
     fn feasible_ranks_before_infeasible() {
-        let (a, b) = (Worth::Feasible(1.0), Worth::Feasible(2.0));
-        let (c, d) = (Worth::Infeasible { points: 1, segments: 5 }, Worth::Infeasible { points: 2, segments: 0 });
-        assert_eq!(rank(Goal::Best, a, b), Ordering::Less);
-        assert_eq!(rank(Goal::Worst, a, b), Ordering::Greater);
-        assert_eq!(rank(Goal::Worst, a, c), Ordering::Less);
-        assert_eq!(rank(Goal::Best, d, c), Ordering::Greater);
+        let (a, b) = (Objective::Feasible(1.0), Objective::Feasible(2.0));
+        let (c, d) =
+            (Objective::Infeasible { points: 1, segments: 5 }, Objective::Infeasible { points: 2, segments: 0 });
+        assert_eq!(rank(Sense::Min, a, b), Ordering::Less);
+        assert_eq!(rank(Sense::Max, a, b), Ordering::Greater);
+        assert_eq!(rank(Sense::Max, a, c), Ordering::Less);
+        assert_eq!(rank(Sense::Min, d, c), Ordering::Greater);
     }
 }

@@ -1,7 +1,7 @@
 //! The batch evaluator against the ordinary one.
 
 use super::*;
-use crate::criterion::state;
+use crate::evaluate::reference::state;
 use crate::problem::Criterion;
 use crate::testing::{compensated, five_segments, with_laws, with_uncertainty};
 use stead_model::robot::angles::{wrap, yaw_from_q4};
@@ -14,11 +14,11 @@ fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usiz
 }
 
 fn compare_flips(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>, flips: Flips) -> usize {
-    let kernel = Kernel::new(problem, &problem.redundancy, flips);
-    let mut states = States::new(problem.redundancy.beta_count, 3);
+    let evaluator = BatchEvaluator::new(problem, &problem.redundancy, flips);
+    let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
     let mut allowed = 0;
     for point in points {
-        kernel.evaluate(point, pose, &mut states);
+        evaluator.evaluate(point, pose, &mut states);
         for class in PostureClass::ALL {
             for k in 0..problem.redundancy.beta_count {
                 let found = states.scores(class)[3 + k];
@@ -199,11 +199,11 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
 fn bits(problem: &Problem, instructions: Instructions, poses: &[[f64; 4]]) -> Vec<u64> {
     let mut bits = Vec::new();
     for flips in Flips::of(&problem.robot) {
-        let kernel = Kernel::new(problem, &problem.redundancy, *flips).with_instructions(instructions);
-        let mut states = States::new(problem.redundancy.beta_count, 2);
+        let evaluator = BatchEvaluator::new(problem, &problem.redundancy, *flips).with_instructions(instructions);
+        let mut states = StateGrid::new(problem.redundancy.beta_count, 2);
         for pose in poses {
             for point in (0..problem.task.points().len()).step_by(7) {
-                kernel.evaluate(point, pose, &mut states);
+                evaluator.evaluate(point, pose, &mut states);
                 for class in PostureClass::ALL {
                     bits.push(u64::from(states.is_alive(class)));
                     states.wrap_around(class);
@@ -253,9 +253,9 @@ fn every_processor_gives_the_same_bits() {
 #[test]
 fn continues_rows_cyclically() {
     let problem = five_segments();
-    let kernel = Kernel::new(&problem, &problem.redundancy, Flips::Both);
-    let mut states = States::new(120, 5);
-    kernel.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut states);
+    let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
+    let mut states = StateGrid::new(120, 5);
+    evaluator.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut states);
     for class in PostureClass::ALL {
         states.wrap_around(class);
         let row = states.scores(class);

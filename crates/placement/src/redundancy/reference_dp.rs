@@ -1,12 +1,12 @@
 //! Dynamic programming over (beta, turns) in one posture: where a flip or the turns of joints 1, 4 and 6 decide.
 //!
-//! Slower than [`super::band`] and rarely needed, so it is written to be plainly right: every real configuration of every
+//! Slower than [`super::transition`] and rarely needed, so it is written to be plainly right: every real configuration of every
 //! grid state is a node, and an edge is a change of beta within its rate with every real joint angle within its step. The
 //! tests use it as the judge of the fast planner.
 
-use super::super::criterion;
-use super::turns::{Choice, Way, inside_steps, is_allowed};
-use super::{Extremum, Planner, Workspace};
+use super::super::evaluate::reference;
+use super::joint_turns::{JointPath, SegmentChoice, inside_steps, is_allowed};
+use super::{Planner, Sense, Workspace};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 
@@ -26,16 +26,18 @@ pub(super) fn plan(
     planner: &Planner<'_>,
     span: &Span<usize>,
     pose: &[f64; 4],
-    extremum: Extremum,
+    sense: Sense,
     postures: &[Posture],
     workspace: &mut Workspace,
-) -> Option<Choice> {
-    let mut best: Option<Choice> = None;
+) -> Option<SegmentChoice> {
+    let mut best: Option<SegmentChoice> = None;
     for posture in postures {
-        let Some(choice) = one_posture(planner, span, pose, extremum, *posture, workspace) else { continue };
-        let sign = extremum.sign();
+        let Some(choice) = one_posture(planner, span, pose, sense, *posture, workspace) else { continue };
+        let sign = sense.sign();
         match &mut best {
-            Some(known) if known.cost == choice.cost && known.betas == choice.betas => known.ways.extend(choice.ways),
+            Some(known) if known.cost == choice.cost && known.betas == choice.betas => {
+                known.joint_paths.extend(choice.joint_paths)
+            }
             Some(known) if known.cost * sign <= choice.cost * sign => {}
             _ => best = Some(choice),
         }
@@ -44,14 +46,14 @@ pub(super) fn plan(
 }
 
 /// Segments of more points than this are gone through in blocks.
-const MOST_LAYERS: usize = 4096;
+const MAX_LAYERS: usize = 4096;
 
 /// What is planned: one segment in one posture.
 pub(super) struct Search<'s> {
     pub planner: &'s Planner<'s>,
     pub span: &'s Span<usize>,
     pub pose: &'s [f64; 4],
-    pub extremum: Extremum,
+    pub sense: Sense,
     pub posture: Posture,
 }
 
@@ -59,18 +61,18 @@ fn one_posture(
     planner: &Planner<'_>,
     span: &Span<usize>,
     pose: &[f64; 4],
-    extremum: Extremum,
+    sense: Sense,
     posture: Posture,
     workspace: &mut Workspace,
-) -> Option<Choice> {
-    let block = if span.len() > MOST_LAYERS { span.len().isqrt() } else { span.len() };
-    Search { planner, span, pose, extremum, posture }.plan(block, workspace)
+) -> Option<SegmentChoice> {
+    let block = if span.len() > MAX_LAYERS { span.len().isqrt() } else { span.len() };
+    Search { planner, span, pose, sense, posture }.plan(block, workspace)
 }
 
 impl Search<'_> {
     /// The cheapest plan. Only the layers of one block of points are kept, and the first ones of the others, from which
     /// theirs are found again.
-    pub fn plan(&self, block: usize, workspace: &mut Workspace) -> Option<Choice> {
+    pub fn plan(&self, block: usize, workspace: &mut Workspace) -> Option<SegmentChoice> {
         let length = self.span.len();
         let mut firsts = vec![self.first(workspace)?];
         let mut layers = Vec::new();
@@ -82,7 +84,7 @@ impl Search<'_> {
         }
         let last = layers.last()?;
         let mut index = (0..last.len()).min_by(|a, b| last[*a].cost.total_cmp(&last[*b].cost))?;
-        let cost = last[index].cost * self.extremum.sign();
+        let cost = last[index].cost * self.sense.sign();
         let (mut betas, mut joints) = (Vec::with_capacity(length), Vec::with_capacity(length));
         for (number, first) in firsts.iter().enumerate().rev() {
             if number + 1 < firsts.len() {
@@ -97,8 +99,8 @@ impl Search<'_> {
         }
         betas.reverse();
         joints.reverse();
-        let ways = vec![Way { posture: self.posture, joints }];
-        Some(Choice { points: self.span.clone(), betas, cost, ways })
+        let joint_paths = vec![JointPath { posture: self.posture, joints }];
+        Some(SegmentChoice { points: self.span.clone(), betas, cost, joint_paths })
     }
 
     /// The layers of the points at `from` up to `to`, the first one given.
@@ -113,7 +115,7 @@ impl Search<'_> {
     /// The layer of the first point, where it has states.
     fn first(&self, workspace: &mut Workspace) -> Option<Vec<Node>> {
         let mut layer = nodes(self.planner, self.span.start, self.pose, self.posture, workspace);
-        layer.iter_mut().for_each(|node| node.cost = node.score * self.extremum.sign());
+        layer.iter_mut().for_each(|node| node.cost = node.score * self.sense.sign());
         Some(layer).filter(|layer| !layer.is_empty())
     }
 
@@ -122,9 +124,9 @@ impl Search<'_> {
         let point = self.span.start + place;
         let planner = self.planner;
         let mut layer = nodes(planner, point, self.pose, self.posture, workspace);
-        connect(before, &mut layer, planner.pace.reach(point), planner.grid.beta_count, &planner.steps[point]);
+        connect(before, &mut layer, planner.rate_limit.reach(point), planner.grid.beta_count, &planner.steps[point]);
         layer.retain(|node| node.cost.is_finite());
-        layer.iter_mut().for_each(|node| node.cost += node.score * self.extremum.sign());
+        layer.iter_mut().for_each(|node| node.cost += node.score * self.sense.sign());
         Some(layer).filter(|layer| !layer.is_empty())
     }
 }
@@ -132,18 +134,18 @@ impl Search<'_> {
 /// Every real configuration of every allowed grid state of one point, in the order of beta.
 fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture, space: &mut Workspace) -> Vec<Node> {
     let problem = planner.problem;
-    // The kernel says which grid values are worth a closer look.
-    let Some(kernel) = planner.kernels.iter().find(|kernel| kernel.flips().contains(posture)) else {
+    // The evaluator says which grid values are worth a closer look.
+    let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
         return Vec::new();
     };
-    kernel.evaluate(point, pose, &mut space.now);
+    evaluator.evaluate(point, pose, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
     for beta in 0..planner.grid.beta_count {
         if !space.now.inner_scores(class)[beta].is_finite() {
             continue;
         }
-        let Ok(state) = criterion::state(problem, point, pose, planner.grid.beta(beta), posture) else {
+        let Ok(state) = reference::state(problem, point, pose, planner.grid.beta(beta), posture) else {
             continue;
         };
         if !is_allowed(problem, &state) {

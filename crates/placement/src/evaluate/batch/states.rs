@@ -1,15 +1,15 @@
-//! Where the kernel writes and the planner reads.
+//! Where the evaluator writes and the planner reads.
 
 use pulp::Simd;
 use stead_model::robot::PostureClass;
-use stead_numerics::simd::{Lanes, MOST_LANES};
+use stead_numerics::simd::{Lanes, MAX_LANES};
 
 /// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta.
 ///
 /// Joint angles are kept as sines and cosines. Each row is continued cyclically by `pad` values at both ends, so that a
 /// planner can look to either side of beta without taking remainders: entry `pad + k` belongs to beta number k.
 #[derive(Debug, Clone)]
-pub struct States {
+pub struct StateGrid {
     count: usize,
     pad: usize,
     stride: usize,
@@ -20,11 +20,11 @@ pub struct States {
 /// Score, and sine and cosine of six joints.
 const ROWS: usize = 13;
 
-impl States {
+impl StateGrid {
     /// Room for `count` grid values of beta, continued by `pad` at both ends.
     pub fn new(count: usize, pad: usize) -> Self {
         // A few more, so that the last batch of lanes may run over.
-        let stride = (count + 2 * pad).next_multiple_of(MOST_LANES) + MOST_LANES;
+        let stride = (count + 2 * pad).next_multiple_of(MAX_LANES) + MAX_LANES;
         Self { count, pad, stride, data: vec![f64::INFINITY; 4 * ROWS * stride], alive: [false; 4] }
     }
 
@@ -73,7 +73,7 @@ impl States {
         &mut self.data[start..start + self.stride]
     }
 
-    /// The score row, to be overwritten, beside [`States::all_directions`].
+    /// The score row, to be overwritten, beside [`StateGrid::all_directions`].
     #[inline(always)]
     pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], &[f64]) {
         let stride = self.stride;
@@ -81,7 +81,7 @@ impl States {
         (scores, directions)
     }
 
-    /// The rows of [`States::directions`] of all joints, one behind the other, each as long as [`States::scores`].
+    /// The rows of [`StateGrid::directions`] of all joints, one behind the other, each as long as [`StateGrid::scores`].
     #[inline(always)]
     pub fn all_directions(&self, class: PostureClass) -> &[f64] {
         &self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride]

@@ -1,36 +1,36 @@
-//! Beta off the grid: dynamic programming in an ever narrower tube around a plan.
+//! Beta off the grid: dynamic programming on ever narrower grids around a plan.
 //!
 //! Each level lays five values of beta around the present plan at every point, finds the best way through them under the
 //! same constraints as on the grid (real joint angles, exact rate), and repeats until nothing moves; then the spacing is
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
-use super::super::criterion;
+use super::super::evaluate::reference;
 use super::super::problem::{Problem, Redundancy};
-use super::turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
-use super::{Extremum, SegmentPlan};
+use super::joint_turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
+use super::{SegmentPlan, Sense};
 use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
-const TUBE: usize = 5;
+const VALUES: usize = 5;
 /// Repetitions of a level at the most.
 const REPEATS: usize = 8;
 
 /// A pass that gains less than this share of the cost ends its level.
-const LEAST_GAIN: f64 = 1e-9;
+const MIN_GAIN: f64 = 1e-9;
 
 /// Points that one thread lays at least.
-const LEAST_SHARE: usize = 500;
+const MIN_SHARE: usize = 500;
 
-/// How far to go.
+/// How far the grid of beta around a plan is narrowed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tube {
+pub struct Spacing {
     /// First spacing of beta. rad
     pub first: f64,
     /// Last spacing of beta. rad
     pub last: f64,
 }
 
-impl Tube {
+impl Spacing {
     /// From half the step of a grid down to a thousandth of a degree.
     pub fn full(grid: &Redundancy) -> Self {
         Self { first: grid.beta_step() / 2.0, last: 1.7e-5 }
@@ -49,17 +49,17 @@ struct Node {
 
 /// Refines the plan of one segment for the workpiece at `pose` (x, y, z in m, yaw in rad). Returns whether it got better.
 ///
-/// The plan given need not be one for this pose exactly: with an infinite cost, the betas of `plan` are only where the tube
-/// is laid, and the first way through it is taken. Where there is none the plan stays as it is and false is returned.
-pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube, plan: &mut SegmentPlan) -> bool {
+/// The plan given need not be one for this pose exactly: with an infinite cost, the betas of `plan` are only where the grid
+/// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
+pub fn refine(problem: &Problem, pose: &[f64; 4], sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
     let mut better = false;
-    let mut spacing = tube.first;
-    let mut layers = vec![Layer { states: [None; TUBE], is_fresh: false }; plan.points.len()];
-    while spacing >= tube.last {
+    let mut spacing = range.first;
+    let mut layers = vec![Layer { states: [None; VALUES], is_fresh: false }; plan.points.len()];
+    while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
             lay(problem, pose, spacing, plan, &mut layers);
-            if !level(problem, extremum, plan, &mut layers) {
+            if !level(problem, sense, plan, &mut layers) {
                 break;
             }
             better = true;
@@ -72,7 +72,7 @@ pub fn refine(problem: &Problem, pose: &[f64; 4], extremum: Extremum, tube: Tube
 /// The values of beta that a level lays at one point.
 #[derive(Clone)]
 struct Layer {
-    states: [Option<Node>; TUBE],
+    states: [Option<Node>; VALUES],
     /// Whether they lie around the present plan, with the present spacing.
     is_fresh: bool,
 }
@@ -100,7 +100,7 @@ pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<
 const BETA_ROUNDING: f64 = 1e-9;
 
 fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, place: usize, beta: f64) -> Option<Node> {
-    let state = criterion::state(problem, point, pose, beta, plan.posture).ok()?;
+    let state = reference::state(problem, point, pose, beta, plan.posture).ok()?;
     let joints = nearest_turns(&state.joints, &plan.joints[place]);
     if !is_allowed(problem, &state) || !inside_limits(problem, &joints) {
         return None;
@@ -110,9 +110,9 @@ fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, pl
 
 /// Lays values of beta around the plan, where that moved since.
 fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
-    let middle = TUBE / 2;
+    let middle = VALUES / 2;
     let first = plan.points.start;
-    layers.par_iter_mut().enumerate().with_min_len(LEAST_SHARE).for_each(|(place, layer)| {
+    layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
         if layer.is_fresh {
             return;
         }
@@ -129,8 +129,8 @@ fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, lay
 }
 
 /// One pass over what was laid; whether the plan got better by more than rounding.
-fn level(problem: &Problem, extremum: Extremum, plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
-    let sign = extremum.sign();
+fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
+    let sign = sense.sign();
     for (place, point) in plan.points.clone().enumerate() {
         let (done, open) = layers.split_at_mut(place);
         let before = done.last().map(|layer| &layer.states);
@@ -159,7 +159,7 @@ fn level(problem: &Problem, extremum: Extremum, plan: &mut SegmentPlan, layers: 
         ends.filter(|(cost, _)| cost.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     let Some((cost, mut index)) = end else { return false };
-    if plan.cost.is_finite() && cost >= plan.cost * sign - LEAST_GAIN * plan.cost.abs() {
+    if plan.cost.is_finite() && cost >= plan.cost * sign - MIN_GAIN * plan.cost.abs() {
         return false;
     }
     for (place, layer) in layers.iter_mut().enumerate().rev() {

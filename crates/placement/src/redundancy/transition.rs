@@ -4,13 +4,13 @@
 //! Joint steps are looked at on sines and cosines, and first for the cheapest predecessor of each state only: mostly it is
 //! within every step, and then it is the cheapest of those that are.
 
-use super::super::kernel::States;
+use super::super::evaluate::batch::StateGrid;
 use super::STEP_ROUNDING;
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
-use stead_numerics::simd::{Instructions, Lanes, MOST_LANES, Mask};
+use stead_numerics::simd::{Instructions, Lanes, MAX_LANES, Mask};
 
 /// What bounds a step from one point to the next.
 #[derive(Debug, Clone, Copy)]
@@ -93,7 +93,7 @@ impl JointStep {
 }
 
 /// Turns the scores of a segment's first point into costs.
-pub fn begin(now: &mut States, class: PostureClass, sign: f64) {
+pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
     for score in now.scores_mut(class).iter_mut() {
         if score.is_finite() {
             *score *= sign;
@@ -104,13 +104,19 @@ pub fn begin(now: &mut States, class: PostureClass, sign: f64) {
 /// Turns the scores of a point into the smallest sums of costs up to it, from those of the point before; `way` takes for
 /// each beta number the step back to the predecessor. False when no state was reached.
 ///
-/// Rows of `before` must be continued cyclically (see [`States::wrap_around`]) by at least `step.reach`.
-pub fn advance(before: &States, now: &mut States, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
+/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least `step.reach`.
+pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
     advance_by::<Right>(before, now, class, step, way)
 }
 
 #[inline]
-fn advance_by<R: Rules>(before: &States, now: &mut States, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
+fn advance_by<R: Rules>(
+    before: &StateGrid,
+    now: &mut StateGrid,
+    class: PostureClass,
+    step: &Step,
+    way: &mut [i16],
+) -> bool {
     step.instructions.run(Advance::<R> { before, now, class, step, way, rules: PhantomData })
 }
 
@@ -136,8 +142,8 @@ struct Right;
 impl Rules for Right {}
 
 struct Advance<'s, R> {
-    before: &'s States,
-    now: &'s mut States,
+    before: &'s StateGrid,
+    now: &'s mut StateGrid,
     class: PostureClass,
     step: &'s Step,
     way: &'s mut [i16],
@@ -190,7 +196,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
     }
 }
 
-const NUMBERS: [f64; MOST_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// The costs of the point before, and how far to look.
 struct Band<'s, R> {
@@ -201,7 +207,7 @@ struct Band<'s, R> {
 
 impl<R: Rules> Band<'_, R> {
     /// For neighbouring states from `here` the smallest cost of a predecessor, joint steps not looked at, and the shift to
-    /// it. Small shifts are looked at first, so that of equal ways the quietest is taken.
+    /// it. Small shifts are looked at first, so that of equal joint_paths the quietest is taken.
     #[inline(always)]
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::load(simd, self.costs, here);
@@ -242,7 +248,7 @@ impl<R: Rules> Band<'_, R> {
 
 /// Joint angles at the point before and at this one, and how far each joint may step.
 struct Joints<'s, R> {
-    /// See [`States::all_directions`].
+    /// See [`StateGrid::all_directions`].
     old: &'s [f64],
     new: &'s [f64],
     stride: usize,
@@ -278,7 +284,7 @@ impl<'s, R: Rules> Joints<'s, R> {
             if lane >= Lanes::<S>::COUNT {
                 return far;
             }
-            let shift = shifts[lane % MOST_LANES];
+            let shift = shifts[lane % MAX_LANES];
             let same = open & from.equal(Lanes::splat(simd, f64::from(shift)));
             far = far | same.and_not(self.within(simd, here, here.wrapping_add_signed(isize::from(shift))));
             open = open.and_not(same);

@@ -2,17 +2,18 @@
 //!
 //! Whatever goes on from the search is looked at by the planner in any case.
 
-use super::control::Control;
-use super::genetic::{Individual, rank};
 use super::lookup::{self, BetaGrid, LookupTable};
-use super::outcome::{Generation, Goal};
-use super::redundancy::{self, Extremum, Planner, Worth};
+use super::outcome::Generation;
+use super::redundancy::{self, Objective, Planner};
+use super::search::{Candidate, rank};
+use super::sense::Sense;
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::monitor::Monitor;
 
 /// A planner, and the table before it.
 #[derive(Debug, Clone)]
-pub struct Appraiser<'a> {
+pub struct Evaluator<'a> {
     planner: &'a Planner<'a>,
     table: Option<&'a LookupTable<'a>>,
     grid: BetaGrid,
@@ -29,7 +30,7 @@ pub struct Workspace {
 #[derive(Debug)]
 pub struct Settled {
     /// The candidates, best first by the planner.
-    pub basins: Vec<Individual>,
+    pub basins: Vec<Candidate>,
     /// Placements looked at to find them.
     pub looks: usize,
     /// Whether the table misled the search, so that it is better repeated without.
@@ -48,13 +49,13 @@ const SAME: [f64; 3] = [0.005, 0.005, 0.02];
 /// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
 fn apart<'s>(
     table: &LookupTable<'_>,
-    sorted: Vec<(&'s Individual, Individual)>,
+    sorted: Vec<(&'s Candidate, Candidate)>,
     most: usize,
-) -> Vec<(&'s Individual, Individual)> {
-    let mut kept: Vec<([f64; 3], (&Individual, Individual))> = Vec::new();
+) -> Vec<(&'s Candidate, Candidate)> {
+    let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
     for (start, end) in sorted {
         let place = table.cylindrical(&end.pose);
-        let is_same = |(known, other): &([f64; 3], (&Individual, Individual))| {
+        let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]
                 && (known[1] - place[1]).abs() < SAME[1]
@@ -70,14 +71,14 @@ fn apart<'s>(
 /// Candidates of a search that are polished on the table and planned for every basin asked for.
 const CANDIDATES: usize = 3;
 
-impl<'a> Appraiser<'a> {
+impl<'a> Evaluator<'a> {
     /// Looks through the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
         Self { planner, table, grid: BetaGrid::of(planner) }
     }
 
     /// The same, looking through the table on a grid of beta that many times finer than the planner's.
-    pub fn looking_closer(mut self, parts: usize) -> Self {
+    pub fn with_finer_lookup(mut self, parts: usize) -> Self {
         self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
         self
     }
@@ -102,49 +103,54 @@ impl<'a> Appraiser<'a> {
 
     /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under its best plan on the planner's grid, with
     /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
-    pub fn worth(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
+    pub fn objective(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
         match (self.table, &mut workspace.table) {
             (Some(table), Some(space)) => table.objective(pose, &self.grid, scheme, space),
-            _ => self.planned_worth(pose, scheme, workspace),
+            _ => self.planned_objective(pose, scheme, workspace),
         }
     }
 
     /// The same by the planner.
-    pub fn planned_worth(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Worth {
+    pub fn planned_objective(
+        &self,
+        pose: &[f64; 4],
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Objective {
         let space = workspace.planner.get_or_insert_with(|| self.planner.workspace());
-        self.planner.worth(pose, Extremum::Smallest, scheme, space)
+        self.planner.objective(pose, Sense::Min, scheme, space)
     }
 
     /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are
     /// polished first, those that end at the same place are taken once, and where the planner does not find what the table
     /// promised, the start may go on instead.
-    pub fn settle(&self, sorted: Vec<Individual>, goal: Goal, most: usize, control: &dyn Control) -> Settled {
+    pub fn settle(&self, sorted: Vec<Candidate>, sense: Sense, most: usize, monitor: &Monitor) -> Settled {
         let Some(table) = self.table else {
             let mut basins = sorted;
             basins.truncate(most);
             return Settled { basins, looks: 0, misled: false };
         };
-        let polished: Vec<(Individual, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
+        let polished: Vec<(Candidate, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
             .par_iter()
-            .map_init(|| self.workspace(), |workspace, start| self.polish(table, start, goal, control, workspace))
+            .map_init(|| self.workspace(), |workspace, start| self.polish(table, start, sense, monitor, workspace))
             .collect();
         let mut looks: usize = polished.iter().map(|(_, looks)| looks).sum();
-        let mut ends: Vec<(&Individual, Individual)> =
+        let mut ends: Vec<(&Candidate, Candidate)> =
             sorted.iter().zip(polished).map(|(start, (end, _))| (start, end)).collect();
-        ends.sort_by(|a, b| rank(goal, a.1.worth, b.1.worth));
+        ends.sort_by(|a, b| rank(sense, a.1.objective, b.1.objective));
         let ends = apart(table, ends, most);
-        let promised = ends.first().and_then(|(_, end)| end.worth.mean());
-        let planned: Vec<(Individual, usize)> = ends
+        let promised = ends.first().and_then(|(_, end)| end.objective.mean());
+        let planned: Vec<(Candidate, usize)> = ends
             .par_iter()
             .map_init(
                 || self.workspace(),
                 |workspace, (start, end)| {
-                    let mut plan = |from: &Individual| Individual {
-                        worth: self.planned_worth(&from.pose, from.scheme.as_deref(), workspace),
+                    let mut plan = |from: &Candidate| Candidate {
+                        objective: self.planned_objective(&from.pose, from.scheme.as_deref(), workspace),
                         ..from.clone()
                     };
                     let planned = plan(end);
-                    let is_as_promised = match (planned.worth.mean(), end.worth.mean()) {
+                    let is_as_promised = match (planned.objective.mean(), end.objective.mean()) {
                         (Some(found), Some(promised)) => (found - promised).abs() < BELIEVED * promised,
                         _ => false,
                     };
@@ -152,18 +158,18 @@ impl<'a> Appraiser<'a> {
                         return (planned, 1);
                     }
                     let start = plan(start);
-                    (if rank(goal, start.worth, planned.worth).is_lt() { start } else { planned }, 2)
+                    (if rank(sense, start.objective, planned.objective).is_lt() { start } else { planned }, 2)
                 },
             )
             .collect();
         looks += planned.iter().map(|(_, looks)| looks).sum::<usize>();
-        let mut settled: Vec<Individual> = planned.into_iter().map(|(individual, _)| individual).collect();
-        settled.sort_by(|a, b| rank(goal, a.worth, b.worth));
+        let mut settled: Vec<Candidate> = planned.into_iter().map(|(candidate, _)| candidate).collect();
+        settled.sort_by(|a, b| rank(sense, a.objective, b.objective));
         // What the planner refuses goes on only where there is nothing else.
-        if let Some(first) = settled.iter().position(|i| i.worth.mean().is_none()) {
+        if let Some(first) = settled.iter().position(|i| i.objective.mean().is_none()) {
             settled.truncate(first.max(1));
         }
-        let found = settled.first().and_then(|individual| individual.worth.mean());
+        let found = settled.first().and_then(|candidate| candidate.objective.mean());
         let misled = match (promised, found) {
             (Some(promised), Some(found)) => (found - promised).abs() > MISLED * promised,
             _ => true,
@@ -175,44 +181,44 @@ impl<'a> Appraiser<'a> {
     fn polish(
         &self,
         table: &LookupTable<'_>,
-        start: &Individual,
-        goal: Goal,
-        control: &dyn Control,
+        start: &Candidate,
+        sense: Sense,
+        monitor: &Monitor,
         workspace: &mut Workspace,
-    ) -> (Individual, usize) {
+    ) -> (Candidate, usize) {
         match &mut workspace.table {
-            Some(space) if !control.should_stop() => {
+            Some(space) if !monitor.should_stop() => {
                 let scheme = start.scheme.as_deref();
-                let (pose, worth, looks) = table.coordinate_search(&start.pose, goal, scheme, &self.grid, space);
-                (Individual { pose, worth, ..start.clone() }, looks)
+                let (pose, objective, looks) = table.coordinate_search(&start.pose, sense, scheme, &self.grid, space);
+                (Candidate { pose, objective, ..start.clone() }, looks)
             }
             _ => (start.clone(), 0),
         }
     }
 
     /// States what the planner says of the best of every generation in place of what the table said of it.
-    pub fn check(&self, history: &mut [Generation], best: &[Individual], goal: Goal) {
+    pub fn check(&self, history: &mut [Generation], best: &[Candidate], sense: Sense) {
         if self.table.is_none() {
             return;
         }
         let is_new = |k: &usize| *k == 0 || best[*k].pose != best[*k - 1].pose;
         let new: Vec<usize> = (0..best.len()).filter(is_new).collect();
-        let worths: Vec<Worth> = new
+        let worths: Vec<Objective> = new
             .par_iter()
             .map_init(
                 || self.workspace(),
-                |workspace, k| self.planned_worth(&best[*k].pose, best[*k].scheme.as_deref(), workspace),
+                |workspace, k| self.planned_objective(&best[*k].pose, best[*k].scheme.as_deref(), workspace),
             )
             .collect();
-        let mut known: Option<Worth> = None;
+        let mut known: Option<Objective> = None;
         let mut checked = new.iter().zip(worths).peekable();
         for (k, figures) in history.iter_mut().enumerate() {
-            if let Some((_, worth)) = checked.next_if(|(place, _)| **place == k)
-                && known.is_none_or(|known| rank(goal, worth, known).is_lt())
+            if let Some((_, objective)) = checked.next_if(|(place, _)| **place == k)
+                && known.is_none_or(|known| rank(sense, objective, known).is_lt())
             {
-                known = Some(worth);
+                known = Some(objective);
             }
-            figures.best = known.and_then(Worth::mean);
+            figures.best = known.and_then(Objective::mean);
         }
     }
 }

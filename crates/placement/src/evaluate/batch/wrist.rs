@@ -2,7 +2,7 @@
 
 use super::arm::{Arm, Elbow};
 use super::pose::{Directions, Load, Pose, Vector, turned};
-use super::{Flips, Kernel, PointGeometry, Turning};
+use super::{BatchEvaluator, Flips, PointGeometry, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
 use stead_numerics::simd::Lanes;
@@ -43,7 +43,7 @@ impl<S: Simd> Demand<S> {
     }
 }
 
-impl Kernel<'_> {
+impl BatchEvaluator<'_> {
     /// Scores of the states with one elbow, infinite where not allowed, and the sines and cosines of their joint angles
     /// (theta_5 not negative); nothing where none is allowed. `ROBUST` where scores cover errors of the force or of the
     /// compliances.

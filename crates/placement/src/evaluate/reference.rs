@@ -1,9 +1,9 @@
 //! The score of one state: one path point, one placement, one beta, one posture.
 //!
 //! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
-//! batch evaluator of [`super::kernel`], which is tested against this one.
+//! batch evaluator of [`super::evaluate::batch`], which is tested against this one.
 
-use super::problem::{Problem, base_from_workpiece};
+use crate::problem::{Problem, base_from_workpiece};
 use nalgebra::Vector3;
 use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, cast, conditioning::inverse_condition};
 use stead_model::stiffness::displacement;
@@ -134,8 +134,8 @@ mod uncertainty_tests;
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{five_segments, five_segments_compensated};
     use super::*;
+    use crate::testing::{five_segments, five_segments_compensated};
     use nalgebra::{Matrix6, Vector6};
     use proptest::prelude::*;
     use stead_model::robot::angles::yaw_from_q4;

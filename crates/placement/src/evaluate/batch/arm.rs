@@ -1,6 +1,6 @@
 //! The first half of the batch evaluator: joints 1 to 3, which bring the wrist centre to its place.
 
-use super::{Kernel, PointGeometry};
+use super::{BatchEvaluator, PointGeometry};
 use pulp::Simd;
 use stead_numerics::simd::{Lanes, Mask};
 
@@ -40,7 +40,7 @@ pub(super) struct Elbow<S: Simd> {
     pub allowed: Mask<S>,
 }
 
-impl Kernel<'_> {
+impl BatchEvaluator<'_> {
     /// Wrist centres from `start` on.
     #[inline(always)]
     pub(super) fn centre<S: Simd>(

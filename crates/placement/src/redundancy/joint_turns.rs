@@ -1,6 +1,6 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
-use super::super::criterion;
+use super::super::evaluate::reference;
 use super::super::problem::Problem;
 use super::{STEP_ROUNDING, SegmentPlan};
 use std::ops::Range as Span;
@@ -12,26 +12,26 @@ use stead_model::robot::{
 
 /// A segment's plan with every flip and turn that it can be driven with at the same cost.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Choice {
+pub(super) struct SegmentChoice {
     pub points: Span<usize>,
     pub betas: Vec<f64>,
     /// Sum of the scores. m
     pub cost: f64,
     /// At least one.
-    pub ways: Vec<Way>,
+    pub joint_paths: Vec<JointPath>,
 }
 
-impl Choice {
+impl SegmentChoice {
     /// A plan that can be driven as it is, and in no other way.
     pub fn of(plan: SegmentPlan) -> Self {
-        let way = Way { posture: plan.posture, joints: plan.joints };
-        Self { points: plan.points, betas: plan.betas, cost: plan.cost, ways: vec![way] }
+        let way = JointPath { posture: plan.posture, joints: plan.joints };
+        Self { points: plan.points, betas: plan.betas, cost: plan.cost, joint_paths: vec![way] }
     }
 }
 
 /// One way to drive a segment.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
+pub(super) struct JointPath {
     pub posture: Posture,
     /// Real joint angles at each point. rad
     pub joints: Vec<[f64; 6]>,
@@ -47,8 +47,8 @@ pub(super) fn unwind(
     postures: &[Posture],
     cost: f64,
     steps: &[[f64; 6]],
-) -> Option<Choice> {
-    let mut ways = Vec::new();
+) -> Option<SegmentChoice> {
+    let mut joint_paths = Vec::new();
     for posture in postures {
         let solve = |(point, beta): (usize, &f64)| {
             problem.robot.inverse(&problem.base_from_flange(point, pose, *beta), *posture).ok()
@@ -61,9 +61,13 @@ pub(super) fn unwind(
             let limits: Vec<f64> = steps.iter().map(|step| step[j]).collect();
             tracks(range, &angles, &limits)
         });
-        combine(*posture, &tracks, wrapped.len(), &mut ways);
+        combine(*posture, &tracks, wrapped.len(), &mut joint_paths);
     }
-    if ways.is_empty() { None } else { Some(Choice { points: span.clone(), betas: betas.to_vec(), cost, ways }) }
+    if joint_paths.is_empty() {
+        None
+    } else {
+        Some(SegmentChoice { points: span.clone(), betas: betas.to_vec(), cost, joint_paths })
+    }
 }
 
 /// Every continuous track of one joint that stays in its range; at most one per start.
@@ -88,14 +92,14 @@ fn tracks(range: Range, angles: &[f64], limits: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Every combination of the joints' tracks.
-fn combine(posture: Posture, tracks: &[Vec<Vec<f64>>; 6], length: usize, ways: &mut Vec<Way>) {
+fn combine(posture: Posture, tracks: &[Vec<Vec<f64>>; 6], length: usize, joint_paths: &mut Vec<JointPath>) {
     let mut index = [0; 6];
     if tracks.iter().any(Vec::is_empty) {
         return;
     }
     loop {
         let joints = (0..length).map(|i| std::array::from_fn(|j| tracks[j][index[j]][i])).collect();
-        ways.push(Way { posture, joints });
+        joint_paths.push(JointPath { posture, joints });
         let Some(j) = (0..6).find(|j| index[*j] + 1 < tracks[*j].len()) else { return };
         index[j] += 1;
         index[..j].fill(0);
@@ -105,15 +109,15 @@ fn combine(posture: Posture, tracks: &[Vec<Vec<f64>>; 6], length: usize, ways: &
 /// Takes one way for each segment, so that the moves between segments are short: the least sum of the moves' lengths, by
 /// dynamic programming over the segments. Of equal sums (to a millionth) the first in order is taken: the lowest posture
 /// number, then the lowest turns.
-pub(super) fn settle(problem: &Problem, choices: Vec<Choice>) -> Vec<SegmentPlan> {
-    let mut sums: Vec<i64> = vec![0; choices.first().map_or(0, |c| c.ways.len())];
+pub(super) fn select_joint_paths(problem: &Problem, choices: Vec<SegmentChoice>) -> Vec<SegmentPlan> {
+    let mut sums: Vec<i64> = vec![0; choices.first().map_or(0, |c| c.joint_paths.len())];
     let mut back: Vec<Vec<usize>> = Vec::new();
     for pair in choices.windows(2) {
         let mut next = Vec::new();
         let mut from = Vec::new();
-        for way in &pair[1].ways {
+        for way in &pair[1].joint_paths {
             let (best, cost) = pair[0]
-                .ways
+                .joint_paths
                 .iter()
                 .zip(&sums)
                 .map(|(old, sum)| sum.saturating_add(length(problem, old.joints.last(), way.joints.first())))
@@ -135,7 +139,7 @@ pub(super) fn settle(problem: &Problem, choices: Vec<Choice>) -> Vec<SegmentPlan
         .into_iter()
         .zip(picks)
         .map(|(mut choice, pick)| {
-            let way = choice.ways.swap_remove(pick);
+            let way = choice.joint_paths.swap_remove(pick);
             SegmentPlan {
                 points: choice.points,
                 posture: way.posture,
@@ -193,7 +197,7 @@ pub(super) fn inside_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) ->
 }
 
 /// Whether a state satisfies everything but joint limits and steps.
-pub(super) fn is_allowed(problem: &Problem, state: &criterion::State<f64>) -> bool {
+pub(super) fn is_allowed(problem: &Problem, state: &reference::State<f64>) -> bool {
     state.inverse_condition >= problem.constraints.min_inverse_condition
         && problem.constraints.max_deflection.is_none_or(|limit| state.score() <= limit)
 }

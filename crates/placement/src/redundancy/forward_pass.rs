@@ -1,20 +1,20 @@
-//! The dynamic programming of [`super::band`] along a segment.
+//! The dynamic programming of [`super::transition`] along a segment.
 //!
-//! Point by point: the kernel fills a fresh set of states, and each state takes its cheapest predecessor. Only the last two
-//! points are kept, and for each state the way it came: of a long segment only for a block of points, since the ways of
+//! Point by point: the evaluator fills a fresh set of states, and each state takes its cheapest predecessor. Only the last two
+//! points are kept, and for each state the way it came: of a long segment only for a block of points, since the joint_paths of
 //! the others can be found again from the costs at the start of their block. So memory grows with the square root of the
 //! number of points, and time with their number.
 
-use super::super::kernel::{Kernel, States};
-use super::band::{JointStep, Step, advance, begin};
-use super::{Extremum, Planner, Workspace};
-use crate::problem::MOST_STEP;
+use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
+use super::transition::{JointStep, Step, advance, begin};
+use super::{Planner, Sense, Workspace};
+use crate::problem::MAX_JOINT_STEP;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
 
 /// What one pass over a segment found.
 #[derive(Debug, Clone)]
-pub(super) struct Sweep {
+pub(super) struct ForwardPass {
     /// For each class the smallest sum of signed scores and the beta number at the end.
     pub ends: [Option<(f64, usize)>; 4],
     /// For each class the first point that it cannot get to.
@@ -23,7 +23,7 @@ pub(super) struct Sweep {
     pub blocked: Vec<usize>,
 }
 
-impl Sweep {
+impl ForwardPass {
     /// The first point that the class that gets farthest cannot get to: the last one, where a class gets through but for
     /// the turns of its joints.
     pub fn farthest(&self, span: &Span<usize>) -> usize {
@@ -36,37 +36,37 @@ impl Sweep {
     }
 }
 
-/// The ways by which states were reached, and the costs from which they can be found again.
+/// The joint_paths by which states were reached, and the costs from which they can be found again.
 #[derive(Debug, Clone)]
 pub(super) struct Record {
     count: usize,
-    /// Number of steps whose ways are kept.
+    /// Number of steps whose joint_paths are kept.
     block: usize,
     /// For each step of a block and each class the shifts to the predecessors, over beta.
-    ways: Vec<i16>,
+    joint_paths: Vec<i16>,
     /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
     costs: Vec<f64>,
 }
 
-/// Segments whose ways take no more numbers than this are kept whole.
-const MOST_WAYS: usize = 1 << 25;
+/// Segments whose joint_paths take no more numbers than this are kept whole.
+const MAX_WAYS: usize = 1 << 25;
 
 impl Record {
     /// Room for segments of up to `longest` points with `count` values of beta.
     pub fn new(longest: usize, count: usize) -> Self {
-        Self::with_most(longest, count, MOST_WAYS)
+        Self::with_most(longest, count, MAX_WAYS)
     }
 
     /// The same with at most so many numbers kept, if a block may be that short.
     pub fn with_most(longest: usize, count: usize, most: usize) -> Self {
         let block = (most / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
-        Self { count, block, ways: vec![0; block * 4 * count], costs: Vec::new() }
+        Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new() }
     }
 
     /// The row for the way to the point at `place` of its segment.
     fn way(&mut self, place: usize, class: PostureClass) -> &mut [i16] {
         let row = place.wrapping_sub(1) % self.block;
-        &mut self.ways[(row * 4 + class.index()) * self.count..][..self.count]
+        &mut self.joint_paths[(row * 4 + class.index()) * self.count..][..self.count]
     }
 
     /// Whether a block begins at this place of a segment of `length` points.
@@ -75,7 +75,7 @@ impl Record {
     }
 
     /// Keeps the costs at the beginning of a block.
-    fn keep(&mut self, states: &States) {
+    fn keep(&mut self, states: &StateGrid) {
         for class in PostureClass::ALL {
             if states.is_alive(class) {
                 self.costs.extend_from_slice(states.inner_scores(class));
@@ -94,56 +94,57 @@ impl Record {
 /// What is planned in a pass: for the workpiece at `pose`, one segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pass<'p> {
-    pub kernel: &'p Kernel<'p>,
+    pub evaluator: &'p BatchEvaluator<'p>,
     pub span: &'p Span<usize>,
     pub pose: &'p [f64; 4],
-    pub extremum: Extremum,
+    pub sense: Sense,
     /// Whether steps of beta are saved up between points too close for one.
-    pub is_paced: bool,
+    pub is_accumulated: bool,
 }
 
 impl Planner<'_> {
     /// What bounds the step to path point `point` from the one before.
-    pub fn step(&self, point: usize, extremum: Extremum) -> Step {
-        self.paced_step(point, extremum, false)
+    pub fn step(&self, point: usize, sense: Sense) -> Step {
+        self.accumulated_step(point, sense, false)
     }
 
-    fn paced_step(&self, point: usize, extremum: Extremum, is_paced: bool) -> Step {
-        let (reach, stride) = if is_paced { self.pace.step(point) } else { (self.pace.reach(point), 1) };
+    fn accumulated_step(&self, point: usize, sense: Sense, is_accumulated: bool) -> Step {
+        let (reach, stride) =
+            if is_accumulated { self.rate_limit.step(point) } else { (self.rate_limit.reach(point), 1) };
         let mut limits = self.steps[point];
         for other in point + 1 - stride..point {
-            limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MOST_STEP.min(*sum + limit));
+            limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
         }
         Step {
             reach,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
-            sign: extremum.sign(),
+            sign: sense.sign(),
             instructions: self.instructions,
         }
     }
 
-    /// Passes over the points of a segment with one of the kernels, in every posture class or in that of one posture. With
+    /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one posture. With
     /// `count_only`, only the blocked points are found.
-    pub(super) fn sweep(
+    pub(super) fn forward_pass(
         &self,
         pass: Pass<'_>,
         only: Option<Posture>,
         workspace: &mut Workspace,
         count_only: bool,
-    ) -> Sweep {
-        let mut sweep = Sweep { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
+    ) -> ForwardPass {
+        let mut forward_pass = ForwardPass { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
         let asked = PostureClass::ALL.map(|class| only.is_none_or(|posture| posture.class() == class));
         let Workspace { before, now, record } = workspace;
         record.costs.clear();
         for (place, point) in pass.span.clone().enumerate() {
-            pass.kernel.evaluate_classes(point, pass.pose, asked, now);
+            pass.evaluator.evaluate_classes(point, pass.pose, asked, now);
             if PostureClass::ALL.iter().all(|class| !now.is_alive(*class)) {
-                sweep.blocked.push(point);
+                forward_pass.blocked.push(point);
             }
             if count_only {
                 continue;
             }
-            let step = self.paced_step(point, pass.extremum, pass.is_paced);
+            let step = self.accumulated_step(point, pass.sense, pass.is_accumulated);
             for class in PostureClass::ALL {
                 if now.is_alive(class) {
                     if place == 0 {
@@ -154,8 +155,8 @@ impl Planner<'_> {
                 }
                 if now.is_alive(class) {
                     now.wrap_around(class);
-                } else if sweep.stuck[class.index()].is_none() {
-                    sweep.stuck[class.index()] = Some(point);
+                } else if forward_pass.stuck[class.index()].is_none() {
+                    forward_pass.stuck[class.index()] = Some(point);
                 }
             }
             if record.begins(place, pass.span.len()) {
@@ -167,10 +168,10 @@ impl Planner<'_> {
             for class in PostureClass::ALL.into_iter().filter(|class| before.is_alive(*class)) {
                 let costs = before.inner_scores(class);
                 let end = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-                sweep.ends[class.index()] = Some((costs[end], end));
+                forward_pass.ends[class.index()] = Some((costs[end], end));
             }
         }
-        sweep
+        forward_pass
     }
 
     /// The beta numbers of the plan that a class ended with, along the segment last swept, in a pass like that.
@@ -178,17 +179,17 @@ impl Planner<'_> {
         &self,
         pass: Pass<'_>,
         class: PostureClass,
-        sweep: &Sweep,
+        forward_pass: &ForwardPass,
         workspace: &mut Workspace,
     ) -> Vec<usize> {
         let count = self.grid.beta_count as isize;
-        let mut beta = sweep.ends[class.index()].map_or(0, |(_, end)| end);
+        let mut beta = forward_pass.ends[class.index()].map_or(0, |(_, end)| end);
         let mut betas = vec![beta; pass.span.len()];
         let is_whole = workspace.record.costs.is_empty();
         for place in (1..pass.span.len()).rev() {
             let block = workspace.record.block;
             if !is_whole && (place == pass.span.len() - 1 || place.is_multiple_of(block)) {
-                self.sweep_again(pass, class, (place - 1) / block, workspace);
+                self.repeat_block(pass, class, (place - 1) / block, workspace);
             }
             let shift = workspace.record.way(place, class)[beta];
             beta = (beta as isize + isize::from(shift)).rem_euclid(count) as usize;
@@ -197,8 +198,8 @@ impl Planner<'_> {
         betas
     }
 
-    /// Finds the ways of one class in one block again.
-    fn sweep_again(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
+    /// Finds the joint_paths of one class in one block again.
+    fn repeat_block(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
         let mut asked = [false; 4];
         asked[class.index()] = true;
         let Workspace { before, now, record } = workspace;
@@ -206,7 +207,7 @@ impl Planner<'_> {
         let last = (first + record.block).min(pass.span.len() - 1);
         for place in first..=last {
             let point = pass.span.start + place;
-            pass.kernel.evaluate_classes(point, pass.pose, asked, now);
+            pass.evaluator.evaluate_classes(point, pass.pose, asked, now);
             if place == first {
                 let (pad, count) = (now.pad(), now.count());
                 now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));
@@ -215,7 +216,7 @@ impl Planner<'_> {
                     before,
                     now,
                     class,
-                    &self.paced_step(point, pass.extremum, pass.is_paced),
+                    &self.accumulated_step(point, pass.sense, pass.is_accumulated),
                     record.way(place, class),
                 );
             }

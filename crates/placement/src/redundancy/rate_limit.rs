@@ -9,40 +9,40 @@ use super::STEP_ROUNDING;
 use std::ops::Range as Span;
 use stead_model::robot::angles::wrap;
 
-/// The pace of beta along the whole path.
+/// The rate_limit of beta along the whole path.
 #[derive(Debug, Clone)]
-pub(super) struct Pace {
+pub(super) struct RateLimit {
     /// Largest change of the beta number from the point before, by the rate alone.
     reaches: Vec<u32>,
     /// Number of points over which a change at this point is spread, itself among them; zero where none may be.
     strides: Vec<u32>,
 }
 
-impl Pace {
+impl RateLimit {
     pub fn new(problem: &Problem, grid: &Redundancy) -> Self {
         let count = problem.task.points().len();
-        let mut pace = Self { reaches: vec![0; count], strides: vec![1; count] };
+        let mut rate_limit = Self { reaches: vec![0; count], strides: vec![1; count] };
         let most = (grid.beta_count / 2) as f64;
         for span in problem.task.segments() {
             let (mut saved, mut stride) = (0.0, 0);
             for point in span.clone().skip(1) {
                 let steps = problem.beta_step_limit(point) / grid.beta_step();
                 let reach = (steps + STEP_ROUNDING).min(most) as u32;
-                pace.reaches[point] = reach;
+                rate_limit.reaches[point] = reach;
                 if reach > 0 {
                     (saved, stride) = (0.0, 0);
                     continue;
                 }
                 (saved, stride) = (saved + steps, stride + 1);
                 if saved + STEP_ROUNDING >= 1.0 {
-                    pace.strides[point] = stride;
+                    rate_limit.strides[point] = stride;
                     (saved, stride) = (0.0, 0);
                 } else {
-                    pace.strides[point] = 0;
+                    rate_limit.strides[point] = 0;
                 }
             }
         }
-        pace
+        rate_limit
     }
 
     /// Largest change of the beta number between neighbours, by the rate alone.

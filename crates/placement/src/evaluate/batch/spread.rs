@@ -1,5 +1,5 @@
 //! What the uncertainty of the compliances adds to a score, in lanes: the same as
-//! [`State::margin`](super::super::criterion::State), several states at a time.
+//! [`State::margin`](super::super::evaluate::reference::State), several states at a time.
 
 use super::limit::Limit;
 use crate::problem::Problem;

@@ -1,8 +1,8 @@
 //! Standard deviations of the normal part: against drawn compliances, the matrix product and differences.
 
-use super::super::problem::Criterion;
-use super::super::testing::{five_segments, five_segments_compensated, with_uncertainty};
 use super::*;
+use crate::problem::Criterion;
+use crate::testing::{five_segments, five_segments_compensated, with_uncertainty};
 use nalgebra::Vector6;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};

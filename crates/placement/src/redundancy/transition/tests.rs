@@ -60,8 +60,8 @@ impl Case {
         }
     }
 
-    fn states(&self, point: usize, wrap_around: fn(&mut States)) -> States {
-        let mut states = States::new(self.count, 5);
+    fn states(&self, point: usize, wrap_around: fn(&mut StateGrid)) -> StateGrid {
+        let mut states = StateGrid::new(self.count, 5);
         for (beta, state) in self.points[point].iter().enumerate() {
             if let Some((score, joints)) = state {
                 states.set(CLASS, beta, *score, *joints);
@@ -93,7 +93,7 @@ impl Case {
     }
 
     /// What is wrong with a step under the given rules, if anything is.
-    fn fault<R: Rules>(&self, instructions: Instructions, wrap_around: fn(&mut States)) -> Option<String> {
+    fn fault<R: Rules>(&self, instructions: Instructions, wrap_around: fn(&mut StateGrid)) -> Option<String> {
         let joints = std::array::from_fn(|j| JointStep::new(self.limits[j], self.ranges[j]));
         let step = Step { reach: self.reach, joints, sign: self.sign, instructions };
         let before = self.states(0, wrap_around);
@@ -122,12 +122,12 @@ impl Case {
     }
 }
 
-fn wrap_around(states: &mut States) {
+fn wrap_around(states: &mut StateGrid) {
     states.wrap_around(CLASS);
 }
 
 /// Rows continued by the wrong neighbours, one off.
-fn wrap_one_off(states: &mut States) {
+fn wrap_one_off(states: &mut StateGrid) {
     wrap_around(states);
     let (count, pad) = (states.count(), states.pad());
     let scores = states.scores_mut(CLASS);
@@ -139,7 +139,7 @@ const CASES: u64 = 400;
 
 #[test]
 fn a_step_agrees_with_plain_loops_on_every_processor() {
-    let mut ways = 0;
+    let mut joint_paths = 0;
     for seed in 0..CASES {
         let case = Case::random(seed);
         for instructions in Instructions::all() {
@@ -147,10 +147,10 @@ fn a_step_agrees_with_plain_loops_on_every_processor() {
         }
         let unbound = Case { limits: [7.0; 6], ..Case::random(seed) };
         let bound = (0..case.count).filter(|k| case.expected(*k) != unbound.expected(*k));
-        ways += bound.filter(|k| case.expected(*k).is_finite()).count();
+        joint_paths += bound.filter(|k| case.expected(*k).is_finite()).count();
     }
     // The cases have joints that force another way, and often.
-    assert!(ways > 1000, "{ways}");
+    assert!(joint_paths > 1000, "{joint_paths}");
 }
 
 /// Rules with one of them broken.
@@ -171,7 +171,7 @@ breach!(NoJointSteps: STEPS_COUNT, bool, false);
 breach!(AlwaysSmallest: SIGNED, bool, false);
 
 /// The share of the cases in which a breach is noticed.
-fn noticed<R: Rules>(wrap_around: fn(&mut States)) -> f64 {
+fn noticed<R: Rules>(wrap_around: fn(&mut StateGrid)) -> f64 {
     let best = Instructions::best();
     let faults = (0..CASES).filter(|seed| Case::random(*seed).fault::<R>(best, wrap_around).is_some());
     faults.count() as f64 / CASES as f64

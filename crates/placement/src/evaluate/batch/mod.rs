@@ -2,7 +2,7 @@
 //!
 //! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
 //! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
-//! quantities, one state at a time and by way of the Jacobian, come from [`super::criterion::state`]; the tests hold the
+//! quantities, one state at a time and by way of the Jacobian, come from [`super::evaluate::reference::state`]; the tests hold the
 //! two against each other.
 //!
 //! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the frame
@@ -18,21 +18,21 @@ mod spread;
 mod states;
 mod wrist;
 
-pub use states::States;
+pub use states::StateGrid;
 
-use super::problem::{Problem, Redundancy, base_from_workpiece};
+use crate::problem::{Problem, Redundancy, base_from_workpiece};
 use laws::Laws;
 use limit::Limit;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 use spread::Spread;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
-use stead_numerics::simd::{Instructions, Lanes, MOST_LANES};
+use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
 use wrist::Demand;
 
 /// What does not change from one placement to the next.
 #[derive(Debug, Clone)]
-pub struct Kernel<'a> {
+pub struct BatchEvaluator<'a> {
     problem: &'a Problem,
     count: usize,
     cosine: Vec<f64>,
@@ -57,7 +57,7 @@ pub enum Flips {
 }
 
 impl Flips {
-    /// What kernels an arm needs: one for both postures of a class, or one for each.
+    /// What evaluators an arm needs: one for both postures of a class, or one for each.
     pub fn of(robot: &Robot) -> &'static [Self] {
         if robot.flips_yield_alike() { &[Self::Both] } else { &[Self::Plain, Self::Flipped] }
     }
@@ -107,11 +107,11 @@ struct PointGeometry {
     uncertainty: f64,
 }
 
-impl<'a> Kernel<'a> {
+impl<'a> BatchEvaluator<'a> {
     /// Prepares the evaluation of a problem on a grid of beta, in one or both postures of each class.
     pub fn new(problem: &'a Problem, grid: &Redundancy, flips: Flips) -> Self {
         let count = grid.beta_count;
-        let padded = count.next_multiple_of(MOST_LANES);
+        let padded = count.next_multiple_of(MAX_LANES);
         let angle = |k: usize| libm::sincos(grid.beta(k % count));
         let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
         Self {
@@ -143,17 +143,17 @@ impl<'a> Kernel<'a> {
     /// Allowed states get their score (m) and the sines and cosines of their joint angles (theta_5 not negative), all others
     /// an infinite score. A state is allowed when one of the postures asked for is inside the limits of every joint by
     /// itself; turns, and limits that tell two postures apart, are for the planner to look at.
-    pub fn evaluate(&self, point: usize, pose: &[f64; 4], states: &mut States) {
+    pub fn evaluate(&self, point: usize, pose: &[f64; 4], states: &mut StateGrid) {
         self.evaluate_classes(point, pose, [true; 4], states);
     }
 
     /// The same with states of some posture classes only, by their [`PostureClass::index`].
-    pub fn evaluate_classes(&self, point: usize, pose: &[f64; 4], classes: [bool; 4], states: &mut States) {
+    pub fn evaluate_classes(&self, point: usize, pose: &[f64; 4], classes: [bool; 4], states: &mut StateGrid) {
         let geometry = self.point_geometry(point, pose);
         for class in PostureClass::ALL {
             states.clear(class);
         }
-        self.instructions.run(Evaluation { kernel: self, geometry: &geometry, classes, states });
+        self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
     }
 
     fn point_geometry(&self, point: usize, pose: &[f64; 4]) -> PointGeometry {
@@ -184,10 +184,10 @@ impl<'a> Kernel<'a> {
 
 /// The evaluation of one point, for any instructions of the processor.
 struct Evaluation<'k> {
-    kernel: &'k Kernel<'k>,
+    evaluator: &'k BatchEvaluator<'k>,
     geometry: &'k PointGeometry,
     classes: [bool; 4],
-    states: &'k mut States,
+    states: &'k mut StateGrid,
 }
 
 impl WithSimd for Evaluation<'_> {
@@ -195,7 +195,7 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        if self.geometry.uncertainty > 0.0 || self.kernel.spread.is_some() {
+        if self.geometry.uncertainty > 0.0 || self.evaluator.spread.is_some() {
             self.batches::<S, true>(simd);
         } else {
             self.batches::<S, false>(simd);
@@ -206,13 +206,13 @@ impl WithSimd for Evaluation<'_> {
 impl Evaluation<'_> {
     #[inline(always)]
     fn batches<S: Simd, const ROBUST: bool>(self, simd: S) {
-        let Self { kernel, geometry, classes, states } = self;
-        for start in (0..kernel.count).step_by(Lanes::<S>::COUNT) {
-            let cosine = Lanes::load(simd, &kernel.cosine, start);
-            let sine = Lanes::load(simd, &kernel.sine, start);
-            let centre = kernel.centre(simd, geometry, cosine, sine);
+        let Self { evaluator, geometry, classes, states } = self;
+        for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
+            let cosine = Lanes::load(simd, &evaluator.cosine, start);
+            let sine = Lanes::load(simd, &evaluator.sine, start);
+            let centre = evaluator.centre(simd, geometry, cosine, sine);
             for back in [false, true] {
-                let arm = kernel.arm(simd, &centre, back);
+                let arm = evaluator.arm(simd, &centre, back);
                 if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
                     continue;
                 }
@@ -222,7 +222,7 @@ impl Evaluation<'_> {
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
-                    let found = kernel.wrist::<S, ROBUST>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    let found = evaluator.wrist::<S, ROBUST>(simd, geometry.uncertainty, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
                         states.set_lanes(class, start, score, &directions);
                     }
