@@ -4,18 +4,17 @@ use super::arguments::CircularityOptions;
 use super::{Failure, files_written, print, say};
 use std::path::Path;
 use stead_assessment::circle::CircleError;
-use stead_assessment::roundness::{Roundness, RoundnessError, assess};
+use stead_assessment::roundness::{RoundnessError, assess};
 use stead_format::input::InputError;
 use stead_format::{PointFile, read_points};
 use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
 use stead_report::document;
 use stead_report::output::Folder;
-use stead_report::units::figures;
 
 pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let file = read_points(&options.points)?;
     let found = assess(&file.measured, &options.exclude_deg).map_err(|error| located(&options.points, &file, error))?;
-    mention_flatness(&found);
+    found.warnings().iter().for_each(|warning| say(&format!("warning: {warning}")));
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
         files_written(write_circularity(&folder, &file, &found))?;
@@ -27,20 +26,6 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
         print((circularity_text(&file, &found) + &where_to.unwrap_or_default()).as_bytes());
     }
     Ok(())
-}
-
-/// Points farther off their plane than this, in radii, are hardly one profile.
-const NOT_FLAT: f64 = 0.1;
-
-/// Points in space that lie in no plane have a circularity too, but not a meaningful one.
-fn mention_flatness(found: &Roundness) {
-    let radius = found.circles.lsc.circle.radius;
-    if let Some(flatness) = found.flatness().filter(|flatness| *flatness > NOT_FLAT * radius) {
-        say(&format!(
-            "note: the points are spread over {} mm across their plane, more than a tenth of the radius: are they one profile?",
-            figures(flatness)
-        ));
-    }
 }
 
 /// What is wrong with the points, in their file.

@@ -3,9 +3,10 @@
 use super::comparison::{Assessment, Configuration, Load};
 use super::map::Elbow;
 use super::ranking::{Capable, Competitor, order};
+use serde::Serialize;
 
 /// Published tables of an assessment.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PublishedTables {
     /// Readings of single configurations.
     pub readings: Vec<Reading>,
@@ -16,7 +17,7 @@ pub struct PublishedTables {
 }
 
 /// What a reading is of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Quantity {
     /// Smallest circularity of the map.
     Minimum,
@@ -31,7 +32,7 @@ pub enum Quantity {
 }
 
 /// One number of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reading {
     /// Name of the robot.
     pub robot: String,
@@ -46,7 +47,7 @@ pub struct Reading {
 }
 
 /// How far our results and the published ones agree.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Agreement {
     /// Root mean square of ours / printed - 1 over the smallest and largest circularities and the optimal zones under the test
     /// load.

@@ -2,10 +2,12 @@
 
 use super::circle::plane::FittedPlane;
 use super::circle::{CircleError, Circles, Fit, least_squares};
+use serde::Serialize;
 use std::f64::consts::TAU;
+use stead_numerics::message::Warning;
 
 /// Measured points in one unit of length.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Measured {
     /// x and y.
     Planar(Vec<[f64; 2]>),
@@ -23,7 +25,7 @@ pub struct Sector {
 }
 
 /// A measured point as it was assessed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Assessed {
     /// Its place in the plane: x and y as measured, or in the frame of the fitted plane.
     pub place: [f64; 2],
@@ -36,7 +38,7 @@ pub struct Assessed {
 }
 
 /// What came out. Lengths are in the unit of the points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Roundness {
     /// The plane fitted to the points not left out, where they have a z.
     pub plane: Option<FittedPlane>,
@@ -130,10 +132,26 @@ impl Sector {
     }
 }
 
+/// Points farther off their plane than this, in radii, are hardly one profile.
+const NOT_FLAT: f64 = 0.1;
+
 impl Roundness {
     /// Points that no sector leaves out.
     pub fn kept(&self) -> impl Iterator<Item = &Assessed> {
         self.points.iter().filter(|point| !point.is_excluded)
+    }
+
+    /// Warns of points in space that are too far off their plane to be one profile: `not-flat`.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let radius = self.circles.lsc.circle.radius;
+        let spread = self.flatness().filter(|flatness| *flatness > NOT_FLAT * radius);
+        let message = |flatness: f64| {
+            format!(
+                "the points are spread over {flatness:.4} across their plane, more than a tenth of the radius of {radius:.4}: are \
+                 they one profile?"
+            )
+        };
+        spread.map(|flatness| Warning::new("not-flat", message(flatness))).into_iter().collect()
     }
 
     /// Peak to valley of the points not left out, across the plane; none for points without z.

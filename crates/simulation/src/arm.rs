@@ -2,11 +2,12 @@
 
 use super::drive::Drive;
 use nalgebra::{SMatrix, SVector, Vector3};
+use serde::Serialize;
 use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
 
 /// How much of the arm is modelled; each adds to the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Variant {
     /// A spring and a damper about each joint axis, no gravity.
     Springs,
@@ -34,7 +35,7 @@ impl Variant {
 }
 
 /// What an arm would need for its motion to be computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize)]
 pub enum Missing {
     /// The robot has no masses.
     #[error("the robot has no masses and inertias")]

@@ -7,6 +7,7 @@
 //! and then reported.
 
 use nalgebra::{SMatrix, SVector};
+use serde::Serialize;
 
 /// Angles, speeds and accelerations of a system. rad, rad/s, rad/s^2
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +65,7 @@ impl Default for Settings {
 }
 
 /// Why a step could not be made.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
 pub enum StepError {
     /// Corrections do not become small, however short the step.
     #[error("at {time} s the motion does not converge, not even in steps of {step} s")]

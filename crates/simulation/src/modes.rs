@@ -6,6 +6,7 @@
 
 use super::arm::Arm;
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// An arm at rest, for small motions about it.
@@ -22,7 +23,7 @@ pub struct LinearArm<const N: usize> {
 }
 
 /// A way in which an arm swings by itself, or creeps back without swinging.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mode {
     /// |s| / (2 pi). Hz
     pub frequency: f64,

@@ -5,6 +5,8 @@ use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
 use super::stability_analysis::{StabilityError, linear_at};
+use serde::Serialize;
+use stead_numerics::message::Warning;
 
 /// How to look at a pass.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +20,7 @@ pub struct EvaluationSettings {
 }
 
 /// Figures of a pass that publications give.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PassFigures {
     /// Forces along the feed and towards the wall, for the variant that was run.
     pub forces: Option<[Statistics; 2]>,
@@ -27,7 +29,7 @@ pub struct PassFigures {
 }
 
 /// A force over a time. N
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistics {
     /// Smallest.
     pub min: f64,
@@ -40,7 +42,7 @@ pub struct Statistics {
 }
 
 /// A simulated pass and what it tells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulation {
     /// Forces, places, and how it ended.
     pub run: Run,
@@ -61,6 +63,8 @@ pub struct Simulation {
     pub filtered: Profile,
     /// How rough both are, the wall as it is and filtered; none if no wall was made.
     pub roughness: Option<[Roughness; 2]>,
+    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled` or `slow-growth`.
+    pub warnings: Vec<Warning>,
 }
 
 /// Why a pass cannot be simulated.
@@ -97,7 +101,7 @@ impl Simulation {
         let wall = wall(job, settings, &run);
         let filtered = wall.filtered(settings.cutoff);
         let roughness = wall.roughness().zip(filtered.roughness()).map(|(raw, filtered)| [raw, filtered]);
-        Ok(Self {
+        let mut found = Self {
             forces: statistics(&run, window),
             period_variation: period_variation(
                 &run,
@@ -111,7 +115,34 @@ impl Simulation {
             filtered,
             roughness,
             run,
-        })
+            warnings: Vec::new(),
+        };
+        found.warnings = found.judge();
+        Ok(found)
+    }
+
+    /// What a program or a person should know before using the figures.
+    fn judge(&self) -> Vec<Warning> {
+        let reason = match &self.run.end {
+            End::Complete => None,
+            End::Limit(limit) => Some(limit.to_string()),
+            End::Step(error) => Some(error.to_string()),
+        };
+        if let Some(reason) = reason {
+            return vec![Warning::new("ended-early", format!("the run ended before the pass: {reason}"))];
+        }
+        match (self.verdict.is_stable(), self.is_stable()) {
+            (true, false) => vec![Warning::new(
+                "not-settled",
+                "small motions die out, but the forces still change from turn to turn: a longer ramp or pass tells whether the \
+                 start is still felt",
+            )],
+            (false, true) => vec![Warning::new(
+                "slow-growth",
+                "small motions grow, but have not become large by the end of the pass",
+            )],
+            _ => Vec::new(),
+        }
     }
 
     /// Whether the cut stayed calm: it came to its end, with forces that hardly change from turn to turn.

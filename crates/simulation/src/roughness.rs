@@ -2,11 +2,12 @@
 
 use super::milling::PassCut;
 use super::surface::Trail;
+use serde::Serialize;
 use std::f64::consts::{LN_2, PI, TAU};
 use stead_model::cutting::Cutter;
 
 /// Heights of a wall at equal distances along the feed, y over x.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Profile {
     /// Where it starts. m
     pub start: f64,
@@ -17,7 +18,7 @@ pub struct Profile {
 }
 
 /// How rough a profile is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Roughness {
     /// Arithmetic mean height R_a. m
     pub mean: f64,

@@ -6,6 +6,7 @@ use super::modes::{LinearArm, Mode};
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
+use serde::Serialize;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::robot::{Robot, Spindle};
 
@@ -25,7 +26,7 @@ pub struct AnalysisSettings {
 }
 
 /// Frequency response of the tool tip at one frequency, in the plane of the cut.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrequencyResponse {
     /// Frequency of the force. Hz
     pub frequency: f64,
@@ -38,7 +39,7 @@ pub struct FrequencyResponse {
 }
 
 /// How deep may be cut, and whether the cut at hand is calm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CutStability {
     /// By semi-discretisation; none where all depths up to the largest are stable. m
     pub semi_discretisation: Option<f64>,
@@ -49,7 +50,7 @@ pub struct CutStability {
 }
 
 /// Result of a stability analysis.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityAnalysis {
     /// All modes, by natural frequency.
     pub modes: Vec<Mode>,

@@ -16,6 +16,7 @@ mod tests;
 pub use deflected_circle::{DeflectedCircle, Profile};
 
 use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
 use std::f64::consts::PI;
 use stead_model::robot::Pose;
 use stead_model::stiffness::loaded::Buckled;
@@ -111,7 +112,7 @@ pub struct Benchmark {
 }
 
 /// Why a circle cannot be milled at a place in a posture class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Obstacle {
     /// Part of the circle is out of the arm's geometric reach.
     Reach,

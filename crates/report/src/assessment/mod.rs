@@ -10,8 +10,7 @@ pub use text::assessment_text;
 use super::output::{Folder, ReportError};
 use super::{cutting, document as documents, picture};
 use std::path::PathBuf;
-use stead_assessment::comparison::{Assessment, Comparison, Load};
-use stead_assessment::map::Elbow;
+use stead_assessment::comparison::{Assessment, Comparison};
 use stead_assessment::published::{Agreement, PublishedTables};
 use stead_format::input::InputFile;
 use stead_model::cutting::ForceHistory;
@@ -82,22 +81,6 @@ fn file_name(assessment: &Assessment, index: usize) -> String {
     let name = plain(index);
     let taken = name.is_empty() || (0..index).any(|earlier| plain(earlier) == name);
     if taken { format!("{name}-{}", index + 1).trim_start_matches('-').to_owned() } else { name }
-}
-
-/// `up` or `down`.
-fn elbow(elbow: Elbow) -> &'static str {
-    match elbow {
-        Elbow::Up => "up",
-        Elbow::Down => "down",
-    }
-}
-
-/// `test` or `rated`.
-fn load(load: Load) -> &'static str {
-    match load {
-        Load::Test => "test",
-        Load::Rated => "rated",
-    }
 }
 
 #[cfg(test)]

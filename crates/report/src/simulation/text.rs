@@ -1,6 +1,5 @@
 //! The text for people.
 
-use super::super::stability::kind_word;
 use super::{Making, end_words};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
@@ -80,13 +79,13 @@ fn verdict(found: &Simulation) -> String {
         (None, None) => format!("The cut is {calm}.\n"),
     };
     let rate = figures(found.verdict.growth_rate().abs());
-    text.push_str(&if found.verdict.is_stable() && found.run.end == End::Complete && !found.is_stable() {
-        format!("Small motions die out, at {rate} per second: a longer ramp or pass tells whether the start is still felt.\n")
-    } else if found.verdict.is_stable() {
+    text.push_str(&if found.verdict.is_stable() {
         format!("Small motions die out, at {rate} per second.\n")
     } else {
-        let bounded = if found.is_stable() { ", but have not become large by the end of the pass" } else { "" };
-        format!("Small motions grow ({}), at {rate} per second{bounded}.\n", kind_word(found.verdict.kind()))
+        format!("Small motions grow ({}), at {rate} per second.\n", found.verdict.kind().word())
     });
+    for warning in &found.warnings {
+        text.push_str(&format!("warning: {warning}\n"));
+    }
     text
 }

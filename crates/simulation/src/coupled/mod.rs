@@ -16,6 +16,7 @@ use super::motion::Motion;
 use super::setup::Setup;
 use super::surface::{Node, Trail};
 use nalgebra::Vector3;
+use serde::Serialize;
 use stead_model::cutting::{CutFrame, Cutter};
 
 /// What is to be simulated.
@@ -32,7 +33,7 @@ pub struct Job<'a> {
 }
 
 /// One moment of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// On the tool: along the feed, the outward normal of the wall, the tool axis. N
     pub force: [f64; 3],
@@ -41,7 +42,7 @@ pub struct Sample {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum End {
     /// With the pass.
     Complete,
@@ -52,13 +53,14 @@ pub enum End {
 }
 
 /// A simulated pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Run {
     /// The length of a step. s
     pub step: f64,
     /// One sample a step, the first at time 0.
     pub samples: Vec<Sample>,
     /// Where the tool centre was.
+    #[serde(skip)]
     pub trail: Trail,
     /// How it ended.
     pub end: End,

@@ -1,7 +1,9 @@
 //! Where milling stops to be what is represented here.
 
+use serde::Serialize;
+
 /// What is no longer represented: stated, never extrapolated.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
 pub enum Limit {
     /// A chip deeper than a gullet: beyond this the body of the cutter would be in the work.
     #[error("at {time} s a chip is {chip} m thick, more than half the radius of the cutter, {radius} m")]

@@ -4,12 +4,13 @@ use super::directional::{Directional, exit};
 use super::plant::Plant;
 use crate::milling::PassCut;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
 /// How small motions become large ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Kind {
     /// They do not.
     None,
@@ -19,8 +20,19 @@ pub enum Kind {
     Hopf,
 }
 
+impl Kind {
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::None => "none",
+            Kind::Flip => "flip",
+            Kind::Hopf => "hopf",
+        }
+    }
+}
+
 /// The largest Floquet multiplier of a cut.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Verdict {
     /// By what small motions are multiplied in one period.
     pub multiplier: Complex<f64>,

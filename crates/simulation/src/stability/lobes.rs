@@ -5,11 +5,12 @@ use super::plant::Plant;
 use super::zero_order::ZeroOrder;
 use crate::milling::PassCut;
 use rayon::prelude::*;
+use serde::Serialize;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
 /// How deep can be cut at a spindle speed; `None` where all depths up to the largest are stable.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Lobe {
     /// Angular speed of the spindle. rad/s
     pub spindle_speed: f64,
