@@ -23,7 +23,7 @@ pub fn write_circularity(folder: &Folder, file: &PointFile, found: &Roundness) -
     let files = [
         ("circularity.json", bytes(&circularity_json(file, found))),
         ("deviations.csv", deviations(file, found)?),
-        ("polar.svg", picture::polar(&file.input.name, found)?.into_bytes()),
+        ("polar.svg", picture::polar(&file.input.name, found).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

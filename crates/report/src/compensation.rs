@@ -35,7 +35,7 @@ pub fn write_compensation(
     let files = [
         ("corrected-path.csv", corrected_path(outcome)?),
         ("summary.json", bytes(&compensation_json(run, outcome))),
-        ("compensation.svg", picture::compensation(outcome)?.into_bytes()),
+        ("compensation.svg", picture::compensation(outcome).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

@@ -48,7 +48,7 @@ pub fn write_assessment(
     for (index, robot) in assessment.robots.iter().enumerate() {
         let name = format!("map-{}", file_name(assessment, index));
         files.push((format!("{name}.csv"), tables::map(robot)?));
-        files.push((format!("{name}.svg"), picture::circularity_map(comparison, robot)?.into_bytes()));
+        files.push((format!("{name}.svg"), picture::circularity_map(comparison, robot).into_bytes()));
     }
     let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
@@ -57,10 +57,10 @@ pub fn write_assessment(
     add("middle-zones.csv", tables::middle_zones(assessment, published)?);
     add("accuracy.csv", tables::accuracy(assessment, published)?);
     add("selection.csv", tables::selection(assessment, published)?);
-    add("indicators.svg", picture::indicators(assessment)?.into_bytes());
+    add("indicators.svg", picture::indicators(assessment).into_bytes());
     add("summary.json", documents::bytes(&summary_json(comparison, assessment, context)));
     if let Some(force_history) = &context.force_history {
-        add("cutting.svg", picture::cutting(force_history)?.into_bytes());
+        add("cutting.svg", picture::cutting(force_history).into_bytes());
         add("cutting-engagement.csv", cutting::entering(force_history)?);
         add("cutting-turn.csv", cutting::turn(force_history)?);
     }

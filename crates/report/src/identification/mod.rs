@@ -31,7 +31,7 @@ pub fn write_identified(folder: &Folder, run: &IdentifyRun, found: &Identified) 
         ("report.json", documents::bytes(&identify_json(run, found))),
         ("compliances.csv", tables::compliances(found)?),
         ("residuals.csv", tables::residuals(run, found)?),
-        ("deflections.svg", picture::deflections(found)?.into_bytes()),
+        ("deflections.svg", picture::deflections(found).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

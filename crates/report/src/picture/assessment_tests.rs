@@ -56,8 +56,8 @@ fn small() -> &'static (Comparison, Assessment) {
 fn maps_are_well_formed_the_same_each_time_and_labelled() {
     let (comparison, assessment) = small();
     for result in &assessment.robots {
-        let svg = circularity_map(comparison, result).unwrap();
-        assert_eq!(svg, circularity_map(comparison, result).unwrap());
+        let svg = circularity_map(comparison, result);
+        assert_eq!(svg, circularity_map(comparison, result));
         assert_well_formed(&svg);
         let title = format!("{}: circularity of a circle of radius 100 mm under 1439 N, mm", result.name);
         let labels =
@@ -77,7 +77,7 @@ fn a_map_of_ten_thousand_circles_is_small() {
     let result = &assessment.robots[0];
     let circles: Vec<usize> = result.maps.iter().map(|(_, map)| map.count()).collect();
     assert!(circles.iter().sum::<usize>() > 10_000, "{circles:?}");
-    let svg = circularity_map(&comparison, result).unwrap();
+    let svg = circularity_map(&comparison, result);
     assert!(svg.len() < 250_000, "{}", svg.len());
     // Finer than the picture shows.
     let mut fine = result.clone();
@@ -87,7 +87,7 @@ fn a_map_of_ten_thousand_circles_is_small() {
         map.nodes = nodes.collect();
         map.grid = Grid { step: map.grid.step / 2.0, counts: [2 * columns, 2 * rows], ..map.grid };
     }
-    let thinned = circularity_map(&comparison, &fine).unwrap();
+    let thinned = circularity_map(&comparison, &fine);
     assert!(thinned.len() < svg.len() * 11 / 10, "{} {}", thinned.len(), svg.len());
 }
 
@@ -103,7 +103,7 @@ fn an_elbow_without_circles_says_so() {
             (found.circles, found.min, found.max, found.middle) = (0, None, None, None);
             found.zones.iter_mut().for_each(|zones| (zones.optimal, zones.middle) = (None, None));
         }
-        circularity_map(comparison, &result).unwrap()
+        circularity_map(comparison, &result)
     };
     let svg = clear(1);
     assert_well_formed(&svg);
@@ -127,7 +127,7 @@ fn huge_and_tiny_values_are_drawn() {
                 spot.circularity *= factor;
             }
         }
-        let svg = circularity_map(comparison, &result).unwrap();
+        let svg = circularity_map(comparison, &result);
         assert_well_formed(&svg);
         assert!(svg.contains(label) && !svg.contains("NaN") && !svg.contains("inf"), "{factor}");
         assert!(svg.len() < 200_000, "{}", svg.len());
@@ -140,19 +140,19 @@ fn a_plane_without_axis_1_shows_no_arm() {
     let mut comparison = comparison.clone();
     comparison.benchmark.plane.origin.y = 0.5;
     comparison.elbow_names = ElbowNames::Swapped;
-    let svg = circularity_map(&comparison, &assessment.robots[0]).unwrap();
+    let svg = circularity_map(&comparison, &assessment.robots[0]);
     assert!(svg.contains("plane y = 500 mm") && svg.contains("elbow up, by the names of this study: below the line"));
     assert!(!svg.contains("axis 1") && !svg.contains("shoulder (axis 2)"));
     comparison.benchmark.plane.x = Vector3::new(0.6, 0.8, 0.0);
-    let svg = circularity_map(&comparison, &assessment.robots[0]).unwrap();
+    let svg = circularity_map(&comparison, &assessment.robots[0]);
     assert!(svg.contains("along the plane") && svg.contains("z (mm)") && !svg.contains("x (mm)"));
 }
 
 #[test]
 fn indicators_show_values_relative_to_the_best_robot() {
     let (_, assessment) = small();
-    let svg = indicators(assessment).unwrap();
-    assert_eq!(svg, indicators(assessment).unwrap());
+    let svg = indicators(assessment);
+    assert_eq!(svg, indicators(assessment));
     assert_well_formed(&svg);
     for label in ["KUKA KR 500", "KUKA KR 120 R3900", "2.825", "3.900", ">\n500\n<", ">\n120\n<", "kg", "1439 N"] {
         assert!(svg.contains(label), "{label}");
@@ -167,29 +167,29 @@ fn indicators_leave_out_what_is_not_known() {
     let mut assessment = small().1.clone();
     assessment.robots[0].data_sheet.price = Some(123_456.0);
     assessment.robots[0].configurations.iter_mut().for_each(|found| found.min = None);
-    let svg = indicators(&assessment).unwrap();
+    let svg = indicators(&assessment);
     assert!(svg.contains("123456") && svg.contains("the lowest price"));
     // One robot has no accuracy, the other no price.
     assert_eq!(svg.matches('–').count(), 2);
     for robot in &mut assessment.robots {
         (robot.data_sheet.payload, robot.data_sheet.price) = (None, None);
     }
-    let svg = indicators(&assessment).unwrap();
+    let svg = indicators(&assessment);
     assert!(!svg.contains("payload") && svg.contains("working radius"));
     assessment.robots.clear();
-    assert_well_formed(&indicators(&assessment).unwrap());
+    assert_well_formed(&indicators(&assessment));
 }
 
 #[test]
 fn many_robots_stand_in_several_rows() {
     let mut assessment = small().1.clone();
     let height = |svg: &str| svg.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<i32>().unwrap();
-    let one_row = height(&indicators(&assessment).unwrap());
+    let one_row = height(&indicators(&assessment));
     for number in 0..12 {
         let mut robot = assessment.robots[0].clone();
         robot.name = format!("another robot with quite a long name {number}");
         assessment.robots.push(robot);
     }
-    let svg = indicators(&assessment).unwrap();
+    let svg = indicators(&assessment);
     assert!(height(&svg) > 2 * one_row && svg.contains("long name 11"));
 }

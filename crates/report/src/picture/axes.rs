@@ -1,6 +1,6 @@
 //! Axes: scales from numbers to pixels, ticks at round numbers, and a frame with labels.
 
-use super::canvas::{Canvas, Drawn, Lettering, Place};
+use super::canvas::{Canvas, Place, TextStyle};
 use super::colour::{GRID, INK};
 use crate::units::fixed;
 
@@ -113,46 +113,55 @@ pub(super) struct Panel {
     pub y_label: &'static str,
 }
 
+/// The smallest and the largest of some numbers and two given ones.
+pub(super) fn extent(given: [f64; 2], values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    values.into_iter().fold(given, |[low, high], value| [low.min(value), high.max(value)])
+}
+
 impl Panel {
+    /// A panel with at most so many ticks at round numbers along each axis.
+    pub fn new(x: Scale, y: Scale, ticks: [usize; 2], [x_label, y_label]: [&'static str; 2]) -> Self {
+        Self { x_ticks: Ticks::round(&x, ticks[0]), y_ticks: Ticks::round(&y, ticks[1]), x, y, x_label, y_label }
+    }
+
     /// The place of a point.
     pub fn place(&self, x: f64, y: f64) -> Place {
         (self.x.place(x), self.y.place(y))
     }
 
     /// Thin lines at the ticks, to be drawn before the content.
-    pub fn draw_grid(&self, canvas: &Canvas<'_>) -> Drawn {
+    pub fn draw_grid(&self, canvas: &mut Canvas) {
         for value in &self.x_ticks.values {
             let x = self.x.pixel(*value);
-            canvas.line(vec![(x, self.y.start), (x, self.y.end)], GRID, 1)?;
+            canvas.line(&[(x, self.y.start), (x, self.y.end)], GRID, 1);
         }
         for value in &self.y_ticks.values {
             let y = self.y.pixel(*value);
-            canvas.line(vec![(self.x.start, y), (self.x.end, y)], GRID, 1)?;
+            canvas.line(&[(self.x.start, y), (self.x.end, y)], GRID, 1);
         }
-        Ok(())
     }
 
     /// Frame, ticks and labels, to be drawn after the content.
-    pub fn draw_frame(&self, canvas: &Canvas<'_>) -> Drawn {
+    pub fn draw_frame(&self, canvas: &mut Canvas) {
         let (left, right, bottom, top) = (self.x.start, self.x.end, self.y.start, self.y.end);
-        canvas.outline((left, top), (right, bottom), INK)?;
-        let lettering = Lettering::new(12.0).coloured(INK);
+        canvas.outline((left, top), (right, bottom), INK);
+        let style = TextStyle::new(12.0).coloured(INK);
         for value in &self.x_ticks.values {
             let x = self.x.pixel(*value);
-            canvas.line(vec![(x, bottom), (x, bottom + 5)], INK, 1)?;
-            canvas.text(&self.x_ticks.label(*value), (x, bottom + 14), lettering.centred())?;
+            canvas.line(&[(x, bottom), (x, bottom + 5)], INK, 1);
+            canvas.text(&self.x_ticks.label(*value), (x, bottom + 14), style.centred());
         }
         let mut widest = 0;
         for value in &self.y_ticks.values {
             let y = self.y.pixel(*value);
             let label = self.y_ticks.label(*value);
-            widest = widest.max(lettering.width(&label));
-            canvas.line(vec![(left - 5, y), (left, y)], INK, 1)?;
-            canvas.text(&label, (left - 8, y), lettering.ending())?;
+            widest = widest.max(style.width(&label));
+            canvas.line(&[(left - 5, y), (left, y)], INK, 1);
+            canvas.text(&label, (left - 8, y), style.ending());
         }
-        let lettering = Lettering::new(13.0).centred();
-        canvas.text(self.x_label, ((left + right) / 2, bottom + 34), lettering)?;
-        canvas.text(self.y_label, (left - 8 - widest - 14, (top + bottom) / 2), lettering.upwards())
+        let style = TextStyle::new(13.0).centred();
+        canvas.text(self.x_label, ((left + right) / 2, bottom + 34), style);
+        canvas.text(self.y_label, (left - 8 - widest - 14, (top + bottom) / 2), style.upwards())
     }
 }
 

@@ -1,76 +1,70 @@
-//! Drawing in pixels: frames, fills and text on whole ones, curves on quarters of one.
+//! Drawing to SVG in pixels: frames, fills and text on whole ones, curves on quarters of one.
 
-use super::super::output::ReportError;
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::colour::{BLACK, Colour, WHITE};
 
 /// A place on the picture: pixels to the right and down from the upper left corner.
 pub(super) type Pixel = (i32, i32);
 /// The same, between the pixels too.
 pub(super) type Place = (f64, f64);
-/// What a failed drawing says.
-pub(super) type DrawError = DrawingAreaErrorKind<std::io::Error>;
-/// The result of drawing something.
-pub(super) type Drawn = Result<(), DrawError>;
 
-/// A picture being drawn.
-pub(super) struct Canvas<'a> {
-    area: DrawingArea<SVGBackend<'a>, Shift>,
+/// A picture being drawn: the SVG document so far.
+pub(super) struct Canvas {
+    document: String,
 }
 
-/// Where a text stands relative to its place, and how it looks.
+/// Which end of a text is at its place.
 #[derive(Clone, Copy)]
-pub(super) struct Lettering {
+enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Where a text stands relative to its place, and how it looks. Its middle is at the height of the place.
+#[derive(Clone, Copy)]
+pub(super) struct TextStyle {
     /// Height of the letters in pixels.
-    pub size: f64,
-    /// Colour.
-    pub colour: RGBColor,
-    /// Whether the text is bold.
-    pub bold: bool,
-    /// Which end of the text is at the place.
-    pub horizontal: HPos,
-    /// Which height of the text is at the place.
-    pub vertical: VPos,
-    /// Whether the text runs upwards.
-    pub upwards: bool,
+    size: f64,
+    colour: Colour,
+    is_bold: bool,
+    anchor: Anchor,
+    runs_upwards: bool,
 }
 
 /// Whole numbers of the SVG document to a pixel.
 const FINENESS: i32 = 4;
-/// Plotters divides font sizes by this on the way to SVG.
+/// Font sizes are multiplied and divided by this: without it they would differ in the last digit from those of earlier files.
 const FONT_SCALE: f64 = 1.24;
 
-impl Lettering {
+impl TextStyle {
     /// Black text that starts at its place.
     pub fn new(size: f64) -> Self {
-        let (horizontal, vertical) = (HPos::Left, VPos::Center);
-        Self { size, colour: BLACK, bold: false, horizontal, vertical, upwards: false }
+        Self { size, colour: BLACK, is_bold: false, anchor: Anchor::Start, runs_upwards: false }
     }
 
     /// Centred at its place.
     pub fn centred(self) -> Self {
-        Self { horizontal: HPos::Center, ..self }
+        Self { anchor: Anchor::Middle, ..self }
     }
 
     /// Ending at its place.
     pub fn ending(self) -> Self {
-        Self { horizontal: HPos::Right, ..self }
+        Self { anchor: Anchor::End, ..self }
     }
 
     /// In another colour.
-    pub fn coloured(self, colour: RGBColor) -> Self {
+    pub fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 
     /// In bold.
     pub fn bold(self) -> Self {
-        Self { bold: true, ..self }
+        Self { is_bold: true, ..self }
     }
 
     /// Running upwards.
     pub fn upwards(self) -> Self {
-        Self { upwards: true, ..self }
+        Self { runs_upwards: true, ..self }
     }
 
     /// Width of a text, estimated on the wide side. Pixels
@@ -79,83 +73,132 @@ impl Lettering {
     }
 }
 
-impl Canvas<'_> {
+impl Canvas {
     /// A filled rectangle between two corners.
-    pub fn fill(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        self.area.draw(&Rectangle::new([raster(from), raster(to)], colour.filled()))
+    pub fn fill(&mut self, from: Pixel, to: Pixel, colour: Colour) {
+        let (from, to) = (raster(from), raster(to));
+        let (x, y) = (from.0.min(to.0), from.1.min(to.1));
+        let (width, height) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
+        self.document += &format!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{colour}\" stroke=\"none\"/>\n"
+        );
     }
 
     /// A filled polygon.
-    pub fn polygon(&self, corners: &[Pixel], colour: RGBColor) -> Drawn {
-        let corners: Vec<Pixel> = corners.iter().map(|corner| raster(*corner)).collect();
-        self.area.draw(&Polygon::new(corners, colour.filled()))
+    pub fn polygon(&mut self, corners: &[Pixel], colour: Colour) {
+        self.fine_polygon(corners.iter().map(|corner| raster(*corner)), colour);
+    }
+
+    fn fine_polygon(&mut self, corners: impl IntoIterator<Item = Pixel>, colour: Colour) {
+        self.document += &format!("<polygon fill=\"{colour}\" points=\"{}\"/>\n", points(corners));
     }
 
     /// The outline of a rectangle.
-    pub fn outline(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        self.line(vec![from, (to.0, from.1), to, (from.0, to.1), from], colour, 1)
+    pub fn outline(&mut self, from: Pixel, to: Pixel, colour: Colour) {
+        self.line(&[from, (to.0, from.1), to, (from.0, to.1), from], colour, 1);
     }
 
     /// A line through pixels.
-    pub fn line(&self, points: Vec<Pixel>, colour: RGBColor, width: u32) -> Drawn {
-        self.curve(&points.into_iter().map(exact).collect::<Vec<_>>(), colour, width)
+    pub fn line(&mut self, points: &[Pixel], colour: Colour, width: i32) {
+        self.fine_line(points.iter().map(|point| raster(*point)), colour, width);
     }
 
     /// A line through any places.
-    pub fn curve(&self, points: &[Place], colour: RGBColor, width: u32) -> Drawn {
-        let points: Vec<Pixel> = points.iter().map(|place| fine(*place)).collect();
-        self.area.draw(&PathElement::new(points, colour.stroke_width(width * FINENESS as u32)))
+    pub fn curve(&mut self, points: &[Place], colour: Colour, width: i32) {
+        self.fine_line(points.iter().map(|place| fine(*place)), colour, width);
+    }
+
+    fn fine_line(&mut self, line: impl IntoIterator<Item = Pixel>, colour: Colour, width: i32) {
+        let (width, points) = (width * FINENESS, points(line));
+        self.document +=
+            &format!("<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" points=\"{points}\"/>\n");
+    }
+
+    /// A line through any places; a single one is a dot.
+    pub fn curve_or_dot(&mut self, points: &[Place], colour: Colour, width: i32) {
+        match points {
+            [] => {}
+            [alone] => self.dot(*alone, 3, colour),
+            _ => self.curve(points, colour, width),
+        }
     }
 
     /// A line with a white edge that stands out from any ground.
-    pub fn edged_curve(&self, points: &[Place], colour: RGBColor, width: u32) -> Drawn {
-        self.curve(points, WHITE, width + 3)?;
-        self.curve(points, colour, width)
+    pub fn edged_curve(&mut self, points: &[Place], colour: Colour, width: i32) {
+        self.curve(points, WHITE, width + 3);
+        self.curve(points, colour, width);
     }
 
     /// A dashed straight line.
-    pub fn dashed(&self, from: Pixel, to: Pixel, colour: RGBColor) -> Drawn {
-        let (from, to) = (exact(from), exact(to));
+    pub fn dashed(&mut self, from: Pixel, to: Pixel, colour: Colour) {
+        self.strokes(exact(from), exact(to), colour, &[(7.0, 5.0)]);
+    }
+
+    /// A dash-dotted straight line.
+    pub fn dash_dotted(&mut self, from: Place, to: Place, colour: Colour) {
+        self.strokes(from, to, colour, &[(12.0, 4.0), (2.0, 4.0)]);
+    }
+
+    /// A straight line in strokes and gaps of these lengths, over and over. Pixels
+    fn strokes(&mut self, from: Place, to: Place, colour: Colour, pattern: &[(f64, f64)]) {
         let length = libm::hypot(to.0 - from.0, to.1 - from.1);
         let at = |along: f64| {
             let part = (along / length).min(1.0);
             (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part)
         };
         let mut along = 0.0;
-        while along < length {
-            self.curve(&[at(along), at(along + 7.0)], colour, 1)?;
-            along += 12.0;
+        let mut pattern = pattern.iter().cycle();
+        while along < length
+            && let Some((stroke, gap)) = pattern.next()
+        {
+            self.curve(&[at(along), at(along + stroke)], colour, 1);
+            along += stroke + gap;
         }
-        Ok(())
     }
 
     /// An arrow with its head at `to`.
-    pub fn arrow(&self, from: Place, to: Place, colour: RGBColor, width: u32) -> Drawn {
-        self.curve(&[from, to], colour, width)?;
+    pub fn arrow(&mut self, from: Place, to: Place, colour: Colour, width: i32) {
+        self.curve(&[from, to], colour, width);
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = libm::hypot(dx, dy).max(1.0);
         let (ux, uy) = (dx / length, dy / length);
         let at = |ahead: f64, aside: f64| fine((to.0 + ahead * ux - aside * uy, to.1 + ahead * uy + aside * ux));
-        self.area.draw(&Polygon::new(vec![at(5.0, 0.0), at(-5.0, 4.0), at(-5.0, -4.0)], colour.filled()))
+        self.fine_polygon([at(5.0, 0.0), at(-5.0, 4.0), at(-5.0, -4.0)], colour);
     }
 
     /// A filled disc with a white edge.
-    pub fn dot(&self, centre: Place, radius: i32, colour: RGBColor) -> Drawn {
-        let disc = |radius: i32, colour: RGBColor| Circle::new(fine(centre), radius * FINENESS, colour.filled());
-        self.area.draw(&disc(radius + 1, WHITE))?;
-        self.area.draw(&disc(radius, colour))
+    pub fn dot(&mut self, centre: Place, radius: i32, colour: Colour) {
+        let (x, y) = fine(centre);
+        for (radius, colour) in [(radius + 1, WHITE), (radius, colour)] {
+            let radius = radius * FINENESS;
+            self.document += &format!(
+                "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{colour}\" stroke=\"none\" stroke-width=\"1\"/>\n"
+            );
+        }
+    }
+
+    /// The title of a picture.
+    pub fn title(&mut self, text: &str, place: Pixel) {
+        self.text(text, place, TextStyle::new(17.0).bold());
     }
 
     /// A text.
-    pub fn text(&self, text: &str, place: Pixel, lettering: Lettering) -> Drawn {
-        let weight = if lettering.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let transform = if lettering.upwards { FontTransform::Rotate270 } else { FontTransform::None };
-        let style = ("sans-serif", lettering.size * FONT_SCALE * f64::from(FINENESS), weight)
-            .into_font()
-            .transform(transform)
-            .color(&lettering.colour)
-            .pos(Pos::new(lettering.horizontal, lettering.vertical));
-        self.area.draw(&Text::new(text.to_owned(), raster(place), style))
+    pub fn text(&mut self, text: &str, place: Pixel, style: TextStyle) {
+        let (x, y) = raster(place);
+        let size = style.size * FONT_SCALE * f64::from(FINENESS) / FONT_SCALE;
+        let anchor = match style.anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let weight = if style.is_bold { " font-weight=\"bold\"" } else { "" };
+        let turn = if style.runs_upwards { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
+        let text = escaped(text);
+        self.document += &format!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"sans-serif\" \
+             font-size=\"{size}\" fill=\"{}\"{weight}{turn}>\n{text}\n</text>\n",
+            style.colour
+        );
     }
 }
 
@@ -177,28 +220,62 @@ fn fine(place: Place) -> Pixel {
     nearest((place.0 * f64::from(FINENESS), place.1 * f64::from(FINENESS)))
 }
 
-/// Draws a picture of the given size in pixels on white and returns the SVG document.
-///
-/// # Errors
-/// [`ReportError::Format`] naming `what`.
-pub(super) fn picture(
-    what: &'static str,
-    size: Pixel,
-    paint: impl FnOnce(&Canvas<'_>) -> Drawn,
-) -> Result<String, ReportError> {
-    let mut document = String::new();
-    paint_on(&mut document, size, paint).map_err(|error| ReportError::Format { what, cause: error.to_string() })?;
-    let (width, height) = raster(size);
-    let fine = format!("width=\"{width}\" height=\"{height}\"");
-    // Opaque is the default of SVG: saying so on every element is a seventh of the file.
-    let document = document.replace(" opacity=\"1\"", "");
-    Ok(document.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", size.0, size.1), 1))
+fn points(points: impl IntoIterator<Item = Pixel>) -> String {
+    points.into_iter().map(|(x, y)| format!("{x},{y} ")).collect()
 }
 
-fn paint_on(document: &mut String, size: Pixel, paint: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn {
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '&' => escaped.push_str("&amp;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&apos;"),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+/// Draws a picture of the given size in pixels on white and returns the SVG document.
+pub(super) fn picture(size: Pixel, paint: impl FnOnce(&mut Canvas)) -> String {
     let (width, height) = raster(size);
-    let canvas = Canvas { area: SVGBackend::with_string(document, (width as u32, height as u32)).into_drawing_area() };
-    canvas.area.fill(&WHITE)?;
-    paint(&canvas)?;
-    canvas.area.present()
+    let document = format!(
+        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n",
+        size.0, size.1
+    );
+    let mut canvas = Canvas { document };
+    canvas.fill((0, 0), size, WHITE);
+    paint(&mut canvas);
+    canvas.document + "</svg>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour::INK;
+    use super::*;
+
+    #[test]
+    fn shapes_are_written_in_quarters_of_a_pixel() {
+        let svg = picture((20, 10), |canvas| {
+            canvas.curve(&[(1.0, 2.0), (3.2, 4.1)], INK, 2);
+            canvas.dot((5.0, 5.0), 3, BLACK);
+            canvas.text("a < b", (1, 2), TextStyle::new(12.0).bold().upwards());
+        });
+        let lines = [
+            "<svg width=\"20\" height=\"10\" viewBox=\"0 0 80 40\" xmlns=\"http://www.w3.org/2000/svg\">",
+            "<rect x=\"0\" y=\"0\" width=\"80\" height=\"40\" fill=\"#FFFFFF\" stroke=\"none\"/>",
+            "<polyline fill=\"none\" stroke=\"#3C3C3C\" stroke-width=\"8\" points=\"4,8 13,16 \"/>",
+            "<circle cx=\"20\" cy=\"20\" r=\"16\" fill=\"#FFFFFF\" stroke=\"none\" stroke-width=\"1\"/>",
+            "<circle cx=\"20\" cy=\"20\" r=\"12\" fill=\"#000000\" stroke=\"none\" stroke-width=\"1\"/>",
+            "<text x=\"4\" y=\"8\" dy=\"0.5ex\" text-anchor=\"start\" font-family=\"sans-serif\" font-size=\"48\" \
+             fill=\"#000000\" font-weight=\"bold\" transform=\"rotate(270, 4, 8)\">",
+            "a &lt; b",
+            "</text>",
+            "</svg>",
+        ];
+        assert_eq!(svg.lines().collect::<Vec<_>>(), lines);
+    }
 }

@@ -1,13 +1,11 @@
 //! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Pixel, exact, picture};
-use super::colour::{BLUE, GREEN, GREY, INK, PALE, RED};
-use super::scene::{Scene, is_upright, middles, top_view, wrist_centre};
-use crate::output::ReportError;
+use super::canvas::{Canvas, Pixel, TextStyle, exact, picture};
+use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
+use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::fixed;
 use nalgebra::Vector3;
-use plotters::style::RGBColor;
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::problem::Problem;
 use stead_placement::sense::Sense;
@@ -24,84 +22,80 @@ const BASE: f64 = 300.0;
 
 /// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
 /// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn cell(problem: &Problem, outcome: &Outcome) -> Result<String, ReportError> {
+pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
     let Cases { best, worst, .. } = &outcome.cases;
-    picture("the picture of the cell", SIZE, |canvas| {
-        canvas.text("The cell from above, in the robot base frame", (COLUMNS[0], 24), Lettering::new(17.0).bold())?;
+    picture(SIZE, |canvas| {
+        canvas.title("The cell from above, in the robot base frame", (COLUMNS[0], 24));
         let near = Region::near(problem, [best, worst]);
-        overview(canvas, problem, [best, worst], &near)?;
-        legend(canvas, problem)?;
-        placement(canvas, problem, best, GREEN, near.panel(COLUMNS[0], ROWS[1]))?;
+        overview(canvas, problem, [best, worst], &near);
+        legend(canvas, problem);
+        placement(canvas, problem, best, GREEN, near.panel(COLUMNS[0], ROWS[1]));
         placement(canvas, problem, worst, RED, near.panel(COLUMNS[1], ROWS[1]))
     })
 }
 
 /// The robot, its reach, the cell, and where the other panels are.
-fn overview(canvas: &Canvas<'_>, problem: &Problem, [best, worst]: [&Case; 2], near: &Region) -> Drawn {
+fn overview(canvas: &mut Canvas, problem: &Problem, [best, worst]: [&Case; 2], near: &Region) {
     let region = Region::whole(problem, near);
-    let scene = Scene { problem, panel: region.panel(COLUMNS[0], ROWS[0]) };
-    canvas.text("Robot and cell", (COLUMNS[0], ROWS[0] - 18), Lettering::new(13.0).bold().coloured(INK))?;
-    scene.panel.draw_grid(canvas)?;
-    scene.reach(canvas)?;
-    let corner = |[x, y]: [f64; 2]| (scene.panel.x.pixel(x), scene.panel.y.pixel(y));
-    canvas.outline(corner(near.from), corner(near.to), PALE)?;
-    scene.limits(canvas)?;
-    scene.base(canvas)?;
+    let view = CellView { problem, panel: region.panel(COLUMNS[0], ROWS[0]) };
+    canvas.text("Robot and cell", (COLUMNS[0], ROWS[0] - 18), TextStyle::new(13.0).bold().coloured(INK));
+    view.panel.draw_grid(canvas);
+    view.reach(canvas);
+    let corner = |[x, y]: [f64; 2]| (view.panel.x.pixel(x), view.panel.y.pixel(y));
+    canvas.outline(corner(near.from), corner(near.to), PALE);
+    view.limits(canvas);
+    view.base(canvas);
     for (case, colour) in [(worst, RED), (best, GREEN)] {
-        scene.path(canvas, case, colour)?;
-        scene.origin(canvas, case)?;
+        view.path(canvas, case, colour);
+        view.origin(canvas, case);
     }
-    scene.panel.draw_frame(canvas)
+    view.panel.draw_frame(canvas)
 }
 
 /// One placement with its surroundings.
-fn placement(canvas: &Canvas<'_>, problem: &Problem, case: &Case, colour: RGBColor, panel: Panel) -> Drawn {
+fn placement(canvas: &mut Canvas, problem: &Problem, case: &Case, colour: Colour, panel: Panel) {
     let kind = match case.placement_sense {
         Sense::Min => "Best",
         Sense::Max => "Worst",
     };
     let title = format!("{kind} placement: mean {} mm", fixed(case.plan.mean * 1e3, 4));
     let (left, top) = (panel.x.start, panel.y.end);
-    canvas.text(&title, (left, top - 38), Lettering::new(13.0).bold().coloured(colour))?;
+    canvas.text(&title, (left, top - 38), TextStyle::new(13.0).bold().coloured(colour));
     let place = &case.placement;
     let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
     let words = format!("x = {x} mm, y = {y} mm, z = {z} mm, yaw = {} deg", fixed(place.yaw.to_degrees(), 1));
-    canvas.text(&words, (left, top - 18), Lettering::new(12.0).coloured(INK))?;
-    let scene = Scene { problem, panel };
-    scene.panel.draw_grid(canvas)?;
-    scene.limits(canvas)?;
-    scene.wrists(canvas, case)?;
-    scene.path(canvas, case, colour)?;
-    scene.workpiece(canvas, case)?;
-    scene.numbers(canvas, case, colour)?;
-    scene.panel.draw_frame(canvas)
+    canvas.text(&words, (left, top - 18), TextStyle::new(12.0).coloured(INK));
+    let view = CellView { problem, panel };
+    view.panel.draw_grid(canvas);
+    view.limits(canvas);
+    view.wrists(canvas, case);
+    view.path(canvas, case, colour);
+    view.workpiece(canvas, case);
+    view.numbers(canvas, case, colour);
+    view.panel.draw_frame(canvas)
 }
 
-fn legend(canvas: &Canvas<'_>, problem: &Problem) -> Drawn {
+fn legend(canvas: &mut Canvas, problem: &Problem) {
     let (left, right, mut y) = (COLUMNS[1], COLUMNS[1] + 34, ROWS[0] + 12);
-    let mut entry = |label: &str, sign: &dyn Fn(i32) -> Drawn| {
-        sign(y)?;
-        canvas.text(label, (right + 12, y), Lettering::new(12.0))?;
+    let mut entry = |label: &str, sign: &dyn Fn(&mut Canvas, i32)| {
+        sign(canvas, y);
+        canvas.text(label, (right + 12, y), TextStyle::new(12.0));
         y += 28;
-        Ok(())
     };
-    entry("tool path at the best placement", &|y| canvas.line(vec![(left, y), (right, y)], GREEN, 3))?;
-    entry("tool path at the worst placement", &|y| canvas.line(vec![(left, y), (right, y)], RED, 3))?;
-    entry("workpiece origin; below with the axes x and y", &|y| canvas.dot(exact((left + 17, y)), 4, INK))?;
-    entry("where the workpiece origin may stand", &|y| canvas.dashed((left, y), (right, y), INK))?;
+    entry("tool path at the best placement", &|canvas, y| canvas.line(&[(left, y), (right, y)], GREEN, 3));
+    entry("tool path at the worst placement", &|canvas, y| canvas.line(&[(left, y), (right, y)], RED, 3));
+    entry("workpiece origin; below with the axes x and y", &|canvas, y| canvas.dot(exact((left + 17, y)), 4, INK));
+    entry("where the workpiece origin may stand", &|canvas, y| canvas.dashed((left, y), (right, y), INK));
     if is_upright(problem) {
         let reach = fixed(problem.robot.geometry().reach() * 1e3, 0);
         let label = format!("reach of the wrist centre: {reach} mm from axis 1");
-        entry(&label, &|y| canvas.line(vec![(left, y), (right, y)], BLUE, 2))?;
+        entry(&label, &|canvas, y| canvas.line(&[(left, y), (right, y)], BLUE, 2));
     }
-    entry("from the tool to the wrist centre, at mid-segment", &|y| {
-        canvas.line(vec![(left, y), (right - 3, y)], PALE, 1)?;
+    entry("from the tool to the wrist centre, at mid-segment", &|canvas, y| {
+        canvas.line(&[(left, y), (right - 3, y)], PALE, 1);
         canvas.dot(exact((right - 3, y)), 3, GREY)
-    })?;
-    entry("part shown below", &|y| canvas.outline((left, y - 8), (right, y + 8), PALE))
+    });
+    entry("part shown below", &|canvas, y| canvas.outline((left, y - 8), (right, y + 8), PALE))
 }
 
 /// A square part of the plane, in mm.

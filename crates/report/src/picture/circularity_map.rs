@@ -1,14 +1,13 @@
 //! The circularity maps of a robot (Klimchik 2017, Fig. 15 to 19).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Place, exact, picture};
-use super::circularity_panel::{Colours, ElbowPanel, Nodes, dash_dotted, shoulder_mark};
-use super::colour::{GREEN, GREY, INK, LEVELS, RED, viridis};
-use super::lettering::{lines, whole_or_figures};
+use super::canvas::{Canvas, Place, TextStyle, exact, picture};
+use super::circularity_panel::{Colours, ElbowPanel, Nodes, shoulder_mark};
+use super::colour::{BLACK, Colour, GREEN, GREY, INK, RED};
+use super::heat_map::{ColourBar, ColourRange};
+use super::labels::{lines, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView, Window};
-use crate::output::ReportError;
 use crate::units::figures;
-use plotters::style::{BLACK, RGBColor};
 use stead_assessment::comparison::{Comparison, Configuration, ElbowNames, Load, RobotResult, Zones, obstacle_words};
 use stead_assessment::map::{Elbow, Map};
 use stead_assessment::zone::Zone;
@@ -35,12 +34,9 @@ const WIDENED: f64 = 0.5;
 /// and contour lines in mm, optimal zones and zones about the middle of each size, the most accurate place, and the robot's
 /// axis 1 and shoulder where they lie in the plane and near the map. The axes show the part of the grid that has values. A
 /// map of more than 240 nodes along an axis is thinned out evenly.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn circularity_map(comparison: &Comparison, result: &RobotResult) -> Result<String, ReportError> {
+pub fn circularity_map(comparison: &Comparison, result: &RobotResult) -> String {
     let picture_of = Picture::new(comparison, result);
-    picture("the picture of a circularity map", (WIDTH, picture_of.height()), |canvas| picture_of.draw(canvas))
+    picture((WIDTH, picture_of.height()), |canvas| picture_of.draw(canvas))
 }
 
 struct Picture<'a> {
@@ -55,7 +51,7 @@ struct Picture<'a> {
     colours: Colours,
     arm: Option<ArmInPlane>,
     /// What stands under each panel about its zones.
-    zone_lines: [Vec<(String, RGBColor)>; 2],
+    zone_lines: [Vec<(String, Colour)>; 2],
 }
 
 impl<'a> Picture<'a> {
@@ -74,7 +70,7 @@ impl<'a> Picture<'a> {
         let arm = robot.and_then(|robot| view.arm(robot, centre));
         let (window, height) = window(extent, arm.as_ref());
         let bottom = TOP + height;
-        let colours = colours(&nodes, bottom);
+        let colours = colours(&nodes);
         let mut picture =
             Self { comparison, result, view, nodes, window, bottom, colours, arm, zone_lines: Default::default() };
         picture.zone_lines = Elbow::BOTH.map(|elbow| picture.found(elbow).map_or_else(Vec::new, zone_lines));
@@ -96,24 +92,24 @@ impl<'a> Picture<'a> {
         self.text_bottom() + 102
     }
 
-    fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
-        self.title(canvas)?;
+    fn draw(&self, canvas: &mut Canvas) {
+        self.title(canvas);
         for ((column, nodes), (elbow, map)) in (0..2).zip(&self.nodes).zip(&self.result.maps) {
-            self.panel(canvas, column, nodes, *elbow, map)?;
+            self.panel(canvas, column, nodes, *elbow, map);
         }
         if self.result.maps.iter().any(|(_, map)| map.count() > 0) {
-            self.colour_bar(canvas)?;
+            self.colour_bar(canvas);
         }
         self.legend(canvas)
     }
 
-    fn title(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn title(&self, canvas: &mut Canvas) {
         let benchmark = &self.comparison.benchmark;
         let force = figures(benchmark.in_plane_force());
         let radius = whole_or_figures(benchmark.radius * 1e3);
         let title = format!("{}: circularity of a circle of radius {radius} mm under {force} N, mm", self.result.name);
         let size = (f64::from(WIDTH - 2 * 40) / (title.chars().count() as f64 * 0.6)).min(17.0);
-        canvas.text(&title, (COLUMNS[0], 24), Lettering::new(size).bold())?;
+        canvas.text(&title, (COLUMNS[0], 24), TextStyle::new(size).bold());
         let names = match self.comparison.elbow_names {
             ElbowNames::Geometric => "elbow up: above the line from the shoulder to the wrist centre",
             ElbowNames::Swapped => {
@@ -121,10 +117,10 @@ impl<'a> Picture<'a> {
             }
         };
         let subtitle = format!("Centres of the circle in the {}; {names}", self.view.words());
-        canvas.text(&subtitle, (COLUMNS[0], 47), Lettering::new(12.0).coloured(INK))
+        canvas.text(&subtitle, (COLUMNS[0], 47), TextStyle::new(12.0).coloured(INK))
     }
 
-    fn panel(&self, canvas: &Canvas<'_>, column: usize, nodes: &Nodes, elbow: Elbow, map: &Map<2>) -> Drawn {
+    fn panel(&self, canvas: &mut Canvas, column: usize, nodes: &Nodes, elbow: Elbow, map: &Map<2>) {
         let left = COLUMNS[column];
         let [low, high] = self.window;
         let x = Scale::new(low[0], high[0], left, left + PANEL);
@@ -141,7 +137,7 @@ impl<'a> Picture<'a> {
             Elbow::Up => "Elbow up",
             Elbow::Down => "Elbow down",
         };
-        canvas.text(name, (left, TOP - 34), Lettering::new(14.0).bold())?;
+        canvas.text(name, (left, TOP - 34), TextStyle::new(14.0).bold());
         let millimetres = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| figures(value * 1e3));
         let [min, middle, max] =
             [found.min, found.middle, found.max].map(|spot| millimetres(spot.map(|spot| spot.circularity)));
@@ -150,81 +146,70 @@ impl<'a> Picture<'a> {
             1 => format!("{min} mm; one circle"),
             count => format!("smallest {min}, middle {middle}, largest {max} mm; {count} circles"),
         };
-        canvas.text(&figures, (left, TOP - 15), Lettering::new(12.0).coloured(INK))?;
+        canvas.text(&figures, (left, TOP - 15), TextStyle::new(12.0).coloured(INK));
         let arm = self.arm.as_ref();
         let (view, colours) = (&self.view, &self.colours);
-        ElbowPanel { panel: &panel, view, nodes, colours, found, arm }.draw(canvas)?;
+        ElbowPanel { panel: &panel, view, nodes, colours, found, arm }.draw(canvas);
         if found.circles == 0 {
             let (x, y) = (left + PANEL / 2, (TOP + self.bottom) / 2);
-            canvas.text("no circle fits", (x, y - 10), Lettering::new(14.0).centred().coloured(INK))?;
+            canvas.text("no circle fits", (x, y - 10), TextStyle::new(14.0).centred().coloured(INK));
             let main = map.obstacles();
             let why = obstacle_words(&main[..main.len().min(1)], map.nodes.len());
-            canvas.text(&why, (x, y + 12), Lettering::new(11.0).centred().coloured(GREY))?;
+            canvas.text(&why, (x, y + 12), TextStyle::new(11.0).centred().coloured(GREY));
         }
         for (index, (line, colour)) in self.zone_lines[column].iter().enumerate() {
             let y = self.bottom + 58 + 17 * index as i32;
-            canvas.text(line, (left, y), Lettering::new(11.0).coloured(*colour))?;
+            canvas.text(line, (left, y), TextStyle::new(11.0).coloured(*colour));
         }
-        Ok(())
     }
 
-    fn colour_bar(&self, canvas: &Canvas<'_>) -> Drawn {
-        let (left, right) = (COLUMNS[1] + PANEL + 22, COLUMNS[1] + PANEL + 40);
-        let Colours { scale, ticks } = &self.colours;
-        let edges = Scale::new(0.0, LEVELS as f64, self.bottom, TOP);
-        for level in 0..LEVELS {
-            let (lower, upper) = (edges.pixel(level as f64), edges.pixel(level as f64 + 1.0));
-            canvas.fill((left, upper), (right, lower), viridis(level))?;
-        }
-        canvas.outline((left, TOP), (right, self.bottom), INK)?;
-        let lettering = Lettering::new(12.0).coloured(INK);
+    fn colour_bar(&self, canvas: &mut Canvas) {
+        let Colours { range, ticks } = &self.colours;
         let largest = self.nodes.iter().flat_map(finite).fold(0.0, f64::max);
-        if largest > scale.to {
-            canvas.text(&format!("up to {}", figures(largest)), (left, TOP - 12), lettering)?;
-        }
         let labelled: Vec<(f64, String)> = if ticks.values.len() > 1 {
             ticks.values.iter().map(|value| (*value, self.colours.label(*value))).collect()
         } else {
-            [scale.from, scale.to].map(|value| (value, figures(value))).to_vec()
+            [range.from, range.to].map(|value| (value, figures(value))).to_vec()
         };
-        let mut widest = 0;
-        for (value, label) in labelled {
-            let y = scale.pixel(value);
-            widest = widest.max(lettering.width(&label));
-            canvas.line(vec![(right, y), (right + 5, y)], INK, 1)?;
-            canvas.text(&label, (right + 8, y), lettering)?;
+        let right = COLUMNS[1] + PANEL;
+        ColourBar {
+            sides: [right + 22, right + 40],
+            scale: Scale::new(range.from, range.to, self.bottom, TOP),
+            labels: labelled,
+            beyond: (largest > range.to).then(|| figures(largest)),
+            title: "circularity (mm)",
+            gap: 14,
         }
-        let place = (right + 8 + widest + 14, (TOP + self.bottom) / 2);
-        canvas.text("circularity (mm)", place, Lettering::new(13.0).centred().upwards())
+        .draw(canvas);
     }
 
-    fn legend(&self, canvas: &Canvas<'_>) -> Drawn {
-        let lettering = Lettering::new(12.0);
+    fn legend(&self, canvas: &mut Canvas) {
+        let style = TextStyle::new(12.0);
         let y = self.text_bottom() + 26;
         let left = COLUMNS[0];
         for (x, colour, label) in [
             (left, RED, "optimal zone: its largest circularity is the smallest of all squares of its side"),
             (left + 560, GREEN, "zone about the middle of the map"),
         ] {
-            canvas.curve(&square(x, y), colour, 2)?;
-            canvas.text(label, (x + 24, y), lettering)?;
+            canvas.curve(&square(x, y), colour, 2);
+            canvas.text(label, (x + 24, y), style);
         }
         let y = y + 26;
-        canvas.dot((f64::from(left + 8), f64::from(y)), 4, BLACK)?;
-        canvas.text("most accurate place", (left + 24, y), lettering)?;
+        canvas.dot((f64::from(left + 8), f64::from(y)), 4, BLACK);
+        canvas.text("most accurate place", (left + 24, y), style);
         let x = left + 180;
         if self.arm.as_ref().is_some_and(|arm| arm.axis_within(self.window).is_some()) {
-            dash_dotted(canvas, (f64::from(x), f64::from(y)), (f64::from(x + 36), f64::from(y)), INK)?;
-            canvas.text("axis 1", (x + 44, y), lettering)?;
+            canvas.dash_dotted((f64::from(x), f64::from(y)), (f64::from(x + 36), f64::from(y)), INK);
+            canvas.text("axis 1", (x + 44, y), style);
         }
         if self.arm.as_ref().is_some_and(|arm| arm.shoulder_within(self.window)) {
-            shoulder_mark(canvas, (f64::from(x + 112), f64::from(y)))?;
-            canvas.text("shoulder (axis 2)", (x + 126, y), lettering)?;
+            shoulder_mark(canvas, (f64::from(x + 112), f64::from(y)));
+            canvas.text("shoulder (axis 2)", (x + 126, y), style);
         }
-        canvas.text("white: no circle fits", (left + 560, y), lettering.coloured(INK))?;
+        canvas.text("white: no circle fits", (left + 560, y), style.coloured(INK));
         let labels = "A square is labelled with its side in mm where there is room. Under the maps: side in mm, then the largest \
                       circularity in the zone in mm.";
-        canvas.text(labels, (left, y + 26), lettering.coloured(INK))
+        canvas.text(labels, (left, y + 26), style.coloured(INK))
     }
 }
 
@@ -264,24 +249,21 @@ fn finite(nodes: &Nodes) -> impl Iterator<Item = f64> + '_ {
     nodes.values.iter().copied().filter(|value| value.is_finite())
 }
 
-/// From the smallest value of both maps (from zero, where all are the same) to the largest, but where few values are far
-/// above all others, to the one that 97 of 100 do not pass, so that a peak does not leave the rest in the dark.
-fn colours(nodes: &[Nodes; 2], bottom: i32) -> Colours {
-    let mut sorted: Vec<f64> = nodes.iter().flat_map(finite).collect();
-    sorted.sort_by(f64::total_cmp);
-    let at = |index: usize| sorted.get(index).copied().unwrap_or(0.0);
-    let (min, common, max) = (at(0), at(sorted.len() * 97 / 100), at(sorted.len().saturating_sub(1)));
-    if max <= min {
-        let scale = Scale::new(0.0, if max > 0.0 { max } else { 1.0 }, bottom, TOP);
-        return Colours { ticks: Ticks::round(&scale, 10), scale };
-    }
-    let peak = max - min > 1.5 * (common - min) && common > min;
-    let scale = Scale::new(min, if peak { common } else { max }, bottom, TOP);
-    Colours { ticks: Ticks::round(&scale, 10), scale }
+/// From the smallest value of both maps (from zero, where all are the same) to the largest that is no peak.
+fn colours(nodes: &[Nodes; 2]) -> Colours {
+    let mut ascending: Vec<f64> = nodes.iter().flat_map(finite).collect();
+    ascending.sort_by(f64::total_cmp);
+    let [min, max] = [ascending.first(), ascending.last()].map(|value| value.copied().unwrap_or(0.0));
+    let range = if max > min {
+        ColourRange::below_peaks(min, &ascending)
+    } else {
+        ColourRange { from: 0.0, to: if max > 0.0 { max } else { 1.0 } }
+    };
+    Colours { ticks: Ticks::round(&Scale::new(range.from, range.to, 0, 1), 10), range }
 }
 
 /// The largest circularity in the zones of each side, in the colours of the zones.
-fn zone_lines(found: &Configuration) -> Vec<(String, RGBColor)> {
+fn zone_lines(found: &Configuration) -> Vec<(String, Colour)> {
     let table = |kind: &str, colour, zone: fn(&Zones) -> Option<Zone>| {
         let each = found.zones.iter().map(|zones| {
             let largest = zone(zones).map_or_else(|| "–".to_owned(), |zone| figures(zone.largest * 1e3));
@@ -331,8 +313,8 @@ mod tests {
             let grid = stead_assessment::map::Grid { origin: [0.0, 0.0], step: 0.1, counts: [values.len(), 1] };
             let nodes = values.iter().map(|value| Ok([value * 1e-3; 2])).collect();
             let map = Map { grid, nodes };
-            let Colours { scale, .. } = colours(&[Nodes::new(&map, &view, 1), Nodes::new(&map, &view, 1)], 500);
-            [scale.from, scale.to]
+            let Colours { range, .. } = colours(&[Nodes::new(&map, &view, 1), Nodes::new(&map, &view, 1)]);
+            [range.from, range.to]
         };
         let even: Vec<f64> = (1..=100).map(f64::from).collect();
         assert_eq!(scale(&even), [1.0, 100.0]);

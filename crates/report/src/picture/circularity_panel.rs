@@ -1,19 +1,16 @@
 //! The circularity over a plane for one elbow: the map as colours and contour lines, zones, and the most accurate place.
 
-use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, DrawError, Drawn, Pixel, Place, exact, nearest};
-use super::colour::{GREEN, INK, LEVELS, RED, contrast, viridis};
+use super::axes::{Panel, Ticks};
+use super::canvas::{Canvas, Pixel, Place, exact, nearest};
+use super::colour::{BLACK, GREEN, INK, RED, WHITE, contrast, viridis};
 use super::contour::contour;
-use super::lettering::{Area, Label, Labeller, whole_or_figures};
-use super::patches::patches;
+use super::heat_map::{ColourRange, HeatMap};
+use super::labels::{Area, Label, Labeller, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView, Window};
-use plotters::style::{BLACK, RGBColor, WHITE};
 use stead_assessment::comparison::Configuration;
 use stead_assessment::map::Map;
 use stead_assessment::zone::Zone;
 
-/// Strokes and gaps of a dash-dotted line. Pixels
-const DASHES: [f64; 4] = [12.0, 4.0, 2.0, 4.0];
 /// Most letters of a label of a tick without a power of ten.
 const LONGEST: usize = 7;
 /// A contour line is labelled when it is so many times as long as its label.
@@ -68,8 +65,8 @@ impl Nodes {
 
 /// The scale of colours that both elbows share.
 pub(super) struct Colours {
-    /// Circularity from the dark to the bright end, in mm, along the colour bar.
-    pub scale: Scale,
+    /// Circularity from the dark to the bright end. mm
+    pub range: ColourRange,
     /// Values of the contour lines, and of the ticks at the colour bar. mm
     pub ticks: Ticks,
 }
@@ -79,12 +76,6 @@ impl Colours {
     pub fn label(&self, value: f64) -> String {
         let label = self.ticks.label(value);
         if label.len() <= LONGEST { label } else { format!("{value:.2e}") }
-    }
-
-    /// The level of a value; values beyond the scale have the level of its end.
-    fn level(&self, value: f64) -> usize {
-        let part = (value - self.scale.from) / (self.scale.to - self.scale.from);
-        ((part * LEVELS as f64).max(0.0) as usize).min(LEVELS - 1)
     }
 }
 
@@ -106,15 +97,15 @@ pub(super) struct ElbowPanel<'a> {
 
 impl ElbowPanel<'_> {
     /// Draws the map and all that lies on it.
-    pub fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
-        self.panel.draw_grid(canvas)?;
-        self.cells(canvas)?;
-        self.arm(canvas)?;
-        let lines = self.contours(canvas)?;
+    pub fn draw(&self, canvas: &mut Canvas) {
+        self.panel.draw_grid(canvas);
+        self.cells().draw_merged(canvas, viridis);
+        self.arm(canvas);
+        let lines = self.contours(canvas);
         let mut labeller = Labeller::new(self.area());
-        self.zones(canvas, &mut labeller)?;
+        self.zones(canvas, &mut labeller);
         for (value, line) in lines {
-            self.contour_label(canvas, &mut labeller, value, &line)?;
+            self.contour_label(canvas, &mut labeller, value, &line);
         }
         self.panel.draw_frame(canvas)
     }
@@ -129,39 +120,39 @@ impl ElbowPanel<'_> {
     }
 
     /// The nodes with a value, each in the middle of its cell.
-    fn cells(&self, canvas: &Canvas<'_>) -> Drawn {
-        let level = |value: &f64| value.is_finite().then(|| self.colours.level(*value));
-        let levels: Vec<Option<usize>> = self.nodes.values.iter().map(level).collect();
-        for patch in patches(self.nodes.columns, &levels) {
-            let corner = |cells: [usize; 2]| nearest(self.place(self.nodes.at(cells.map(|count| count as f64 - 0.5))));
-            let corners: Vec<Pixel> = patch.outline().into_iter().map(corner).collect();
-            canvas.polygon(&corners, viridis(patch.level))?;
+    fn cells(&self) -> HeatMap<usize> {
+        let Nodes { values, columns, .. } = self.nodes;
+        let edge = |k: usize, count: usize| self.nodes.at([count as f64 - 0.5; 2])[k];
+        let level = |value: &f64| value.is_finite().then(|| self.colours.range.level(*value));
+        HeatMap {
+            columns: (0..=*columns).map(|count| self.panel.x.pixel(edge(0, count))).collect(),
+            rows: (0..=values.len() / columns).map(|count| self.panel.y.pixel(edge(1, count))).collect(),
+            cells: values.iter().map(level).collect(),
         }
-        Ok(())
     }
 
     /// The contour lines, drawn and returned with their values.
-    fn contours(&self, canvas: &Canvas<'_>) -> Result<Vec<(f64, Vec<Place>)>, DrawError> {
+    fn contours(&self, canvas: &mut Canvas) -> Vec<(f64, Vec<Place>)> {
         let mut drawn = Vec::new();
         for value in &self.colours.ticks.values {
-            let colour = contrast(viridis(self.colours.level(*value)));
+            let colour = contrast(viridis(self.colours.range.level(*value)));
             for line in contour(self.nodes.columns, &self.nodes.values, *value) {
                 let places: Vec<Place> = line.into_iter().map(|steps| self.place(self.nodes.at(steps))).collect();
-                canvas.curve(&places, colour, 1)?;
+                canvas.curve(&places, colour, 1);
                 drawn.push((*value, places));
             }
         }
-        Ok(drawn)
+        drawn
     }
 
     /// The value of a contour line on a ground of its colour, as near to the middle of the line as there is room.
-    fn contour_label(&self, canvas: &Canvas<'_>, labeller: &mut Labeller, value: f64, line: &[Place]) -> Drawn {
+    fn contour_label(&self, canvas: &mut Canvas, labeller: &mut Labeller, value: f64, line: &[Place]) {
         let text = self.colours.label(value);
         let length: f64 = line.windows(2).map(|pair| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum();
         if length < LONG * 2.0 * f64::from(Labeller::half(&text).0) {
-            return Ok(());
+            return;
         }
-        let ground = viridis(self.colours.level(value));
+        let ground = viridis(self.colours.range.level(value));
         let middle = line.len() / 2;
         let outwards = (0..=middle).flat_map(|off| [middle.checked_sub(off), middle.checked_add(off)]).flatten();
         let half = Labeller::half(&text);
@@ -190,7 +181,7 @@ impl ElbowPanel<'_> {
     }
 
     /// The most accurate place and the zones of each size, labelled with their sides in mm where there is room.
-    fn zones(&self, canvas: &Canvas<'_>, labeller: &mut Labeller) -> Drawn {
+    fn zones(&self, canvas: &mut Canvas, labeller: &mut Labeller) {
         let zones = || {
             let each = self.found.zones.iter();
             each.flat_map(|zones| [(zones.middle, GREEN), (zones.optimal, RED)])
@@ -200,13 +191,13 @@ impl ElbowPanel<'_> {
             let ((left, top), (right, bottom)) = self.square(&zone);
             let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
             let corners = corners.map(exact);
-            canvas.curve(&corners, WHITE, 4)?;
-            canvas.curve(&corners, colour, 2)?;
+            canvas.curve(&corners, WHITE, 4);
+            canvas.curve(&corners, colour, 2);
             labeller.take_outline(((left, top), (right, bottom)));
         }
         if let Some(spot) = self.found.min {
             let place = self.place(self.view.shown(spot.centre));
-            canvas.dot(place, 4, BLACK)?;
+            canvas.dot(place, 4, BLACK);
             let (x, y) = nearest(place);
             labeller.take(((x - 6, y - 6), (x + 6, y + 6)));
         }
@@ -221,9 +212,8 @@ impl ElbowPanel<'_> {
             });
             let sides = [right + beside, left - beside].map(|x| (x, (top + bottom) / 2));
             let label = Label { text: &text, colour, ground: WHITE };
-            labeller.put(canvas, &label, centres.chain(sides))?;
+            labeller.put(canvas, &label, centres.chain(sides));
         }
-        Ok(())
     }
 
     fn square(&self, zone: &Zone) -> Area {
@@ -233,15 +223,14 @@ impl ElbowPanel<'_> {
     }
 
     /// Axis 1 and the shoulder, as far as they are in view.
-    fn arm(&self, canvas: &Canvas<'_>) -> Drawn {
-        let Some(arm) = self.arm else { return Ok(()) };
+    fn arm(&self, canvas: &mut Canvas) {
+        let Some(arm) = self.arm else { return };
         if let Some([from, to]) = arm.axis_within(self.window()) {
-            dash_dotted(canvas, self.place(from), self.place(to), INK)?;
+            canvas.dash_dotted(self.place(from), self.place(to), INK);
         }
         if arm.shoulder_within(self.window()) {
-            shoulder_mark(canvas, self.place(arm.shoulder))?;
+            shoulder_mark(canvas, self.place(arm.shoulder));
         }
-        Ok(())
     }
 
     fn window(&self) -> Window {
@@ -251,25 +240,7 @@ impl ElbowPanel<'_> {
 }
 
 /// The mark of the shoulder.
-pub(super) fn shoulder_mark(canvas: &Canvas<'_>, place: Place) -> Drawn {
-    canvas.dot(place, 6, INK)?;
+pub(super) fn shoulder_mark(canvas: &mut Canvas, place: Place) {
+    canvas.dot(place, 6, INK);
     canvas.dot(place, 2, WHITE)
-}
-
-/// A dash-dotted straight line.
-pub(super) fn dash_dotted(canvas: &Canvas<'_>, from: Place, to: Place, colour: RGBColor) -> Drawn {
-    let length = libm::hypot(to.0 - from.0, to.1 - from.1);
-    let at = |along: f64| {
-        let part = (along / length).min(1.0);
-        (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part)
-    };
-    let mut along = 0.0;
-    for (stroke, gap) in DASHES.chunks_exact(2).map(|pair| (pair[0], pair[1])).cycle() {
-        if along >= length {
-            break;
-        }
-        canvas.curve(&[at(along), at(along + stroke)], colour, 1)?;
-        along += stroke + gap;
-    }
-    Ok(())
 }

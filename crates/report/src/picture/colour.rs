@@ -1,30 +1,45 @@
 //! Colours.
 
-use plotters::style::RGBColor;
+use std::fmt;
 use stead_placement::outcome::Blocked;
 
+/// Red, green and blue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Colour(pub u8, pub u8, pub u8);
+
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:02X}{:02X}{:02X}", self.0, self.1, self.2)
+    }
+}
+
+/// Text, and what is as it is.
+pub(super) const BLACK: Colour = Colour(0, 0, 0);
+/// The ground of every picture.
+pub(super) const WHITE: Colour = Colour(255, 255, 255);
+
 /// Frames, ticks and their labels.
-pub(super) const INK: RGBColor = RGBColor(60, 60, 60);
+pub(super) const INK: Colour = Colour(60, 60, 60);
 /// Things of second rank.
-pub(super) const GREY: RGBColor = RGBColor(130, 130, 130);
+pub(super) const GREY: Colour = Colour(130, 130, 130);
 /// Thin lines of second rank.
-pub(super) const PALE: RGBColor = RGBColor(175, 175, 175);
+pub(super) const PALE: Colour = Colour(175, 175, 175);
 /// Grid lines.
-pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
+pub(super) const GRID: Colour = Colour(228, 228, 228);
 /// What is best.
-pub(super) const GREEN: RGBColor = RGBColor(0, 170, 60);
+pub(super) const GREEN: Colour = Colour(0, 170, 60);
 /// What is worst.
-pub(super) const RED: RGBColor = RGBColor(214, 20, 30);
+pub(super) const RED: Colour = Colour(214, 20, 30);
 /// Means.
-pub(super) const BLUE: RGBColor = RGBColor(110, 140, 190);
+pub(super) const BLUE: Colour = Colour(110, 140, 190);
 
 /// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
-pub(super) const COMPONENTS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
+pub(super) const COMPONENTS: [Colour; 3] = [Colour(0, 114, 178), Colour(213, 94, 0), Colour(0, 158, 115)];
 /// Indicators of a robot: accuracy, working radius, payload, price (Okabe and Ito 2008).
-pub(super) const INDICATORS: [RGBColor; 4] =
-    [RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(230, 159, 0), RGBColor(204, 121, 167)];
+pub(super) const INDICATORS: [Colour; 4] =
+    [Colour(0, 114, 178), Colour(0, 158, 115), Colour(230, 159, 0), Colour(204, 121, 167)];
 /// The ground of a part of an axis that is meant.
-pub(super) const SHADE: RGBColor = RGBColor(248, 244, 230);
+pub(super) const SHADE: Colour = Colour(248, 244, 230);
 
 /// Levels of the colour scale of deflections.
 pub(super) const LEVELS: usize = 32;
@@ -43,7 +58,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
 ];
 
 /// The colour of a level, dark for the smallest.
-pub(super) fn viridis(level: usize) -> RGBColor {
+pub(super) fn viridis(level: usize) -> Colour {
     let place = level.min(LEVELS - 1) as f64 / (LEVELS - 1) as f64 * 8.0;
     let index = (place.floor() as usize).min(7);
     let part = place - index as f64;
@@ -51,26 +66,26 @@ pub(super) fn viridis(level: usize) -> RGBColor {
         let (low, high) = (f64::from(VIRIDIS[index][k]), f64::from(VIRIDIS[index + 1][k]));
         (low + (high - low) * part).round() as u8
     };
-    RGBColor(mix(0), mix(1), mix(2))
+    Colour(mix(0), mix(1), mix(2))
 }
 
 /// Black or white, whichever stands out more from a ground.
-pub(super) fn contrast(RGBColor(red, green, blue): RGBColor) -> RGBColor {
+pub(super) fn contrast(Colour(red, green, blue): Colour) -> Colour {
     let brightness = 0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue);
-    if brightness > 130.0 { RGBColor(0, 0, 0) } else { RGBColor(255, 255, 255) }
+    if brightness > 130.0 { BLACK } else { WHITE }
 }
 
 /// The pale ground of states that are not allowed.
-pub(super) fn ground(blocked: Blocked) -> RGBColor {
+pub(super) fn ground(blocked: Blocked) -> Colour {
     match blocked {
-        Blocked::Reach => RGBColor(255, 255, 255),
-        Blocked::JointLimit(1) => RGBColor(240, 240, 215),
-        Blocked::JointLimit(2) => RGBColor(221, 230, 245),
-        Blocked::JointLimit(3) => RGBColor(246, 224, 222),
-        Blocked::JointLimit(4) => RGBColor(232, 224, 244),
-        Blocked::JointLimit(5) => RGBColor(222, 222, 222),
-        Blocked::JointLimit(_) => RGBColor(222, 240, 228),
-        Blocked::Conditioning | Blocked::Deflection => RGBColor(248, 248, 248),
+        Blocked::Reach => WHITE,
+        Blocked::JointLimit(1) => Colour(240, 240, 215),
+        Blocked::JointLimit(2) => Colour(221, 230, 245),
+        Blocked::JointLimit(3) => Colour(246, 224, 222),
+        Blocked::JointLimit(4) => Colour(232, 224, 244),
+        Blocked::JointLimit(5) => Colour(222, 222, 222),
+        Blocked::JointLimit(_) => Colour(222, 240, 228),
+        Blocked::Conditioning | Blocked::Deflection => Colour(248, 248, 248),
     }
 }
 
@@ -81,7 +96,7 @@ mod tests {
     #[test]
     fn scale_gets_brighter_from_level_to_level() {
         let brightness = |level| {
-            let RGBColor(r, g, b) = viridis(level);
+            let Colour(r, g, b) = viridis(level);
             0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
         };
         assert!((1..LEVELS).all(|level| brightness(level) > brightness(level - 1)));

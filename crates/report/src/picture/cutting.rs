@@ -1,12 +1,11 @@
 //! Force and moment of a milling tool over the engagement (Klimchik 2017, Fig. 4) and over one turn.
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Pixel, Place, picture};
-use super::colour::{COMPONENTS, INK, SHADE};
-use crate::output::ReportError;
+use super::canvas::{Canvas, Pixel, TextStyle, picture};
+use super::colour::{BLACK, COMPONENTS, INK, SHADE};
+use super::line_chart::{LineChart, Mark, Sign, legend};
 use crate::units::fixed;
 use nalgebra::Vector3;
-use plotters::style::{BLACK, RGBColor};
 use stead_model::cutting::{ForceHistory, Sample};
 use stead_model::task::Wrench;
 
@@ -30,26 +29,23 @@ const QUANTITIES: [Quantity; 2] = [
 /// What the work does to the tool. Left: the means over a turn of cuts that go from 0 to an angle; right: all teeth of this cut
 /// over one turn, with their means. Force above, moment about the tool centre point below. The arcs on which a tooth of this cut
 /// is in the work are shaded.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn cutting(force_history: &ForceHistory) -> Result<String, ReportError> {
-    picture("the picture of the cutting force", SIZE, |canvas| {
-        head(canvas, force_history)?;
-        for (quantity, (bottom, top)) in QUANTITIES.iter().zip(ROWS) {
-            let panel = |(left, right), x_label, samples: &[Sample], turn: f64, tick| {
-                let x = Scale::new(0.0, turn, left, right);
-                let y = range(samples, quantity.of, bottom, top);
-                let (x_ticks, y_ticks) = (Ticks::every(&x, tick, 0), Ticks::round(&y, 8));
-                Panel { x, y, x_ticks, y_ticks, x_label, y_label: quantity.label }
-            };
-            let entering = panel(COLUMNS[0], "engagement angle (deg)", &force_history.entering, 180.0, 30.0);
-            ground(canvas, force_history, &entering)?;
-            curves(canvas, &entering, &force_history.entering, quantity.of)?;
-            let turn = panel(COLUMNS[1], "angle of the first tooth (deg)", &force_history.turn, 360.0, 60.0);
-            ground(canvas, force_history, &turn)?;
-            means(canvas, &turn, (quantity.of)(&force_history.mean))?;
-            curves(canvas, &turn, &force_history.turn, quantity.of)?;
+pub fn cutting(force_history: &ForceHistory) -> String {
+    picture(SIZE, |canvas| {
+        head(canvas, force_history);
+        for (quantity, rows) in QUANTITIES.iter().zip(ROWS) {
+            let entering = &force_history.entering;
+            let mut chart = quantity.chart(force_history, entering, (COLUMNS[0], rows), (180.0, 30.0));
+            chart.panel.x_label = "engagement angle (deg)";
+            quantity.curves(&mut chart, entering);
+            chart.draw(canvas);
+            let turn = &force_history.turn;
+            let mut chart = quantity.chart(force_history, turn, (COLUMNS[1], rows), (360.0, 60.0));
+            chart.panel.x_label = "angle of the first tooth (deg)";
+            let mean = (quantity.of)(&force_history.mean);
+            let axes = COMPONENTS.into_iter().enumerate();
+            chart.marks.extend(axes.map(|(axis, colour)| Mark::Dashed(mean[axis], colour)));
+            quantity.curves(&mut chart, turn);
+            chart.draw(canvas);
         }
         let captions = [
             "What the work does to the tool, moments about the tool centre point. Angles run in the sense of rotation, from the \
@@ -57,16 +53,15 @@ pub fn cutting(force_history: &ForceHistory) -> Result<String, ReportError> {
             "The mean of a cut is what the component curves on the left gain over its shaded arcs.",
         ];
         for (line, above) in captions.iter().zip([42, 22]) {
-            canvas.text(line, (COLUMNS[0].0, SIZE.1 - above), Lettering::new(12.0).coloured(INK))?;
+            canvas.text(line, (COLUMNS[0].0, SIZE.1 - above), TextStyle::new(12.0).coloured(INK));
         }
-        Ok(())
     })
 }
 
 /// Titles, the mean in figures, and the legend.
-fn head(canvas: &Canvas<'_>, force_history: &ForceHistory) -> Drawn {
+fn head(canvas: &mut Canvas, force_history: &ForceHistory) {
     let left = COLUMNS[0].0;
-    canvas.text("Cutting force and moment on the tool", (left, 24), Lettering::new(17.0).bold())?;
+    canvas.title("Cutting force and moment on the tool", (left, 24));
     let figures = |vector: &Vector3<f64>, decimals| {
         let [x, y, z] = [vector.x, vector.y, vector.z].map(|part| fixed(part, decimals));
         format!("({x}, {y}, {z}), magnitude {}", fixed(vector.norm(), decimals))
@@ -80,82 +75,61 @@ fn head(canvas: &Canvas<'_>, force_history: &ForceHistory) -> Drawn {
         format!("Mean over a turn, along feed, left and axis: force {force} N; moment {moment} N m."),
     ];
     for (line, y) in lines.iter().zip([50, 70]) {
-        canvas.text(line, (left, y), Lettering::new(12.0).coloured(INK))?;
+        canvas.text(line, (left, y), TextStyle::new(12.0).coloured(INK));
     }
-    legend(canvas, left, 98)?;
+    curve_legend(canvas, left);
     for ((left, _), title) in
         COLUMNS.into_iter().zip(["Mean over a turn, engaged from 0 to an angle", "All teeth over one turn"])
     {
-        canvas.text(title, (left, ROWS[0].1 - 18), Lettering::new(13.0).bold().coloured(INK))?;
+        canvas.text(title, (left, ROWS[0].1 - 18), TextStyle::new(13.0).bold().coloured(INK));
     }
-    Ok(())
 }
 
 /// The legend, in one line.
-fn legend(canvas: &Canvas<'_>, left: i32, y: i32) -> Drawn {
+fn curve_legend(canvas: &mut Canvas, left: i32) {
     let [feed, side, axis] = COMPONENTS;
-    let curves = [
-        (0, "along the feed", feed),
-        (150, "to the left of it", side),
-        (300, "along the tool axis", axis),
-        (480, "magnitude", BLACK),
+    let entries = [
+        (left, Sign::Line(feed), "along the feed"),
+        (left + 150, Sign::Line(side), "to the left of it"),
+        (left + 300, Sign::Line(axis), "along the tool axis"),
+        (left + 480, Sign::Line(BLACK), "magnitude"),
+        (left + 606, Sign::Dashed(INK), "mean over the turn"),
+        (left + 785, Sign::Ground(SHADE), "a tooth is in the work"),
     ];
-    let lettering = Lettering::new(12.0);
-    for (offset, label, colour) in curves {
-        let at = left + offset;
-        canvas.line(vec![(at, y), (at + 28, y)], colour, 2)?;
-        canvas.text(label, (at + 36, y), lettering)?;
-    }
-    let [mean, arcs] = [left + 606, left + 785];
-    canvas.dashed((mean, y), (mean + 28, y), INK)?;
-    canvas.text("mean over the turn", (mean + 36, y), lettering)?;
-    canvas.fill((arcs, y - 7), (arcs + 28, y + 7), SHADE)?;
-    canvas.text("a tooth is in the work", (arcs + 36, y), lettering)
+    legend(canvas, 98, &entries);
 }
 
-/// The vertical scale: zero, all components and the magnitude.
-fn range(samples: &[Sample], of: fn(&Wrench) -> Vector3<f64>, bottom: i32, top: i32) -> Scale {
-    let (mut low, mut high) = (0.0_f64, 0.0_f64);
-    for sample in samples {
-        let vector = of(&sample.wrench);
-        low = low.min(vector.min());
-        high = high.max(vector.norm());
+impl Quantity {
+    /// A chart between these columns and rows over these angles, up to and every so many degrees, with room for all components
+    /// and the magnitude, the arcs of this cut shaded, and a line at zero.
+    fn chart(
+        &self,
+        force_history: &ForceHistory,
+        samples: &[Sample],
+        ((left, right), (bottom, top)): (Pixel, Pixel),
+        (last, tick): (f64, f64),
+    ) -> LineChart {
+        let vectors = || samples.iter().map(|sample| (self.of)(&sample.wrench));
+        let low = vectors().map(|vector| vector.min()).fold(0.0, f64::min);
+        let high = vectors().map(|vector| vector.norm()).fold(0.0, f64::max);
+        let margin = 0.06 * (high - low);
+        let x = Scale::new(0.0, last, left, right);
+        let y = Scale::new(low - margin, high + margin, bottom, top);
+        let (x_ticks, y_ticks) = (Ticks::every(&x, tick, 0), Ticks::round(&y, 8));
+        let panel = Panel { x, y, x_ticks, y_ticks, x_label: "", y_label: self.label };
+        let arcs = force_history.engagement.arcs().iter();
+        let shades = arcs.map(|arc| [arc.entry, arc.exit].map(f64::to_degrees)).collect();
+        LineChart { panel, shades, marks: vec![Mark::Horizontal(0.0, INK)] }
     }
-    let margin = 0.06 * (high - low);
-    Scale::new(low - margin, high + margin, bottom, top)
-}
 
-/// Shaded arcs, and the grid with its zero.
-fn ground(canvas: &Canvas<'_>, force_history: &ForceHistory, panel: &Panel) -> Drawn {
-    for arc in force_history.engagement.arcs() {
-        let [from, to] = [arc.entry, arc.exit].map(|phi| panel.x.pixel(phi.to_degrees()));
-        canvas.fill((from, panel.y.end), (to, panel.y.start), SHADE)?;
+    /// Adds the curves of the magnitude and of the components over it.
+    fn curves(&self, chart: &mut LineChart, samples: &[Sample]) {
+        let at = |sample: &Sample, value: f64| [sample.phi.to_degrees(), value];
+        chart.curve(samples.iter().map(|sample| at(sample, (self.of)(&sample.wrench).norm())), BLACK);
+        for (axis, colour) in COMPONENTS.into_iter().enumerate() {
+            chart.curve(samples.iter().map(|sample| at(sample, (self.of)(&sample.wrench)[axis])), colour);
+        }
     }
-    panel.draw_grid(canvas)?;
-    let zero = panel.y.pixel(0.0);
-    canvas.line(vec![(panel.x.start, zero), (panel.x.end, zero)], INK, 1)
-}
-
-/// The curves of the magnitude and of the components over it, and the frame.
-fn curves(canvas: &Canvas<'_>, panel: &Panel, samples: &[Sample], of: fn(&Wrench) -> Vector3<f64>) -> Drawn {
-    let curve = |value: &dyn Fn(&Vector3<f64>) -> f64, colour: RGBColor| {
-        let place = |sample: &Sample| panel.place(sample.phi.to_degrees(), value(&of(&sample.wrench)));
-        canvas.curve(&samples.iter().map(place).collect::<Vec<Place>>(), colour, 2)
-    };
-    curve(&|vector| vector.norm(), BLACK)?;
-    for (axis, colour) in COMPONENTS.into_iter().enumerate() {
-        curve(&|vector| vector[axis], colour)?;
-    }
-    panel.draw_frame(canvas)
-}
-
-/// The means of the components.
-fn means(canvas: &Canvas<'_>, panel: &Panel, mean: Vector3<f64>) -> Drawn {
-    for (axis, colour) in COMPONENTS.into_iter().enumerate() {
-        let y = panel.y.pixel(mean[axis]);
-        canvas.dashed((panel.x.start, y), (panel.x.end, y), colour)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -165,8 +139,8 @@ mod tests {
 
     #[test]
     fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {
-        let svg = cutting(&force_history()).unwrap();
-        assert_eq!(svg, cutting(&force_history()).unwrap());
+        let svg = cutting(&force_history());
+        assert_eq!(svg, cutting(&force_history()));
         assert_well_formed(&svg);
         assert!(svg.len() < 150_000, "{}", svg.len());
         for label in ["force (N)", "moment (N m)", "along the feed", "from 0.0 to 60.0 and from 120.0 to 180.0 deg"] {

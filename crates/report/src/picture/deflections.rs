@@ -1,30 +1,25 @@
 //! Deflections read beside those of the identified arm.
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, nearest, picture};
-use super::colour::{COMPONENTS, GREY, INK, RED};
-use crate::output::ReportError;
+use super::canvas::{Canvas, TextStyle, nearest, picture};
+use super::colour::{COMPONENTS, GREY, INK, RED, WHITE};
 use crate::units::fixed;
-use plotters::style::WHITE;
 use stead_calibration::identification::Identified;
 
 /// Above: every component of every deflection, read over predicted, with the line on which both are the same; below: what is left,
 /// over the predicted one. Outliers are ringed.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn deflections(found: &Identified) -> Result<String, ReportError> {
-    picture("the picture of deflections", (820, 1010), |canvas| {
-        canvas.text("Deflection read and by the identified arm", (85, 26), Lettering::new(17.0).bold())?;
+pub fn deflections(found: &Identified) -> String {
+    picture((820, 1010), |canvas| {
+        canvas.title("Deflection read and by the identified arm", (85, 26));
         let (above, below) = (upper(found), lower(found));
-        draw(canvas, found, &above, |measured, _| measured)?;
+        draw(canvas, found, &above, |measured, _| measured);
         let [from, to] = [above.x.from, above.x.to].map(|value| nearest(above.place(value, value)));
-        canvas.dashed(from, to, GREY)?;
-        above.draw_frame(canvas)?;
-        legend(canvas, found, &above)?;
-        draw(canvas, found, &below, |measured, predicted| measured - predicted)?;
+        canvas.dashed(from, to, GREY);
+        above.draw_frame(canvas);
+        legend(canvas, found, &above);
+        draw(canvas, found, &below, |measured, predicted| measured - predicted);
         let zero = below.y.pixel(0.0);
-        canvas.dashed((below.x.start, zero), (below.x.end, zero), GREY)?;
+        canvas.dashed((below.x.start, zero), (below.x.end, zero), GREY);
         below.draw_frame(canvas)
     })
 }
@@ -63,36 +58,34 @@ fn lower(found: &Identified) -> Panel {
     panel(x, y, "read less predicted (mm)")
 }
 
-fn draw(canvas: &Canvas<'_>, found: &Identified, panel: &Panel, height: impl Fn(f64, f64) -> f64) -> Drawn {
-    panel.draw_grid(canvas)?;
+fn draw(canvas: &mut Canvas, found: &Identified, panel: &Panel, height: impl Fn(f64, f64) -> f64) {
+    panel.draw_grid(canvas);
     for (predicted, measured, is_outlier, axis) in components(found) {
         let place = panel.place(predicted, height(measured, predicted));
         if is_outlier {
-            canvas.dot(place, 6, RED)?;
+            canvas.dot(place, 6, RED);
         }
-        canvas.dot(place, 3, COMPONENTS[axis])?;
+        canvas.dot(place, 3, COMPONENTS[axis]);
     }
-    Ok(())
 }
 
-fn legend(canvas: &Canvas<'_>, found: &Identified, panel: &Panel) -> Drawn {
+fn legend(canvas: &mut Canvas, found: &Identified, panel: &Panel) {
     let (left, top) = (panel.x.start + 12, panel.y.end + 12);
     let outliers = found.outliers().count();
     let lines = if outliers > 0 { 5 } else { 4 };
-    canvas.fill((left, top), (left + 235, top + 10 + 20 * lines), WHITE)?;
-    canvas.outline((left, top), (left + 235, top + 10 + 20 * lines), GREY)?;
-    let lettering = Lettering::new(12.0).coloured(INK);
+    canvas.fill((left, top), (left + 235, top + 10 + 20 * lines), WHITE);
+    canvas.outline((left, top), (left + 235, top + 10 + 20 * lines), GREY);
+    let style = TextStyle::new(12.0).coloured(INK);
     let line = |index: i32| top + 15 + 20 * index;
     for (axis, name) in ["x of the base frame", "y", "z"].into_iter().enumerate() {
         let y = line(axis as i32);
-        canvas.dot((f64::from(left + 14), f64::from(y)), 3, COMPONENTS[axis])?;
-        canvas.text(name, (left + 28, y), lettering)?;
+        canvas.dot((f64::from(left + 14), f64::from(y)), 3, COMPONENTS[axis]);
+        canvas.text(name, (left + 28, y), style);
     }
     let residual = format!("residual {} mm rms", fixed(found.residual_rms * 1e3, 4));
-    canvas.text(&residual, (left + 28, line(3)), lettering)?;
+    canvas.text(&residual, (left + 28, line(3)), style);
     if outliers > 0 {
-        canvas.dot((f64::from(left + 14), f64::from(line(4))), 6, RED)?;
-        canvas.text(&format!("readings left out: {outliers}"), (left + 28, line(4)), lettering)?;
+        canvas.dot((f64::from(left + 14), f64::from(line(4))), 6, RED);
+        canvas.text(&format!("readings left out: {outliers}"), (left + 28, line(4)), style);
     }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Diagonal hatching of any region, in few and long lines.
 
-use super::canvas::{Canvas, Drawn, Pixel};
-use plotters::style::RGBColor;
+use super::canvas::{Canvas, Pixel};
+use super::colour::Colour;
 
 /// Which way the lines of a hatching run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,16 +17,15 @@ const SPACING: usize = 9;
 
 /// Hatches those pixels between two corners for which `inside` holds.
 pub(super) fn hatch(
-    canvas: &Canvas<'_>,
+    canvas: &mut Canvas,
     (from, to): (Pixel, Pixel),
     slope: Slope,
-    colour: RGBColor,
+    colour: Colour,
     inside: impl Fn(Pixel) -> bool,
-) -> Drawn {
+) {
     for (start, end) in lines((from, to), slope, inside) {
-        canvas.line(vec![start, end], colour, 1)?;
+        canvas.line(&[start, end], colour, 1);
     }
-    Ok(())
 }
 
 fn lines((from, to): (Pixel, Pixel), slope: Slope, inside: impl Fn(Pixel) -> bool) -> Vec<(Pixel, Pixel)> {

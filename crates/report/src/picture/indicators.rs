@@ -1,12 +1,10 @@
 //! Robots side by side by four indicators (Klimchik 2017, Fig. 20).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Pixel, picture};
-use super::colour::{INDICATORS, INK};
-use crate::output::ReportError;
+use super::canvas::{Canvas, Pixel, TextStyle, picture};
+use super::colour::{Colour, INDICATORS, INK};
 use crate::units::figures;
 use crate::units::fixed;
-use plotters::style::RGBColor;
 use stead_assessment::comparison::{Assessment, Load, RobotResult};
 
 const WIDTH: i32 = 1100;
@@ -71,31 +69,30 @@ const ALL: [Indicator; 4] = [
 /// Bars of accuracy (under the test load, at the best place), working radius, payload and price for every robot, each
 /// relative to the best robot, which has 1; the values themselves stand at the bars. An indicator that no robot has is left
 /// out; a robot without a value has a dash in place of the bar. Six robots stand in a row, more in more rows.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn indicators(assessment: &Assessment) -> Result<String, ReportError> {
+pub fn indicators(assessment: &Assessment) -> String {
     let rows = assessment.robots.chunks(MOST);
     let height = ROWS[0] + ROWS[2] * rows.len().max(1) as i32;
-    picture("the picture of the indicators", (WIDTH, height), |canvas| {
+    picture((WIDTH, height), |canvas| {
         let known: Vec<Known> =
             ALL.iter().zip(INDICATORS).filter_map(|(i, colour)| Known::new(i, colour, assessment)).collect();
         let room = (RIGHT - LEFT) / assessment.robots.len().clamp(1, MOST) as i32;
-        head(canvas, assessment, &known)?;
-        rows.zip(0..).try_for_each(|(robots, row)| draw_row(canvas, robots, (ROWS[0] + ROWS[2] * row, room), &known))
+        head(canvas, assessment, &known);
+        for (robots, row) in rows.zip(0..) {
+            draw_row(canvas, robots, (ROWS[0] + ROWS[2] * row, room), &known);
+        }
     })
 }
 
 /// An indicator that some robot has.
 struct Known<'a> {
     indicator: &'a Indicator,
-    colour: RGBColor,
+    colour: Colour,
     /// Value of the best robot.
     best: f64,
 }
 
 impl<'a> Known<'a> {
-    fn new(indicator: &'a Indicator, colour: RGBColor, assessment: &Assessment) -> Option<Self> {
+    fn new(indicator: &'a Indicator, colour: Colour, assessment: &Assessment) -> Option<Self> {
         let values = assessment.robots.iter().filter_map(indicator.of);
         let best = values.reduce(if indicator.least_is_best { f64::min } else { f64::max })?;
         Some(Self { indicator, colour, best })
@@ -114,8 +111,8 @@ impl<'a> Known<'a> {
 }
 
 /// Title and legend.
-fn head(canvas: &Canvas<'_>, assessment: &Assessment, known: &[Known<'_>]) -> Drawn {
-    canvas.text("Robots by their principal indicators", (LEFT, 24), Lettering::new(17.0).bold())?;
+fn head(canvas: &mut Canvas, assessment: &Assessment, known: &[Known<'_>]) {
+    canvas.title("Robots by their principal indicators", (LEFT, 24));
     let mut configurations = assessment.robots.iter().flat_map(|robot| &robot.configurations);
     let force = configurations.find(|found| found.load == Load::Test).map(|found| figures(found.force));
     for (known, y) in known.iter().zip((50..).step_by(21)) {
@@ -125,35 +122,34 @@ fn head(canvas: &Canvas<'_>, assessment: &Assessment, known: &[Known<'_>]) -> Dr
             _ => String::new(),
         };
         let value = if *name == "accuracy" { "circularity" } else { name };
-        canvas.fill((LEFT, y - 7), (LEFT + 26, y + 7), known.colour)?;
-        let lettering = Lettering::new(12.0);
-        canvas.text(name, (LEFT + 34, y), lettering.bold())?;
+        canvas.fill((LEFT, y - 7), (LEFT + 26, y + 7), known.colour);
+        let style = TextStyle::new(12.0);
+        canvas.text(name, (LEFT + 34, y), style.bold());
         let text = format!("{relative_to}{load}; the number is the {value} in {unit}");
-        canvas.text(&text, (LEFT + 152, y), lettering.coloured(INK))?;
+        canvas.text(&text, (LEFT + 152, y), style.coloured(INK));
     }
-    Ok(())
 }
 
 /// A row of robots: its upper edge, and the width for each.
-fn draw_row(canvas: &Canvas<'_>, robots: &[RobotResult], (top, room): Pixel, known: &[Known<'_>]) -> Drawn {
+fn draw_row(canvas: &mut Canvas, robots: &[RobotResult], (top, room): Pixel, known: &[Known<'_>]) {
     let x = Scale::new(0.0, robots.len() as f64, LEFT, LEFT + room * robots.len() as i32);
     let y = Scale::new(0.0, FULL, top + ROWS[1], top);
     let (x_ticks, y_ticks) = (Ticks::none(), Ticks::every(&y, 0.2, 1));
     let y_label = "relative to the best robot, which has 1";
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: "robot", y_label };
-    panel.draw_grid(canvas)?;
+    panel.draw_grid(canvas);
     for (index, robot) in robots.iter().enumerate() {
         let (left, right) = (panel.x.pixel(index as f64), panel.x.pixel(index as f64 + 1.0));
-        bars(canvas, &panel, robot, left, known)?;
+        bars(canvas, &panel, robot, left, known);
         let size = (f64::from(right - left - 4) / (robot.name.chars().count().max(1) as f64 * 0.6)).min(13.0);
         let place = ((left + right) / 2, panel.y.start + 15);
-        canvas.text(&robot.name, place, Lettering::new(size).bold().centred())?;
+        canvas.text(&robot.name, place, TextStyle::new(size).bold().centred());
     }
     panel.draw_frame(canvas)
 }
 
 /// The bars of a robot, with their values above them.
-fn bars(canvas: &Canvas<'_>, panel: &Panel, robot: &RobotResult, left: i32, known: &[Known<'_>]) -> Drawn {
+fn bars(canvas: &mut Canvas, panel: &Panel, robot: &RobotResult, left: i32, known: &[Known<'_>]) {
     let room = panel.x.pixel(1.0) - panel.x.pixel(0.0);
     let width = room * 8 / 10 / known.len().max(1) as i32;
     let first = left + (room - width * known.len() as i32) / 2;
@@ -161,15 +157,14 @@ fn bars(canvas: &Canvas<'_>, panel: &Panel, robot: &RobotResult, left: i32, know
         let from = first + bar * width;
         let middle = from + width / 2;
         let Some(value) = (known.indicator.of)(robot) else {
-            canvas.text("–", (middle, panel.y.start - 10), Lettering::new(14.0).centred())?;
+            canvas.text("–", (middle, panel.y.start - 10), TextStyle::new(14.0).centred());
             continue;
         };
         let upper = panel.y.pixel(known.relative(value));
-        canvas.fill((from + 1, upper), (from + width - 1, panel.y.start), known.colour)?;
+        canvas.fill((from + 1, upper), (from + width - 1, panel.y.start), known.colour);
         let (text, unit) = ((known.indicator.text)(value), known.indicator.unit);
         let size = (f64::from(width) / (text.chars().count() as f64 * 0.6)).min(11.0);
-        canvas.text(&text, (middle, upper - 22), Lettering::new(size).centred())?;
-        canvas.text(unit, (middle, upper - 9), Lettering::new(11.0).centred().coloured(INK))?;
+        canvas.text(&text, (middle, upper - 22), TextStyle::new(size).centred());
+        canvas.text(unit, (middle, upper - 9), TextStyle::new(11.0).centred().coloured(INK));
     }
-    Ok(())
 }

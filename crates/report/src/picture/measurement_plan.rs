@@ -1,12 +1,10 @@
 //! A plan of measurements: how well every compliance will be known, and where the arm stands for it.
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Place, nearest, picture};
-use super::colour::{BLUE, GREEN, GREY, INK, PALE, RED};
-use crate::output::ReportError;
+use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
+use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::{figures, fixed};
 use nalgebra::{Vector2, Vector3};
-use plotters::style::RGBColor;
 use stead_calibration::identification::LoadCase;
 use stead_calibration::identification::design::expected::ExpectedCompliance;
 use stead_calibration::identification::design::{Design, Request};
@@ -24,15 +22,12 @@ const ARROW: f64 = 34.0;
 /// Above: expected standard deviation of every compliance in per cent of it, from the plan, the best and the median of the random
 /// sets; for the joint with several compliances by its law. Below: the arm in all configurations of the plan with the load on it,
 /// from above and in the vertical plane through axis 1 and the load point.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn measurement_plan(request: &Request, plan: &Design) -> Result<String, ReportError> {
-    picture("the picture of the plan", (1100, 1020), |canvas| {
+pub fn measurement_plan(request: &Request, plan: &Design) -> String {
+    picture((1100, 1020), |canvas| {
         let title = format!("Expected errors of {} configurations", plan.load_cases.len());
-        canvas.text(&title, (LEFT, 26), Lettering::new(17.0).bold())?;
-        legend(canvas, plan)?;
-        draw_bars(canvas, plan)?;
+        canvas.title(&title, (LEFT, 26));
+        legend(canvas, plan);
+        draw_bars(canvas, plan);
         draw_views(canvas, request, plan)
     })
 }
@@ -42,18 +37,18 @@ fn percents(bar: &ExpectedCompliance) -> [Option<f64>; 3] {
     [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| 100.0 * d / bar.value))
 }
 
-const COLOURS: [RGBColor; 3] = [GREEN, BLUE, PALE];
+const COLOURS: [Colour; 3] = [GREEN, BLUE, PALE];
 
-fn legend(canvas: &Canvas<'_>, plan: &Design) -> Drawn {
+fn legend(canvas: &mut Canvas, plan: &Design) {
     let expected = &plan.errors;
     let names = ["the plan", "best random set", "median random set"];
     let errors = [expected.planned, expected.best_random, expected.median_random];
     for (index, (name, error)) in names.into_iter().zip(errors).enumerate() {
         let (x, y) = (LEFT + 330 * index as i32, 56);
-        canvas.fill((x, y - 7), (x + 26, y + 7), COLOURS[index])?;
+        canvas.fill((x, y - 7), (x + 26, y + 7), COLOURS[index]);
         let error =
             if error.is_finite() { format!("{} mm", figures(error * 1e3)) } else { "does not tell all".to_owned() };
-        canvas.text(&format!("{name}: {error}"), (x + 34, y), Lettering::new(12.0).bold())?;
+        canvas.text(&format!("{name}: {error}"), (x + 34, y), TextStyle::new(12.0).bold());
     }
     let text = format!(
         "mm: expected error of the deflection of the tip over {} tests, rms, where the deflection itself is {} mm; random sets: {}",
@@ -61,30 +56,30 @@ fn legend(canvas: &Canvas<'_>, plan: &Design) -> Drawn {
         figures(plan.deflection * 1e3),
         expected.random_sets
     );
-    canvas.text(&text, (LEFT, 84), Lettering::new(12.0).coloured(INK))
+    canvas.text(&text, (LEFT, 84), TextStyle::new(12.0).coloured(INK))
 }
 
-fn draw_bars(canvas: &Canvas<'_>, plan: &Design) -> Drawn {
+fn draw_bars(canvas: &mut Canvas, plan: &Design) {
     let most = plan.bars.iter().flat_map(percents).flatten().fold(0.0, f64::max);
     let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.bars.len().max(1) as f64, LEFT, RIGHT);
     let y_ticks = Ticks::round(&y, 7);
     let x_ticks = Ticks::none();
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: "compliance", y_label: "standard deviation (%)" };
-    panel.draw_grid(canvas)?;
+    panel.draw_grid(canvas);
     for (index, bar) in plan.bars.iter().enumerate() {
         let (from, to) = (panel.x.pixel(index as f64 + 0.12), panel.x.pixel(index as f64 + 0.88));
         let width = (to - from) / 3;
         for (k, percent) in percents(bar).into_iter().enumerate() {
             let (left, Some(percent)) = (from + width * k as i32, percent) else { continue };
-            canvas.fill((left + 1, panel.y.pixel(percent)), (left + width - 1, panel.y.start), COLOURS[k])?;
-            let lettering = Lettering::new((f64::from(width) / 2.6).min(10.0)).centred().coloured(INK);
-            canvas.text(&two_figures(percent), (left + width / 2, panel.y.pixel(percent) - 8), lettering)?;
+            canvas.fill((left + 1, panel.y.pixel(percent)), (left + width - 1, panel.y.start), COLOURS[k]);
+            let style = TextStyle::new((f64::from(width) / 2.6).min(10.0)).centred().coloured(INK);
+            canvas.text(&two_figures(percent), (left + width / 2, panel.y.pixel(percent) - 8), style);
         }
         let angle = bar.angle.map_or_else(String::new, |angle| format!(" at {}°", fixed(angle.to_degrees(), 0)));
         let name = format!("k{}{angle}", bar.joint + 1);
         let size = (f64::from(to - from) / (name.chars().count() as f64 * 0.55)).min(12.0);
-        canvas.text(&name, ((from + to) / 2, panel.y.start + 15), Lettering::new(size).centred())?;
+        canvas.text(&name, ((from + to) / 2, panel.y.start + 15), TextStyle::new(size).centred());
     }
     panel.draw_frame(canvas)
 }
@@ -116,23 +111,22 @@ fn posed(request: &Request, plan: &Design, from_above: bool) -> Vec<Posed> {
     plan.load_cases.iter().map(pose).collect()
 }
 
-fn draw_views(canvas: &Canvas<'_>, request: &Request, plan: &Design) -> Drawn {
+fn draw_views(canvas: &mut Canvas, request: &Request, plan: &Design) {
     let (top, side) = VIEWS;
     let titles = ["From above", "In the vertical plane through axis 1 and the load point"];
     for (index, title) in titles.into_iter().enumerate() {
         let left = LEFT + index as i32 * (RIGHT - LEFT - side);
-        canvas.text(title, (left, top - 42), Lettering::new(13.0).bold())?;
+        canvas.text(title, (left, top - 42), TextStyle::new(13.0).bold());
         let text = "grey: the arm to the load point; red: the load, its full length where it lies in the view";
         if index == 0 {
-            canvas.text(text, (left, top - 20), Lettering::new(12.0).coloured(INK))?;
+            canvas.text(text, (left, top - 20), TextStyle::new(12.0).coloured(INK));
         }
-        view(canvas, &posed(request, plan, index == 0), left, index == 0)?;
+        view(canvas, &posed(request, plan, index == 0), left, index == 0);
     }
-    Ok(())
 }
 
 /// One view, with the same scale across and up.
-fn view(canvas: &Canvas<'_>, poses: &[Posed], left: i32, from_above: bool) -> Drawn {
+fn view(canvas: &mut Canvas, poses: &[Posed], left: i32, from_above: bool) {
     let (top, side) = VIEWS;
     let all = || poses.iter().flat_map(|pose| &pose.arm);
     let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
@@ -143,19 +137,19 @@ fn view(canvas: &Canvas<'_>, poses: &[Posed], left: i32, from_above: bool) -> Dr
     let (x_ticks, y_ticks) = (Ticks::round(&x, 6), Ticks::round(&y, 8));
     let labels = if from_above { ["x (mm)", "y (mm)"] } else { ["out from axis 1 (mm)", "z (mm)"] };
     let panel = Panel { x, y, x_ticks, y_ticks, x_label: labels[0], y_label: labels[1] };
-    panel.draw_grid(canvas)?;
+    panel.draw_grid(canvas);
     let place = |v: &Vector2<f64>| -> Place { panel.place(v.x * 1e3, v.y * 1e3) };
     for pose in poses {
-        canvas.curve(&pose.arm.iter().map(place).collect::<Vec<_>>(), PALE, 1)?;
+        canvas.curve(&pose.arm.iter().map(place).collect::<Vec<_>>(), PALE, 1);
     }
-    canvas.dot(place(&Vector2::zeros()), 5, GREY)?;
+    canvas.dot(place(&Vector2::zeros()), 5, GREY);
     for pose in poses {
         let Some(load) = pose.arm.last().map(place) else { continue };
         let tip = (load.0 + ARROW * pose.force.x, load.1 - ARROW * pose.force.y);
         if nearest(tip) == nearest(load) {
-            canvas.dot(load, 3, RED)?;
+            canvas.dot(load, 3, RED);
         } else {
-            canvas.arrow(load, tip, RED, 1)?;
+            canvas.arrow(load, tip, RED, 1);
         }
     }
     panel.draw_frame(canvas)

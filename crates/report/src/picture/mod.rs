@@ -3,6 +3,7 @@
 mod axes;
 mod canvas;
 mod cell;
+mod cell_view;
 mod circularity_map;
 mod circularity_panel;
 mod colour;
@@ -14,16 +15,17 @@ mod deflection_map;
 mod deflections;
 mod frequency_response;
 mod hatch;
+mod heat_map;
 mod indicators;
-mod lettering;
+mod labels;
+mod line_chart;
 mod lobes;
 mod measurement_plan;
+mod merged_cells;
 mod open_region;
-mod patches;
 mod path_stability;
 mod plane_view;
 mod polar;
-mod scene;
 mod simulation;
 
 pub use cell::cell;

@@ -1,12 +1,11 @@
 //! What a certificate leaves open, over the cell.
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, picture};
+use super::canvas::{Canvas, TextStyle, picture};
+use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, RED, viridis};
-use super::patches::patches;
-use super::scene::Scene;
+use super::heat_map::HeatMap;
 use crate::certificate::{OpenBox, Proof, open_boxes};
-use crate::output::ReportError;
 use crate::units::fixed;
 use stead_model::robot::angles::wrap;
 use stead_placement::problem::Problem;
@@ -23,26 +22,23 @@ const LEAST: f64 = 10.0;
 
 /// The boxes of placements that a certificate leaves open: where the workpiece origin may stand, from above, and over the yaw
 /// less the azimuth, each place in the colour of the most promising box there. The dot is the placement found.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn open_region(problem: &Problem, proof: &Proof) -> Result<String, ReportError> {
-    picture("the picture of the open region", (1110, 690), |canvas| {
+pub fn open_region(problem: &Problem, proof: &Proof) -> String {
+    picture((1110, 690), |canvas| {
         let boxes = open_boxes(problem, proof);
         let colours = Colours::new(proof, &boxes);
-        heading(canvas, proof, boxes.len())?;
-        from_above(canvas, problem, proof, &boxes, &colours)?;
-        turned(canvas, problem, proof, &boxes, &colours)?;
+        heading(canvas, proof, boxes.len());
+        from_above(canvas, problem, proof, &boxes, &colours);
+        turned(canvas, problem, proof, &boxes, &colours);
         colours.legend(canvas, proof)
     })
 }
 
-fn heading(canvas: &Canvas<'_>, proof: &Proof, count: usize) -> Drawn {
+fn heading(canvas: &mut Canvas, proof: &Proof, count: usize) {
     let (title, past) = match proof.sense {
         Sense::Min => ("What the certificate of the best placement leaves open", "better"),
         Sense::Max => ("What the certificate of the worst placement leaves open, rate of beta dropped", "worse"),
     };
-    canvas.text(title, (LEFT[0], 24), Lettering::new(17.0).bold())?;
+    canvas.title(title, (LEFT[0], 24));
     let words = if count == 0 {
         format!("Nothing: no placement in the cell is {past} by more than {} %", fixed(proof.gap_percent(), 4))
     } else {
@@ -51,11 +47,11 @@ fn heading(canvas: &Canvas<'_>, proof: &Proof, count: usize) -> Drawn {
             fixed(proof.gap_percent(), 4)
         )
     };
-    canvas.text(&words, (LEFT[0], 52), Lettering::new(13.0).coloured(INK))
+    canvas.text(&words, (LEFT[0], 52), TextStyle::new(13.0).coloured(INK))
 }
 
 /// The cell from above. What is open is so at every azimuth: turning workpiece and joint 1 together changes nothing.
-fn from_above(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) -> Drawn {
+fn from_above(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) {
     let [x, y, _] = problem.cell.position.map(|range| widened(range.min * 1e3, range.max * 1e3));
     let side = 1.1 * (x[1] - x[0]).max(y[1] - y[0]);
     let about = |range: [f64; 2]| [0.5, -0.5].map(|sign| (range[0] + range[1]) / 2.0 - sign * side);
@@ -85,19 +81,19 @@ fn from_above(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[Op
             here.reduce(|a, b| more_promising(proof.sense, a, b)).map(|bound| colours.level(bound))
         })
         .collect();
-    panel.draw_grid(canvas)?;
+    panel.draw_grid(canvas);
     let grid = Grid { from: [x[0], y[0]], to: [x[1], y[1]], counts: [CELLS, CELLS] };
-    grid.draw(canvas, &panel, &levels)?;
-    let scene = Scene { problem, panel };
-    scene.limits(canvas)?;
-    let place = scene.panel.place(proof.placement.x * 1e3, proof.placement.y * 1e3);
-    canvas.dot(place, 4, RED)?;
-    canvas.text("Workpiece origin from above", (LEFT[0], TOP - 14), Lettering::new(13.0).bold().coloured(INK))?;
-    scene.panel.draw_frame(canvas)
+    grid.draw(canvas, &panel, levels);
+    let view = CellView { problem, panel };
+    view.limits(canvas);
+    let place = view.panel.place(proof.placement.x * 1e3, proof.placement.y * 1e3);
+    canvas.dot(place, 4, RED);
+    canvas.text("Workpiece origin from above", (LEFT[0], TOP - 14), TextStyle::new(13.0).bold().coloured(INK));
+    view.panel.draw_frame(canvas)
 }
 
 /// Distance from axis 1 over the yaw less the azimuth.
-fn turned(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) -> Drawn {
+fn turned(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) {
     let root = problem.robot.geometry().root_in_base;
     let (dx, dy) = (proof.placement.x - root.x, proof.placement.y - root.y);
     let own = libm::hypot(dx, dy) * 1e3;
@@ -112,10 +108,10 @@ fn turned(canvas: &Canvas<'_>, problem: &Problem, proof: &Proof, boxes: &[OpenBo
     let levels: Vec<Option<usize>> =
         grid.filled(places, proof.sense).into_iter().map(|bound| bound.map(|bound| colours.level(bound))).collect();
     let panel = panel(LEFT[1], [-180.0, 180.0], radius, ["yaw less azimuth (deg)", "distance from axis 1 (mm)"]);
-    panel.draw_grid(canvas)?;
-    grid.draw(canvas, &panel, &levels)?;
-    canvas.dot(panel.place(turn, own), 4, RED)?;
-    canvas.text("Workpiece origin and yaw", (LEFT[1], TOP - 14), Lettering::new(13.0).bold().coloured(INK))?;
+    panel.draw_grid(canvas);
+    grid.draw(canvas, &panel, levels);
+    canvas.dot(panel.place(turn, own), 4, RED);
+    canvas.text("Workpiece origin and yaw", (LEFT[1], TOP - 14), TextStyle::new(13.0).bold().coloured(INK));
     panel.draw_frame(canvas)
 }
 
@@ -167,19 +163,13 @@ impl Grid {
         cells
     }
 
-    fn draw(&self, canvas: &Canvas<'_>, panel: &Panel, levels: &[Option<usize>]) -> Drawn {
+    fn draw(&self, canvas: &mut Canvas, panel: &Panel, levels: Vec<Option<usize>>) {
         let value = |axis: usize, k: usize| {
             self.from[axis] + (self.to[axis] - self.from[axis]) * k as f64 / self.counts[axis] as f64
         };
-        for patch in patches(self.counts[0], levels) {
-            let corners: Vec<_> = patch
-                .outline()
-                .iter()
-                .map(|[i, j]| (panel.x.pixel(value(0, *i)), panel.y.pixel(value(1, *j))))
-                .collect();
-            canvas.polygon(&corners, viridis(patch.level))?;
-        }
-        Ok(())
+        let columns = (0..=self.counts[0]).map(|k| panel.x.pixel(value(0, k))).collect();
+        let rows = (0..=self.counts[1]).map(|k| panel.y.pixel(value(1, k))).collect();
+        HeatMap { columns, rows, cells: levels }.draw_merged(canvas, viridis);
     }
 }
 
@@ -204,23 +194,23 @@ impl Colours {
         if part.is_finite() { (part.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round() as usize } else { 0 }
     }
 
-    fn legend(&self, canvas: &Canvas<'_>, proof: &Proof) -> Drawn {
+    fn legend(&self, canvas: &mut Canvas, proof: &Proof) {
         let y = TOP + SIDE + 76;
-        let small = Lettering::new(12.0).coloured(INK);
-        canvas.dot((f64::from(LEFT[1]), f64::from(y)), 4, RED)?;
-        canvas.text("the placement found", (LEFT[1] + 14, y), small)?;
+        let small = TextStyle::new(12.0).coloured(INK);
+        canvas.dot((f64::from(LEFT[1]), f64::from(y)), 4, RED);
+        canvas.text("the placement found", (LEFT[1] + 14, y), small);
         if !self.most.is_finite() || !self.least.is_finite() {
-            return Ok(());
+            return;
         }
         let (left, width) = (LEFT[0] + 110, 8);
         for level in 0..LEVELS {
             let x = left + width * level as i32;
-            canvas.fill((x, y - 8), (x + width, y + 8), viridis(level))?;
+            canvas.fill((x, y - 8), (x + width, y + 8), viridis(level));
         }
         let right = left + width * LEVELS as i32;
-        canvas.outline((left, y - 8), (right, y + 8), GREY)?;
+        canvas.outline((left, y - 8), (right, y + 8), GREY);
         let label = |bound: f64| format!("{} mm", fixed(proof.rounded_mm(bound), 5));
-        canvas.text(&label(self.most), (left - 8, y), small.ending())?;
+        canvas.text(&label(self.most), (left - 8, y), small.ending());
         canvas.text(&label(self.least), (right + 8, y), small)
     }
 }

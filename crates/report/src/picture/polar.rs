@@ -1,12 +1,10 @@
 //! The polar plot of a measured profile (after Klimchik et al. 2017, Fig. 24).
 
 use super::axes::{Scale, Ticks};
-use super::canvas::{Canvas, Drawn, Lettering, Place, nearest, picture};
-use super::colour::{BLUE, GREEN, GREY, GRID, INK, PALE, RED};
-use super::lettering::whole_or_figures;
-use crate::output::ReportError;
+use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
+use super::colour::{BLUE, Colour, GREEN, GREY, GRID, INK, PALE, RED, WHITE};
+use super::labels::whole_or_figures;
 use crate::units::fixed;
-use plotters::style::{RGBColor, WHITE};
 use std::f64::consts::{PI, TAU};
 use stead_assessment::roundness::Roundness;
 
@@ -29,23 +27,20 @@ const GAP: f64 = 3.0;
 
 /// The profile about the centre of the minimum zone circles: the deviation from the mean of both circles, magnified so that
 /// the zone fills a fixed part of the picture. Points left out are shown apart, those beyond the rim on it.
-///
-/// # Errors
-/// [`ReportError::Format`] when the drawing fails.
-pub fn polar(name: &str, found: &Roundness) -> Result<String, ReportError> {
-    picture("the polar plot", (1000, 800), |canvas| {
+pub fn polar(name: &str, found: &Roundness) -> String {
+    picture((1000, 800), |canvas| {
         let plot = Plot::new(found);
-        canvas.text(&format!("Roundness of {name}"), (30, 28), Lettering::new(17.0).bold())?;
+        canvas.title(&format!("Roundness of {name}"), (30, 28));
         let magnification = format!(
             "Deviation from the reference circle, magnified {} times",
             whole_or_figures((plot.scale * found.circles.mzc.circle.radius / REFERENCE * 1e3).round() / 1e3)
         );
-        canvas.text(&magnification, (30, 52), Lettering::new(13.0).coloured(INK))?;
-        plot.grid(canvas)?;
-        plot.circles(canvas)?;
-        plot.profile(canvas)?;
-        plot.left_out(canvas)?;
-        plot.ring_labels(canvas)?;
+        canvas.text(&magnification, (30, 52), TextStyle::new(13.0).coloured(INK));
+        plot.grid(canvas);
+        plot.circles(canvas);
+        plot.profile(canvas);
+        plot.left_out(canvas);
+        plot.ring_labels(canvas);
         plot.legend(canvas)
     })
 }
@@ -85,7 +80,7 @@ impl<'a> Plot<'a> {
         (MIDDLE.0 + radius * cosine, MIDDLE.1 - radius * sine)
     }
 
-    fn ring(&self, canvas: &Canvas<'_>, deviation: f64, colour: RGBColor, width: u32) -> Drawn {
+    fn ring(&self, canvas: &mut Canvas, deviation: f64, colour: Colour, width: i32) {
         let points: Vec<Place> = (0..=360).map(|k| self.place(TAU * f64::from(k) / 360.0, deviation)).collect();
         canvas.curve(&points, colour, width)
     }
@@ -96,31 +91,30 @@ impl<'a> Plot<'a> {
         Ticks::round(&Scale::new(-reach, reach, 0, 1), 8)
     }
 
-    fn grid(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn grid(&self, canvas: &mut Canvas) {
         for deviation in self.ticks().values {
-            self.ring(canvas, deviation, GRID, 1)?;
+            self.ring(canvas, deviation, GRID, 1);
         }
         let rim = (RIM - REFERENCE) / self.scale;
-        self.ring(canvas, rim, PALE, 1)?;
+        self.ring(canvas, rim, PALE, 1);
         for k in 0..12 {
             let angle = TAU * f64::from(k) / 12.0;
-            canvas.curve(&[MIDDLE, self.place(angle, rim)], GRID, 1)?;
+            canvas.curve(&[MIDDLE, self.place(angle, rim)], GRID, 1);
             let (sine, cosine) = libm::sincos(angle);
             let label = (MIDDLE.0 + (RIM + 20.0) * cosine, MIDDLE.1 - (RIM + 16.0) * sine);
-            let lettering = Lettering::new(12.0).coloured(INK).centred();
-            canvas.text(&format!("{}\u{b0}", 30 * k), nearest(label), lettering)?;
+            let style = TextStyle::new(12.0).coloured(INK).centred();
+            canvas.text(&format!("{}\u{b0}", 30 * k), nearest(label), style);
         }
-        Ok(())
     }
 
-    fn circles(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn circles(&self, canvas: &mut Canvas) {
         let half = ZONE / self.scale;
-        self.ring(canvas, 0.0, INK, 1)?;
-        self.ring(canvas, half, GREEN, 2)?;
+        self.ring(canvas, 0.0, INK, 1);
+        self.ring(canvas, half, GREEN, 2);
         self.ring(canvas, -half, GREEN, 2)
     }
 
-    fn profile(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn profile(&self, canvas: &mut Canvas) {
         let closing = self.kept.first().map(|(angle, deviation)| (angle + TAU, *deviation));
         let points: Vec<Polar> = self.kept.iter().copied().chain(closing).collect();
         let gap = (GAP * TAU / self.kept.len().max(1) as f64).max(PI / 90.0);
@@ -128,13 +122,12 @@ impl<'a> Plot<'a> {
             if run.len() > 1 {
                 let arcs = run.windows(2).flat_map(|pair| self.arc(pair[0], pair[1]));
                 let last = self.place(run[run.len() - 1].0, run[run.len() - 1].1);
-                canvas.curve(&arcs.chain([last]).collect::<Vec<_>>(), BLUE, 2)?;
+                canvas.curve(&arcs.chain([last]).collect::<Vec<_>>(), BLUE, 2);
             }
         }
         if self.kept.len() <= DOTS {
-            self.kept.iter().try_for_each(|(a, d)| canvas.dot(self.place(*a, *d), 2, PROFILE))?;
+            self.kept.iter().for_each(|(a, d)| canvas.dot(self.place(*a, *d), 2, PROFILE));
         }
-        Ok(())
     }
 
     /// Places from one point towards the next, without the next.
@@ -146,38 +139,37 @@ impl<'a> Plot<'a> {
         })
     }
 
-    fn left_out(&self, canvas: &Canvas<'_>) -> Drawn {
-        self.excluded.iter().try_for_each(|(angle, deviation)| canvas.dot(self.place(*angle, *deviation), 3, RED))
+    fn left_out(&self, canvas: &mut Canvas) {
+        self.excluded.iter().for_each(|(angle, deviation)| canvas.dot(self.place(*angle, *deviation), 3, RED));
     }
 
     /// What the rings stand for, upwards from the middle, on white so that the profile does not hide them.
-    fn ring_labels(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn ring_labels(&self, canvas: &mut Canvas) {
         let ticks = self.ticks();
-        let lettering = Lettering::new(11.0).coloured(INK).centred();
+        let style = TextStyle::new(11.0).coloured(INK).centred();
         for deviation in &ticks.values {
             let sign = if *deviation > 0.0 { "+" } else { "" };
             let label = format!("{sign}{}", ticks.label(*deviation));
             let (x, y) = nearest(self.place(75.0_f64.to_radians(), *deviation));
-            let half = lettering.width(&label) / 2;
-            canvas.fill((x - half, y - 7), (x + half, y + 7), WHITE)?;
-            canvas.text(&label, (x, y), lettering)?;
+            let half = style.width(&label) / 2;
+            canvas.fill((x - half, y - 7), (x + half, y + 7), WHITE);
+            canvas.text(&label, (x, y), style);
         }
-        Ok(())
     }
 
-    fn legend(&self, canvas: &Canvas<'_>) -> Drawn {
+    fn legend(&self, canvas: &mut Canvas) {
         let (left, mut y) = (750, 110);
         let circles = &self.found.circles;
-        let heading = Lettering::new(13.0).bold();
-        let lettering = Lettering::new(12.0).coloured(INK);
-        canvas.text("Circularity (mm)", (left, y), heading)?;
+        let heading = TextStyle::new(13.0).bold();
+        let style = TextStyle::new(12.0).coloured(INK);
+        canvas.text("Circularity (mm)", (left, y), heading);
         for (name, fit) in [("MZC", circles.mzc), ("LSC", circles.lsc), ("MIC", circles.mic), ("MCC", circles.mcc)] {
             y += 22;
-            canvas.text(name, (left, y), lettering)?;
-            canvas.text(&fixed(fit.circularity, 6), (left + 210, y), lettering.ending())?;
+            canvas.text(name, (left, y), style);
+            canvas.text(&fixed(fit.circularity, 6), (left + 210, y), style.ending());
         }
         y += 40;
-        canvas.text("Shown: minimum zone (MZC)", (left, y), heading)?;
+        canvas.text("Shown: minimum zone (MZC)", (left, y), heading);
         let ([x, centre_y], z) = self.found.center(&circles.mzc);
         let zone = [
             ("radius of reference", circles.mzc.circle.radius),
@@ -188,11 +180,11 @@ impl<'a> Plot<'a> {
         ];
         for (name, value) in zone.into_iter().chain(z.map(|z| ("centre z", z))) {
             y += 22;
-            canvas.text(name, (left, y), lettering)?;
-            canvas.text(&fixed(value, 4), (left + 210, y), lettering.ending())?;
+            canvas.text(name, (left, y), style);
+            canvas.text(&fixed(value, 4), (left + 210, y), style.ending());
         }
         let note = "mm, places in the frame of the file";
-        canvas.text(note, (left, y + 22), lettering.coloured(GREY))?;
+        canvas.text(note, (left, y + 22), style.coloured(GREY));
         y += 62;
         let excluded = self.found.points.len() - self.found.kept().count();
         let measured = format!("measured, {} points", self.found.kept().count());
@@ -200,26 +192,25 @@ impl<'a> Plot<'a> {
         for (label, colour, width) in
             [("reference circle", INK, 1), ("zone circles", GREEN, 2), (measured.as_str(), BLUE, 2)]
         {
-            canvas.line(vec![(left, y), (left + 30, y)], colour, width)?;
-            canvas.text(label, (left + 40, y), lettering)?;
+            canvas.line(&[(left, y), (left + 30, y)], colour, width);
+            canvas.text(label, (left + 40, y), style);
             y += 22;
         }
         if excluded > 0 {
-            canvas.dot((f64::from(left) + 15.0, f64::from(y)), 3, RED)?;
-            canvas.text(&left_out, (left + 40, y), lettering)?;
+            canvas.dot((f64::from(left) + 15.0, f64::from(y)), 3, RED);
+            canvas.text(&left_out, (left + 40, y), style);
             y += 22;
         }
-        canvas.text("Numbers at the rings: deviation in mm.", (left, y + 10), lettering.coloured(GREY))?;
+        canvas.text("Numbers at the rings: deviation in mm.", (left, y + 10), style.coloured(GREY));
         let beyond = |points: &[Polar]| points.iter().any(|(_, deviation)| self.scale * deviation > RIM - REFERENCE);
         if beyond(&self.excluded) {
-            canvas.text("Points beyond the rim are drawn on it.", (left, y + 30), lettering.coloured(GREY))?;
+            canvas.text("Points beyond the rim are drawn on it.", (left, y + 30), style.coloured(GREY));
         }
-        Ok(())
     }
 }
 
 /// Dots of the profile.
-const PROFILE: RGBColor = RGBColor(52, 84, 140);
+const PROFILE: Colour = Colour(52, 84, 140);
 
 /// The points, sorted by angle; of very many the extremes of each direction.
 fn thinned(points: Vec<Polar>) -> Vec<Polar> {

@@ -74,8 +74,8 @@ pub fn write_placement(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
-    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan)?;
-    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan)?;
+    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan);
+    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan);
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
@@ -88,10 +88,10 @@ pub fn write_placement(
         ("transfers.csv", tables::transfers(&outcome.cases)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         ("summary.json", bytes(&summary)),
-        ("convergence.svg", picture::convergence(outcome)?.into_bytes()),
+        ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("deflection-map-best.svg", map_best.into_bytes()),
         ("deflection-map-worst.svg", map_worst.into_bytes()),
-        ("cell.svg", picture::cell(problem, outcome)?.into_bytes()),
+        ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
     if let Some(stability) = &context.stability {
         files.extend(stability.files([&best.plan, &worst.plan])?);

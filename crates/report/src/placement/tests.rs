@@ -190,9 +190,9 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
     let Cases { best, best_worst_plan, .. } = &outcome().cases;
     let make = || {
         [
-            picture::convergence(outcome()).unwrap(),
-            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan).unwrap(),
-            picture::cell(problem(), outcome()).unwrap(),
+            picture::convergence(outcome()),
+            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan),
+            picture::cell(problem(), outcome()),
         ]
     };
     let pictures = make();

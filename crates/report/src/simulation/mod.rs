@@ -45,9 +45,9 @@ pub fn write_simulation(
         ("series.csv", series(found)?),
         ("wall.csv", wall(found)?),
         ("summary.json", crate::document::bytes(&simulation_json(run, found, making))),
-        ("forces.svg", picture::forces(found)?.into_bytes()),
-        ("turns.svg", picture::turns(found, run.cut.spindle_speed)?.into_bytes()),
-        ("wall.svg", picture::wall(found)?.into_bytes()),
+        ("forces.svg", picture::forces(found).into_bytes()),
+        ("turns.svg", picture::turns(found, run.cut.spindle_speed).into_bytes()),
+        ("wall.svg", picture::wall(found).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

@@ -48,8 +48,8 @@ pub fn write_stability(
         ("frequency-response.csv", responses(analysis)?),
         ("lobes.csv", lobes(analysis)?),
         ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
-        ("frequency-response.svg", picture::frequency_response(analysis)?.into_bytes()),
-        ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth)?.into_bytes()),
+        ("frequency-response.svg", picture::frequency_response(analysis).into_bytes()),
+        ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

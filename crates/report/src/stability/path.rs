@@ -29,7 +29,7 @@ impl PathStability {
         Ok([
             ("stability-best.csv", along(plans[0], &self.plans[0])?),
             ("stability-worst.csv", along(plans[1], &self.plans[1])?),
-            ("stability.svg", picture::path_stability(self, plans)?.into_bytes()),
+            ("stability.svg", picture::path_stability(self, plans).into_bytes()),
         ])
     }
 

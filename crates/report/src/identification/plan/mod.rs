@@ -30,7 +30,7 @@ pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Design) -> Result<Vec<P
         (SHEET, plan.sheet.form().into_bytes()),
         ("plan.json", documents::bytes(&plan_json(run, plan))),
         ("expected.csv", tables::expected(plan)?),
-        ("plan.svg", picture::measurement_plan(&run.request, plan)?.into_bytes()),
+        ("plan.svg", picture::measurement_plan(&run.request, plan).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

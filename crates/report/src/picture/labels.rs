@@ -1,8 +1,8 @@
 //! Figures and labels of pictures: numbers of few digits, lines of a given width, and labels that do not cover each other.
 
-use super::canvas::{Canvas, Drawn, Lettering, Pixel};
+use super::canvas::{Canvas, Pixel, TextStyle};
+use super::colour::Colour;
 use crate::units::{figures, fixed};
-use plotters::style::RGBColor;
 
 /// A whole number without decimals, any other as [`figures`].
 pub(super) fn whole_or_figures(value: f64) -> String {
@@ -36,9 +36,9 @@ pub(super) struct Label<'a> {
     /// What it says.
     pub text: &'a str,
     /// Colour of the letters.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// Colour behind them.
-    pub ground: RGBColor,
+    pub ground: Colour,
 }
 
 /// Places labels where nothing else is.
@@ -76,19 +76,19 @@ impl Labeller {
 
     /// Half the width and half the height of a label. Pixels
     pub fn half(text: &str) -> Pixel {
-        (Lettering::new(SIZE).width(text) / 2 + 1, 7)
+        (TextStyle::new(SIZE).width(text) / 2 + 1, 7)
     }
 
     /// Puts a label at the first of some centres where it covers nothing; draws nothing where there is none.
-    pub fn put(&mut self, canvas: &Canvas<'_>, label: &Label<'_>, centres: impl Iterator<Item = Pixel>) -> Drawn {
+    pub fn put(&mut self, canvas: &mut Canvas, label: &Label<'_>, centres: impl Iterator<Item = Pixel>) {
         let (x, y) = Self::half(label.text);
         let areas = centres.map(|centre| (centre, ((centre.0 - x, centre.1 - y), (centre.0 + x, centre.1 + y))));
         let mut free = areas.filter(|(_, area)| self.is_free(*area));
-        let Some((centre, area)) = free.next() else { return Ok(()) };
+        let Some((centre, area)) = free.next() else { return };
         drop(free);
         self.take(area);
-        canvas.fill(area.0, area.1, label.ground)?;
-        canvas.text(label.text, centre, Lettering::new(SIZE).centred().coloured(label.colour))
+        canvas.fill(area.0, area.1, label.ground);
+        canvas.text(label.text, centre, TextStyle::new(SIZE).centred().coloured(label.colour))
     }
 
     fn is_free(&self, ((left, top), (right, bottom)): Area) -> bool {
@@ -102,8 +102,8 @@ impl Labeller {
 #[cfg(test)]
 mod tests {
     use super::super::canvas::picture;
+    use super::super::colour::{BLACK, WHITE};
     use super::*;
-    use plotters::style::{BLACK, WHITE};
 
     #[test]
     fn numbers_have_three_digits() {
@@ -128,13 +128,12 @@ mod tests {
     fn labels_do_not_cover_each_other() {
         let mut labeller = Labeller::new(((0, 0), (200, 100)));
         labeller.take_outline(((20, 20), (120, 80)));
-        let svg = picture("a test", (200, 100), |canvas| {
+        let svg = picture((200, 100), |canvas| {
             let label = |text| Label { text, colour: BLACK, ground: WHITE };
             // On the outline, over the edge, inside; then the same place again, and nothing else.
-            labeller.put(canvas, &label("first"), [(20, 50), (195, 50), (60, 50)].into_iter())?;
+            labeller.put(canvas, &label("first"), [(20, 50), (195, 50), (60, 50)].into_iter());
             labeller.put(canvas, &label("second"), [(60, 50), (65, 45)].into_iter())
         });
-        let svg = svg.unwrap();
         assert!(svg.contains("first") && !svg.contains("second"));
         assert_eq!(labeller.taken.len(), 5);
         let (x, y) = Labeller::half("first");

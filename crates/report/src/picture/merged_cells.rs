@@ -1,17 +1,17 @@
-//! Coloured cells of a grid as few polygons: neighbours of one colour are drawn as one.
+//! Cells of a grid as few polygons: neighbours of one content are one polygon.
 
-/// Cells of one level in neighbouring rows, one run of them in each.
+/// Cells of one content in neighbouring rows, one run of them in each.
 #[derive(Debug, PartialEq)]
-pub(super) struct Patch {
-    /// Their level.
-    pub level: usize,
+pub(super) struct MergedCells<T> {
+    /// What is in them.
+    pub content: T,
     /// The first row.
     row: usize,
     /// In each row the first column and the one behind the last.
     runs: Vec<[usize; 2]>,
 }
 
-impl Patch {
+impl<T> MergedCells<T> {
     /// The corners of the outline, counted in cells along the first axis and along the second.
     pub fn outline(&self) -> Vec<[usize; 2]> {
         let side = |k: usize| {
@@ -33,35 +33,35 @@ impl Patch {
     }
 }
 
-/// The patches of a grid with `columns` cells to a row; cells without a level belong to none. Every other cell is in exactly
-/// one patch.
-pub(super) fn patches(columns: usize, levels: &[Option<usize>]) -> Vec<Patch> {
-    let mut patches: Vec<Patch> = Vec::new();
-    // Patches with a run in the row before, in the order of their columns.
+/// The polygons of a grid with `columns` cells to a row; cells without a content belong to none. Every other cell is in exactly
+/// one polygon.
+pub(super) fn merged_cells<T: Copy + PartialEq>(columns: usize, cells: &[Option<T>]) -> Vec<MergedCells<T>> {
+    let mut polygons: Vec<MergedCells<T>> = Vec::new();
+    // Those with a run in the row before, in the order of their columns.
     let mut open: Vec<usize> = Vec::new();
-    for (row, levels) in levels.chunks_exact(columns.max(1)).enumerate() {
+    for (row, cells) in cells.chunks_exact(columns.max(1)).enumerate() {
         let mut column = 0;
         let mut grown = Vec::new();
-        for run in levels.chunk_by(|a, b| a == b) {
+        for run in cells.chunk_by(|a, b| a == b) {
             let columns = [column, column + run.len()];
             column = columns[1];
-            let Some(level) = run[0] else { continue };
-            let touches = |patch: &Patch| {
-                let last = patch.runs.last();
-                patch.level == level && last.is_some_and(|last| last[0] < columns[1] && columns[0] < last[1])
+            let Some(content) = run[0] else { continue };
+            let touches = |polygon: &MergedCells<T>| {
+                let last = polygon.runs.last();
+                polygon.content == content && last.is_some_and(|last| last[0] < columns[1] && columns[0] < last[1])
             };
-            if let Some(place) = open.iter().position(|patch| touches(&patches[*patch])) {
-                let patch = open.remove(place);
-                patches[patch].runs.push(columns);
-                grown.push(patch);
+            if let Some(place) = open.iter().position(|polygon| touches(&polygons[*polygon])) {
+                let polygon = open.remove(place);
+                polygons[polygon].runs.push(columns);
+                grown.push(polygon);
             } else {
-                grown.push(patches.len());
-                patches.push(Patch { level, row, runs: vec![columns] });
+                grown.push(polygons.len());
+                polygons.push(MergedCells { content, row, runs: vec![columns] });
             }
         }
         open = grown;
     }
-    patches
+    polygons
 }
 
 #[cfg(test)]
@@ -75,10 +75,10 @@ mod tests {
         let levels = [Some(1), Some(1), Some(2), None,
                       Some(1), Some(1), Some(2), Some(2),
                       Some(1), Some(2), Some(2), Some(2)];
-        let patches = patches(4, &levels);
-        assert_eq!(patches.len(), 2);
-        assert_eq!(patches[0].outline(), [[0, 0], [0, 3], [1, 3], [1, 2], [2, 2], [2, 0]]);
-        assert_eq!(patches[1].outline(), [[2, 0], [2, 2], [1, 2], [1, 3], [4, 3], [4, 1], [3, 1], [3, 0]]);
+        let polygons = merged_cells(4, &levels);
+        assert_eq!(polygons.len(), 2);
+        assert_eq!(polygons[0].outline(), [[0, 0], [0, 3], [1, 3], [1, 2], [2, 2], [2, 0]]);
+        assert_eq!(polygons[1].outline(), [[2, 0], [2, 2], [1, 2], [1, 3], [4, 3], [4, 1], [3, 1], [3, 0]]);
     }
 
     /// Whether the middle of a cell is inside a polygon, by the crossings of a ray.
@@ -95,8 +95,8 @@ mod tests {
             columns in 1..8_usize,
             levels in prop::collection::vec(prop_oneof![1 => Just(None), 4 => (0..3_usize).prop_map(Some)], 0..64),
         ) {
-            let patches = patches(columns, &levels);
-            let outlines: Vec<_> = patches.iter().map(|patch| (patch.level, patch.outline())).collect();
+            let polygons = merged_cells(columns, &levels);
+            let outlines: Vec<_> = polygons.iter().map(|polygon| (polygon.content, polygon.outline())).collect();
             for (_, outline) in &outlines {
                 // Sides follow the grid.
                 let mut ends = outline.iter().zip(outline.iter().cycle().skip(1));

@@ -1,10 +1,9 @@
 //! What there is to see of a robot cell from above, to be drawn into a panel.
 
 use super::axes::Panel;
-use super::canvas::{Canvas, Drawn, Lettering, Place, nearest};
-use super::colour::{BLUE, GREY, INK, PALE};
+use super::canvas::{Canvas, Place, TextStyle, nearest};
+use super::colour::{BLUE, Colour, GREY, INK, PALE};
 use nalgebra::Vector3;
-use plotters::style::RGBColor;
 use std::f64::consts::TAU;
 use stead_model::robot::Frames;
 use stead_placement::outcome::{Case, PlanPoint};
@@ -14,14 +13,14 @@ use stead_placement::problem::Problem;
 const NUMBERS: usize = 12;
 
 /// A panel with the cell seen from above; its axes are x and y of the robot base frame in mm, to the same scale.
-pub(super) struct Scene<'a> {
+pub(super) struct CellView<'a> {
     /// What the cell is part of.
     pub problem: &'a Problem,
     /// Where to draw.
     pub panel: Panel,
 }
 
-impl Scene<'_> {
+impl CellView<'_> {
     fn place(&self, point: &Vector3<f64>) -> Place {
         let [x, y] = top_view(point);
         self.panel.place(x, y)
@@ -33,9 +32,9 @@ impl Scene<'_> {
     }
 
     /// The circle that the wrist centre cannot leave, as far as it is inside the panel.
-    pub fn reach(&self, canvas: &Canvas<'_>) -> Drawn {
+    pub fn reach(&self, canvas: &mut Canvas) {
         if !is_upright(self.problem) {
-            return Ok(());
+            return;
         }
         let geometry = self.problem.robot.geometry();
         let circle: Vec<Place> = (0..=720)
@@ -46,81 +45,77 @@ impl Scene<'_> {
             .collect();
         for run in circle.chunk_by(|a, b| self.shows(*a) == self.shows(*b)) {
             if run.len() > 1 && self.shows(run[0]) {
-                canvas.curve(run, BLUE, 2)?;
+                canvas.curve(run, BLUE, 2);
             }
         }
-        Ok(())
     }
 
     /// A dashed rectangle around the allowed places of the workpiece origin.
-    pub fn limits(&self, canvas: &Canvas<'_>) -> Drawn {
+    pub fn limits(&self, canvas: &mut Canvas) {
         let [x, y, _] = self.problem.cell.position;
         let corners = [(x.min, y.min), (x.max, y.min), (x.max, y.max), (x.min, y.max)];
         let [a, b, c, d] = corners.map(|(x, y)| nearest(self.place(&Vector3::new(x, y, 0.0))));
-        [(a, b), (b, c), (c, d), (d, a)].into_iter().try_for_each(|(from, to)| canvas.dashed(from, to, INK))
+        [(a, b), (b, c), (c, d), (d, a)].into_iter().for_each(|(from, to)| canvas.dashed(from, to, INK));
     }
 
     /// The robot base with the axes of its frame.
-    pub fn base(&self, canvas: &Canvas<'_>) -> Drawn {
+    pub fn base(&self, canvas: &mut Canvas) {
         let origin = self.place(&Vector3::zeros());
         let (x, y) = nearest(origin);
-        canvas.arrow(origin, (origin.0 + 40.0, origin.1), GREY, 2)?;
-        canvas.arrow(origin, (origin.0, origin.1 - 40.0), GREY, 2)?;
-        canvas.fill((x - 8, y - 8), (x + 8, y + 8), INK)?;
-        let lettering = Lettering::new(12.0).coloured(INK);
-        canvas.text("x", (x + 51, y), lettering)?;
-        canvas.text("y", (x + 8, y - 42), lettering)?;
-        canvas.text("robot base", (x - 14, y), lettering.ending())
+        canvas.arrow(origin, (origin.0 + 40.0, origin.1), GREY, 2);
+        canvas.arrow(origin, (origin.0, origin.1 - 40.0), GREY, 2);
+        canvas.fill((x - 8, y - 8), (x + 8, y + 8), INK);
+        let style = TextStyle::new(12.0).coloured(INK);
+        canvas.text("x", (x + 51, y), style);
+        canvas.text("y", (x + 8, y - 42), style);
+        canvas.text("robot base", (x - 14, y), style.ending())
     }
 
     /// Lines from the middle of each segment to the wrist centre.
-    pub fn wrists(&self, canvas: &Canvas<'_>, case: &Case) -> Drawn {
+    pub fn wrists(&self, canvas: &mut Canvas, case: &Case) {
         for point in middles(self.problem, case) {
             let centre = self.place(&wrist_centre(self.problem, point));
-            canvas.curve(&[self.place(&point.position), centre], PALE, 1)?;
-            canvas.dot(centre, 3, GREY)?;
+            canvas.curve(&[self.place(&point.position), centre], PALE, 1);
+            canvas.dot(centre, 3, GREY);
         }
-        Ok(())
     }
 
     /// The tool path as it lies.
-    pub fn path(&self, canvas: &Canvas<'_>, case: &Case, colour: RGBColor) -> Drawn {
+    pub fn path(&self, canvas: &mut Canvas, case: &Case, colour: Colour) {
         for run in case.plan.points.chunk_by(|a, b| a.segment == b.segment) {
             let places: Vec<Place> = run.iter().map(|point| self.place(&point.position)).collect();
-            canvas.edged_curve(&places, colour, 3)?;
+            canvas.edged_curve(&places, colour, 3);
         }
-        Ok(())
     }
 
     /// The numbers of the segments, to the left of their middle points.
-    pub fn numbers(&self, canvas: &Canvas<'_>, case: &Case, colour: RGBColor) -> Drawn {
+    pub fn numbers(&self, canvas: &mut Canvas, case: &Case, colour: Colour) {
         let stride = self.problem.task.segments().len().div_ceil(NUMBERS).max(1);
         let rotation = case.placement.base_from_workpiece().rotation;
         for point in middles(self.problem, case).step_by(stride) {
             let left = rotation * self.problem.task.points()[point.point].normal();
             let place = beside(self.place(&point.position), &left, 14.0);
-            let lettering = Lettering::new(13.0).bold().centred().coloured(colour);
-            canvas.text(&point.segment.to_string(), nearest(place), lettering)?;
+            let style = TextStyle::new(13.0).bold().centred().coloured(colour);
+            canvas.text(&point.segment.to_string(), nearest(place), style);
         }
-        Ok(())
     }
 
     /// Origin and axes of the workpiece frame, the letters outside the right angle between the axes.
-    pub fn workpiece(&self, canvas: &Canvas<'_>, case: &Case) -> Drawn {
+    pub fn workpiece(&self, canvas: &mut Canvas, case: &Case) {
         let base_from_workpiece = case.placement.base_from_workpiece();
         let origin = self.place(&base_from_workpiece.translation);
         let [x, y] = [0, 1].map(|axis| base_from_workpiece.rotation.column(axis).into_owned());
         for (axis, other, name) in [(x, y, "x"), (y, x, "y")] {
             let tip = beside(origin, &axis, 36.0);
-            canvas.arrow(origin, tip, INK, 2)?;
+            canvas.arrow(origin, tip, INK, 2);
             let place = beside(tip, &other, -12.0);
-            canvas.text(name, nearest(place), Lettering::new(12.0).centred().coloured(INK))?;
+            canvas.text(name, nearest(place), TextStyle::new(12.0).centred().coloured(INK));
         }
         canvas.dot(origin, 4, INK)
     }
 
     /// The workpiece origin alone.
-    pub fn origin(&self, canvas: &Canvas<'_>, case: &Case) -> Drawn {
+    pub fn origin(&self, canvas: &mut Canvas, case: &Case) {
         canvas.dot(self.place(&case.placement.base_from_workpiece().translation), 4, INK)
     }
 }
