@@ -159,7 +159,7 @@ pub enum AssessError {
 pub struct Limits {
     /// Name of the robot.
     pub robot: String,
-    /// How often each obstacle stands in the way, the most frequent first.
+    /// Number of circles that each obstacle prevents, the most frequent first.
     pub obstacles: Vec<(Obstacle, usize)>,
     /// Number of circles tried.
     pub tried: usize,
@@ -250,7 +250,7 @@ impl RobotResult {
         blocked.chain(soft).collect()
     }
 
-    /// The robot as the selection sees it.
+    /// What the selection needs of the robot.
     pub fn competitor(&self) -> Competitor {
         let test = self.configurations.iter().filter(|configuration| configuration.load == Load::Test);
         let min = test.filter_map(|configuration| configuration.min.map(|spot| spot.circularity));

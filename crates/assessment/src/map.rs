@@ -126,7 +126,7 @@ impl<const N: usize> Map<N> {
         self.nodes.iter().filter(|node| node.is_ok()).count()
     }
 
-    /// How often each obstacle stands in the way, the most frequent first.
+    /// Number of circles that each obstacle prevents, the most frequent first.
     pub fn obstacles(&self) -> Vec<(Obstacle, usize)> {
         let mut found: Vec<Obstacle> = self.nodes.iter().filter_map(|node| node.as_ref().err().copied()).collect();
         found.sort_unstable();

@@ -11,11 +11,11 @@ use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spind
 pub enum Variant {
     /// A spring and a damper about each joint axis, no gravity.
     Springs,
-    /// Gravity too, with what compensates it.
+    /// Gravity and its compensators too.
     Gravity,
     /// Springs and dampers normal to the joint axes too.
     Orthogonal,
-    /// Play in the gears too.
+    /// Backlash of the gears too.
     Backlash,
 }
 
@@ -34,7 +34,7 @@ impl Variant {
     }
 }
 
-/// What an arm would need for its motion to be computed.
+/// What the robot file lacks for the dynamics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize)]
 pub enum Missing {
     /// The robot has no masses.
@@ -51,7 +51,7 @@ pub enum Missing {
 /// A chain of `N` joints, six of them with motors, and the drives about all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm<const N: usize> {
-    /// What moves, and its tip: the tool centre point with the tool's frame.
+    /// The chain, and its tip: the tool centre point with the tool's frame.
     pub chain: Chain<N>,
     /// Springs and dampers.
     pub drive: Drive<N>,
@@ -80,7 +80,7 @@ impl AnyArm {
     }
 }
 
-/// Everything that the two kinds of chain have in common.
+/// What the chains of six and of eighteen joints have in common.
 struct Parts<'a> {
     dynamics: &'a [JointDynamics; 6],
     bodies: [Inertial; 6],
@@ -199,7 +199,7 @@ impl<const N: usize> Arm<N> {
         }
     }
 
-    /// What the springs have to carry of gravity at angles `q` (rad), posed there. N m
+    /// Gravity torque that the springs carry at angles `q` (rad), posed there. N m
     pub fn felt_gravity(&self, posed: &Posed<N>, q: &SVector<f64, N>) -> SVector<f64, N> {
         posed.gravity(&self.chain) - self.not_felt(&self.planar(q).gravity(&self.chain))
     }
@@ -237,7 +237,7 @@ impl<const N: usize> Arm<N> {
         matrix
     }
 
-    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the play of each
+    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the backlash of each
     /// gear is taken up by what its joint carries. Joint angles settle to within rounding in a few repetitions, since
     /// gravity hardly changes with them.
     pub fn at_rest(&self, reference: &SVector<f64, N>) -> SVector<f64, N> {
@@ -258,11 +258,11 @@ impl<const N: usize> Arm<N> {
     }
 }
 
-/// Motors of the joints whose angles compensators do not know.
+/// Motors of the joints whose angles do not enter the compensation.
 const COMPENSATED_AS_IF_ZERO: [usize; 2] = [3, 5];
 
-/// What compensators take of gravity, near some angles: exact at them, linear about them. Made anew for angles farther off than
-/// 1 mrad, where it is wrong by some millionths of the torque.
+/// Gravity torque carried by compensators, linearised about some joint angles; linearised anew for angles farther off than 1 mrad,
+/// where it is off by some millionths of the torque.
 #[derive(Debug, Clone)]
 pub struct Compensation<const N: usize> {
     at: SVector<f64, N>,

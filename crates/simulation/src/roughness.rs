@@ -1,4 +1,4 @@
-//! The wall that a pass leaves, and how rough it is (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
+//! Profile of the wall that a pass leaves, and its roughness (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
 
 use super::milling::PassCut;
 use super::surface::Trail;
@@ -17,7 +17,7 @@ pub struct Profile {
     pub heights: Vec<f64>,
 }
 
-/// How rough a profile is.
+/// Height parameters of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Roughness {
     /// Arithmetic mean height R_a. m

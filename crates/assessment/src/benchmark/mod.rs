@@ -49,7 +49,7 @@ impl Plane {
     }
 }
 
-/// Which way the wrench turns as the tool goes round the circle.
+/// Sense in which the wrench turns as the tool follows the circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turning {
     /// By the polar angle, as the tool and its feed do (eq. 34 as written).
@@ -98,9 +98,9 @@ pub struct Benchmark {
     pub wrench: Wrench,
     /// Which way the wrench turns.
     pub turning: Turning,
-    /// Orientation of the tool frame, kept all the way round.
+    /// Orientation of the tool frame, constant around the circle.
     pub base_from_tool: Matrix3<f64>,
-    /// The tool frame, its origin at the point that goes round, in the flange frame. `None`: the wrist centre goes round, with
+    /// The tool frame, its origin at the point that follows the circle, in the flange frame. `None`: the wrist centre follows it, with
     /// the flange frame's own orientation.
     pub flange_from_tool: Option<Pose<f64>>,
     /// Which joints yield; the others count as rigid.

@@ -1,4 +1,4 @@
-//! Over which part of a turn a tooth cuts (Klimchik 2017, Fig. 3 and eq. 4 to 7).
+//! Engagement: the arcs of a turn over which a tooth cuts (Klimchik 2017, Fig. 3 and eq. 4 to 7).
 
 use super::cut::MillingDirection;
 use serde::Serialize;

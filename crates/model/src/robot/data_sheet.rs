@@ -1,4 +1,4 @@
-//! What a maker's data sheet says of an arm, beside its kinematics.
+//! Figures of the maker's data sheet other than the kinematics.
 
 use super::{Robot, RobotError};
 use serde::Serialize;

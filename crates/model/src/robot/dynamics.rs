@@ -1,8 +1,8 @@
-//! What moves with the joints: masses, centres of mass and inertia tensors of the links, and how the drives damp.
+//! Dynamics of the joints: links with mass, damping and backlash of the drives.
 
 use super::{Inertial, Robot};
 
-/// How a joint yields about the two directions normal to its axis.
+/// Stiffness and damping of a joint about the two directions normal to its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orthogonal {
     /// Stiffness about each of the two. N m/rad
@@ -22,7 +22,7 @@ pub struct JointDynamics {
     pub backlash: f64,
     /// Whether a compensator carries what gravity does about this axis with joints 4 and 6 at zero, the arm in a plane.
     pub gravity_compensated: bool,
-    /// How the joint yields normal to its axis, where known.
+    /// Stiffness and damping normal to the axis, where known.
     pub orthogonal: Option<Orthogonal>,
     /// Where along its axis the joint yields normal to it: coordinate on the z axis of the row's frame. m
     pub bearing: f64,

@@ -1,4 +1,4 @@
-//! What the arm is: geometry, kinematics, Jacobian, conditioning, joint limits and turns.
+//! The robot: geometry, kinematics, Jacobian, conditioning, joint limits and turns.
 //!
 //! A [`Robot`] is six revolute joints given by modified Denavit-Hartenberg rows,
 //! `T_(i-1,i) = Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i)` (Khalil and Dombre 2002), whose last three axes meet in one
@@ -215,7 +215,7 @@ impl Robot {
         Chain::new(links, flange_from_tip)
     }
 
-    /// The arm's shape as the closed-form inverse sees it.
+    /// The geometry of the arm, as the closed-form inverse uses it.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }

@@ -1,8 +1,8 @@
-//! Where milling stops to be what is represented here.
+//! Validity limits of the milling model.
 
 use serde::Serialize;
 
-/// What is no longer represented: stated, never extrapolated.
+/// Why the model is no longer valid: the run ends there and is not extrapolated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
 pub enum Limit {
     /// A chip deeper than a gullet: beyond this the body of the cutter would be in the work.
@@ -37,7 +37,7 @@ pub enum Limit {
     },
 }
 
-/// How far what is represented reaches.
+/// The figures that the limits of validity depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Radius of the cutter. m
@@ -47,7 +47,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Whether a moment (s) is represented: the thickest chip (m), how far the tool is off its path (m) and how fast it moves
+    /// Whether the model is valid at a time (s): the thickest chip (m), how far the tool is off its path (m) and how fast it moves
     /// (m/s).
     ///
     /// # Errors
