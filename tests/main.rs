@@ -9,6 +9,7 @@ mod circularity;
 mod common;
 mod compensate;
 mod discretisation;
+mod documents;
 mod help;
 mod identify;
 mod identify_plan;

@@ -163,7 +163,7 @@ fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(
-        ended.stdout.contains("none of them through a table: a moment acts on the tool at point 4"),
+        ended.stdout.contains("none of them from a lookup table: a moment acts on the tool at point 4"),
         "{}",
         ended.stdout
     );

@@ -4,6 +4,7 @@ use super::circle::plane::FittedPlane;
 use super::circle::{CircleError, Circles, Fit, least_squares};
 use serde::Serialize;
 use std::f64::consts::TAU;
+use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 
 /// Measured points in one unit of length.
@@ -133,25 +134,12 @@ impl Sector {
 }
 
 /// Points farther off their plane than this, in radii, are hardly one profile.
-const NOT_FLAT: f64 = 0.1;
+const MAX_FLATNESS: f64 = 0.1;
 
 impl Roundness {
     /// Points that no sector leaves out.
     pub fn kept(&self) -> impl Iterator<Item = &Assessed> {
         self.points.iter().filter(|point| !point.is_excluded)
-    }
-
-    /// Warns of points in space that are too far off their plane to be one profile: `not-flat`.
-    pub fn warnings(&self) -> Vec<Warning> {
-        let radius = self.circles.lsc.circle.radius;
-        let spread = self.flatness().filter(|flatness| *flatness > NOT_FLAT * radius);
-        let message = |flatness: f64| {
-            format!(
-                "the points are spread over {flatness:.4} across their plane, more than a tenth of the radius of {radius:.4}: are \
-                 they one profile?"
-            )
-        };
-        spread.map(|flatness| Warning::new("not-flat", message(flatness))).into_iter().collect()
     }
 
     /// Peak to valley of the points not left out, across the plane; none for points without z.
@@ -161,6 +149,19 @@ impl Roundness {
             let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
             high - low
         })
+    }
+
+    /// What speaks against the points being those of one circular profile.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let radius = self.circles.lsc.circle.radius;
+        let flatness = self.flatness().filter(|flatness| *flatness > MAX_FLATNESS * radius);
+        let message = |flatness| {
+            let spread = figures(flatness);
+            format!(
+                "the points are spread over {spread} mm across their plane, more than a tenth of the radius: are they one profile?"
+            )
+        };
+        flatness.map(|flatness| Warning::new("not-flat", message(flatness))).into_iter().collect()
     }
 
     /// The centre of a circle in the frame of the points, with z where they have one.

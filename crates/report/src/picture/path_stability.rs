@@ -4,15 +4,15 @@ use super::axes::{Panel, Scale};
 use super::canvas::picture;
 use super::colour::{GREEN, INK, PALE, RED};
 use super::line_chart::{LineChart, Mark, Sign, legend};
-use crate::stability::PathStability;
 use crate::units::fixed;
 use stead_placement::outcome::Plan;
+use stead_study::PathStability;
 
 const LEFT: i32 = 95;
 const RIGHT: i32 = 970;
 
 /// Critical depth of cut over the points of the path, for the best and for the worst placement, and the depth of the cut at hand.
-/// Where all depths looked at are stable a curve runs along the top.
+/// Where every depth examined is stable the curve runs along the top.
 pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> String {
     let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.section.axial_depth);
     let depths = stability

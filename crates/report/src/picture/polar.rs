@@ -16,7 +16,7 @@ const ZONE: f64 = 70.0;
 const RIM: f64 = 320.0;
 /// Most points that are drawn as dots; more make a line alone.
 const DOTS: usize = 400;
-/// Directions that are told apart: where there are more points, the extremes of each stand for all.
+/// Directions that are drawn apart: with more points, the extremes of each direction stand for all of it.
 const DIRECTIONS: usize = 1440;
 /// Least half width of a zone that is magnified to the whole ring, in radii.
 const LEAST_HALF: f64 = 1e-7;

@@ -5,9 +5,9 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::lookup::Unsuited;
 use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
+use stead_placement::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
@@ -28,7 +28,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     if let Some(stability) = &context.stability {
         text.push('\n');
-        text.push_str(&stability.text(["best placement", "worst placement"]));
+        text.push_str(&crate::stability::path::text(stability, ["best placement", "worst placement"]));
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
@@ -38,13 +38,15 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
             let error = figures(tabled.accuracy.rms * 100.0);
             line(
                 &mut text,
-                &format!("most of them through a table of {states} states ({megabytes:.1} MB), off by {error} % (rms)"),
+                &format!(
+                    "most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)"
+                ),
             );
         }
-        Some(Err(unsuited @ Unsuited::Misleading)) => {
-            line(&mut text, &format!("searched again without a table: {unsuited}"));
+        Some(Err(rejected @ Unsupported::Rejected)) => {
+            line(&mut text, &format!("searched again without a lookup table: {rejected}"));
         }
-        Some(Err(unsuited)) => line(&mut text, &format!("none of them through a table: {unsuited}")),
+        Some(Err(unsuited)) => line(&mut text, &format!("none of them from a lookup table: {unsuited}")),
         None => {}
     }
     if outcome.interrupted {

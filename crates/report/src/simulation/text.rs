@@ -84,8 +84,5 @@ fn verdict(found: &Simulation) -> String {
     } else {
         format!("Small motions grow ({}), at {rate} per second.\n", found.verdict.kind().word())
     });
-    for warning in &found.warnings {
-        text.push_str(&format!("warning: {warning}\n"));
-    }
     text
 }

@@ -1,0 +1,125 @@
+//! The figures in the documents are those of the results that are shipped with them.
+
+use crate::common::assert_states_its_origin;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn result(name: &str) -> Value {
+    let path = root().join("results").join(name).join("summary.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_str(&text).unwrap()
+}
+
+/// The rows of all tables of README and validation page, cell by cell.
+fn rows() -> Vec<Vec<String>> {
+    let texts =
+        ["README.md", "src/guide/validation.md"].map(|name| std::fs::read_to_string(root().join(name)).unwrap());
+    let lines = texts.iter().flat_map(|text| text.lines()).filter(|line| line.starts_with('|'));
+    lines.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
+}
+
+/// The row whose first cell starts with a text, and those below it; there must be one such row.
+fn row(start: &str) -> Vec<Vec<String>> {
+    let rows = rows();
+    let found: Vec<usize> = (0..rows.len()).filter(|k| rows[*k][0].starts_with(start)).collect();
+    let [only] = found[..] else { panic!("{} rows start with {start}", found.len()) };
+    rows[only..].to_vec()
+}
+
+/// Asserts that a cell states a value with the decimals that it prints.
+fn assert_states(cell: &str, value: f64) {
+    let decimals = cell.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let printed = format!("{value:.decimals$}");
+    assert_eq!(cell, printed, "{value}");
+}
+
+fn means(name: &str) -> Vec<f64> {
+    result(name)["cases"].as_array().unwrap().iter().map(|case| case["mean_mm"].as_f64().unwrap()).collect()
+}
+
+/// Every published or computed row of four cases, with what it must state.
+#[test]
+fn table_iii_states_the_shipped_results() {
+    let published = &result("caro-2013")["reference"]["case_mm"];
+    let published: Vec<f64> = published.as_array().unwrap().iter().map(|mean| mean.as_f64().unwrap()).collect();
+    let computed = [means("caro-2013"), means("caro-2013-k1-0.8")];
+    for (start, means) in [
+        ("paper, mm", &published),
+        ("stead, k1 = 0.237 as printed, mm", &computed[0]),
+        ("stead, k1 = 0.8, mm", &computed[1]),
+    ] {
+        row(start)[0][1..5].iter().zip(means).for_each(|(cell, mean)| assert_states(cell, *mean));
+    }
+    for (start, means) in [
+        ("paper, ratio", &published),
+        ("stead, k1 = 0.237, ratio", &computed[0]),
+        ("stead, k1 = 0.8, ratio", &computed[1]),
+    ] {
+        row(start)[0][1..5].iter().zip(means).for_each(|(cell, mean)| assert_states(cell, mean / means[0]));
+    }
+    let [_, agreement, ..] = &row("Table III of Caro et al.")[0][..] else { panic!("no agreement stated") };
+    for (stated, means) in agreement.split(';').zip(&computed) {
+        let ratios = stated.split_whitespace().take(3).map(|ratio| ratio.trim_end_matches(','));
+        ratios.zip(&means[1..]).for_each(|(ratio, mean)| assert_states(ratio, mean / means[0]));
+    }
+}
+
+#[test]
+fn the_agreement_with_klimchik_is_that_of_the_shipped_results() {
+    let compare = |name: &str, start: &str| {
+        let reference = &result(name)["reference"];
+        let cells = &row(start)[0];
+        let percent = |cell: &str| cell.split(" %").next().unwrap().to_owned();
+        assert_states(&percent(&cells[1]), reference["rms_percent"].as_f64().unwrap());
+        let word = |is_same: &Value| if is_same.as_bool().unwrap() { "as printed" } else { "differs" };
+        assert_eq!(cells[2], word(&Value::Bool(reference["same_best"] == true && reference["same_worst"] == true)));
+        assert_eq!(cells[3], word(&reference["same_order"]));
+        let (same, all) = (&reference["selection_cells_with_the_same_robots"], &reference["selection_cells"]);
+        assert_eq!(cells[4], format!("{same} of {all} cells"));
+        assert_eq!(reference["readings"], 55, "{} is a row of 55 values", cells[0]);
+        percent(&cells[1])
+    };
+    let compatible = compare("klimchik-2017-table-compatible", "`stead assess configs/klimchik-2017-table-compatible");
+    let as_written = compare("klimchik-2017", "`stead assess configs/klimchik-2017.toml");
+    let stated = format!("{compatible} % rms in the table-compatible reading, {as_written} % with eq. 34 as written");
+    assert_eq!(row("Klimchik et al. 2017, 55 printed")[0][1], stated);
+}
+
+#[test]
+fn the_forces_of_the_umons_pass_are_those_of_the_shipped_result() {
+    let summary = result("umons-aluminium");
+    let variant = summary["variant"].as_str().unwrap();
+    let rows = row(variant);
+    let columns = [
+        ("force_x", "min_n"),
+        ("force_x", "max_n"),
+        ("force_x", "mean_n"),
+        ("force_x", "rms_n"),
+        ("force_y", "min_n"),
+        ("force_y", "mean_n"),
+        ("force_y", "rms_n"),
+    ];
+    assert_eq!(rows[1][0], "published");
+    for (cells, forces) in rows.iter().zip([&summary, &summary["published"]]) {
+        for (cell, (force, key)) in cells[1..].iter().zip(columns) {
+            assert_states(cell, forces[force][key].as_f64().unwrap());
+        }
+    }
+}
+
+#[test]
+fn every_shipped_document_states_its_origin() {
+    let folders = std::fs::read_dir(root().join("results")).unwrap();
+    let files = folders.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap());
+    let documents = files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "json"));
+    let documents: Vec<PathBuf> = documents.collect();
+    assert!(documents.len() >= 12, "{documents:?}");
+    for path in documents {
+        let document = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        assert_states_its_origin(&document);
+    }
+}
