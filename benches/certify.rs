@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             value * 1e3,
             bound.bound * 1e3,
             bound.nodes,
-            bound.end
+            bound.status
         );
     }
     Ok(())

@@ -16,6 +16,7 @@ use published::{poses, problem};
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::Instructions;
 use stead_placement::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_placement::problem::Placement;
 use stead_placement::redundancy::Planner;
 use stead_placement::redundancy::transition::{self, Step};
 use stead_placement::sense::Sense;
@@ -52,7 +53,7 @@ fn planner(bencher: Bencher, instructions: usize) {
     let planner = Planner::new(&problem);
     let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
     let count = problem.redundancy.beta_count;
-    let pose = [0.0, -1.64, -0.214, 1.378];
+    let pose = Placement::from([0.0, -1.64, -0.214, 1.378]);
     let step =
         |point: usize| Step { instructions: Instructions::all()[instructions], ..planner.step(point, Sense::Min) };
     // One segment, so that its states stay as near to the processor as those of the planner, which keeps two points.

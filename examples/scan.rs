@@ -10,12 +10,14 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead_format::read_run;
+use stead_placement::candidate::{Candidate, rank};
 use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::Interval;
+use stead_placement::problem::Placement;
 use stead_placement::redundancy::Planner;
 use stead_placement::refine::refine;
-use stead_placement::search::{Candidate, distinct, rank};
+use stead_placement::search::distinct;
 use stead_placement::sense::Sense;
 
 /// Basins of the grid that are refined, for each sense.
@@ -39,23 +41,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cell = &run.problem.cell;
     let [x, y, z] = cell.position;
     let axes = [axis(x, counts[0]), axis(y, counts[1]), axis(z, counts[2]), axis(cell.yaw, counts[3])];
-    let poses: Vec<[f64; 4]> = (0..counts.iter().product())
+    let poses: Vec<Placement> = (0..counts.iter().product())
         .map(|mut index| {
-            std::array::from_fn(|k| {
+            Placement::from(std::array::from_fn(|k| {
                 let value = axes[k][index % counts[k]];
                 index /= counts[k];
                 value
-            })
+            }))
         })
         .collect();
     let scanned: Vec<Candidate> = poses
         .par_iter()
         .map_init(
             || evaluator.workspace(),
-            |workspace, pose| Candidate {
-                pose: *pose,
+            |workspace, placement| Candidate {
+                placement: *placement,
                 scheme: None,
-                objective: evaluator.objective(pose, None, workspace),
+                objective: evaluator.objective(placement, None, workspace),
             },
         )
         .collect();
@@ -65,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sorted: Vec<Candidate> = scanned.iter().filter(|i| i.objective.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(sense, a.objective, b.objective));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.pose, sense, None));
+        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.placement, sense, None));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
         reports.sort_by(|a, b| match sense {
             Sense::Min => a.end_mean.total_cmp(&b.end_mean),

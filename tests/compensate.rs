@@ -158,7 +158,8 @@ fn in_reality_the_share_that_the_model_does_not_know_remains() {
     let same = run(&bench, &["--reality", ROBOT, "--json"]).json();
     assert!(number(&same, "/after/max_mm") <= 1e-6);
     let text = run(&bench, &[]).stdout;
-    for part in ["105 points, compensated for the static equilibrium", "played on KUKA KR270-2 (../softer.toml)", "80."]
+    for part in
+        ["105 points, compensated for the static equilibrium", "executed on KUKA KR270-2 (../softer.toml)", "80."]
     {
         assert!(text.contains(part), "{part} in {text}");
     }

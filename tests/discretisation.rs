@@ -3,14 +3,14 @@
 use serde_json::Value;
 use std::path::Path;
 use stead_format::read_run;
-use stead_placement::problem::Problem;
+use stead_placement::problem::{Placement, Problem};
 use stead_placement::redundancy::{Planner, off_grid::Spacing};
 use stead_placement::sense::Sense;
 
 /// The mean of the final plan at a placement, m.
-fn mean(planner: &Planner<'_>, pose: &[f64; 4], sense: Sense) -> f64 {
+fn mean(planner: &Planner<'_>, placement: &Placement, sense: Sense) -> f64 {
     let spacing = Spacing::full(planner.grid());
-    let plans = planner.plan_fine(pose, sense, None, spacing, &mut planner.workspace()).unwrap();
+    let plans = planner.plan_fine(placement, sense, None, spacing, &mut planner.workspace()).unwrap();
     plans.iter().map(|plan| plan.cost).sum::<f64>() / planner.problem().task.points().len() as f64
 }
 
@@ -22,15 +22,20 @@ fn cost_of_the_grid(run: &str, case: usize) -> f64 {
     let summary: Value = serde_json::from_str(&summary).unwrap();
     let placement = &summary["cases"][case - 1]["placement"];
     let number = |key: &str| placement[key].as_f64().unwrap();
-    let pose = [number("x_mm") * 1e-3, number("y_mm") * 1e-3, number("z_mm") * 1e-3, number("yaw_deg").to_radians()];
+    let placement = Placement::from([
+        number("x_mm") * 1e-3,
+        number("y_mm") * 1e-3,
+        number("z_mm") * 1e-3,
+        number("yaw_deg").to_radians(),
+    ]);
     let sense = if case % 2 == 1 { Sense::Min } else { Sense::Max };
     let planner = Planner::finer(&problem);
-    let own = mean(&planner, &pose, sense);
+    let own = mean(&planner, &placement, sense);
     let step = planner.grid().beta_step() / 4.0;
     let finer = Problem { redundancy: problem.redundancy.divided(step), ..problem.clone() };
     let planner_of_finer = Planner::finer(&finer);
     assert_eq!(planner_of_finer.grid().beta_count, 4 * planner.grid().beta_count);
-    let better = mean(&planner_of_finer, &pose, sense);
+    let better = mean(&planner_of_finer, &placement, sense);
     sense.sign() * (own - better) / better
 }
 

@@ -199,16 +199,27 @@ fn sheets_that_do_not_belong_to_the_arm_are_refused_with_what_to_look_at() {
     refused(&misplaced, &["identify-example.csv:40: unloaded_x_mm: "]);
 }
 
+/// Asserts one warning with all of some parts, in the document and in the text.
+#[track_caller]
+fn warns(bench: &Bench, parts: &[&str]) {
+    let document = fit(bench, &["--json"]).json();
+    let warnings: Vec<&str> = document["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    let warning = warnings.iter().find(|warning| parts.iter().all(|part| warning.contains(part)));
+    let warning = warning.unwrap_or_else(|| panic!("{parts:?} are not in {warnings:?}"));
+    assert!(fit(bench, &[]).stdout.contains(&format!("warning: {warning}\n")));
+}
+
 #[test]
 fn what_error_bars_do_not_count_is_told() {
     let bench = bench();
-    assert!(!fit(&bench, &[]).stdout.contains("note: "));
+    assert!(!fit(&bench, &[]).stdout.contains("warning: "));
+    assert_eq!(fit(&bench, &["--json"]).json()["warnings"], serde_json::json!([]));
     // Off by 5 mm, without and with the load.
     change(&bench, 40, |fields| {
         fields[14] = (fields[14].parse::<f64>().unwrap() + 5.0).to_string();
         fields[17] = (fields[17].parse::<f64>().unwrap() + 5.0).to_string();
     });
-    assert!(fit(&bench, &[]).stdout.contains("note: line 40: the unloaded reading is 4."));
+    assert!(fit(&bench, &[]).stdout.contains("warning: line 40: the unloaded reading is 4."));
 
     let bench = self::bench();
     // The first configuration again under another name, with other readings under the same load.
@@ -216,8 +227,7 @@ fn what_error_bars_do_not_count_is_told() {
     let again: String = text.lines().skip(1).take(3).map(|line| line.replacen("c1,", "again,", 1) + "\n").collect();
     text += &again;
     bench.write(SHEET, &text);
-    fit(&bench, &[])
-        .assert_says(&["note: lines 2, 62 (and 2 more such groups) have one unloaded reading", "1.22 times"]);
+    warns(&bench, &["lines 2, 62 (and 2 more such groups) share one unloaded reading", "1.22 times"]);
 
     let bench = self::bench();
     for line in 2..=61 {
@@ -225,7 +235,7 @@ fn what_error_bars_do_not_count_is_told() {
             (7..10).for_each(|k| fields[k] = (fields[k].parse::<f64>().unwrap() / 9.81).to_string());
         });
     }
-    assert!(fit(&bench, &[]).stdout.contains(" times those of the robot file (median): are forces in N"));
+    warns(&bench, &[" times those of the robot file (median): are forces in N"]);
 }
 
 #[test]
@@ -247,7 +257,7 @@ fn an_orientation_that_is_there_twice_is_noted() {
         .collect();
     bench.write(SHEET, &wide);
     bench.replace(CONFIG, "# noise_mm = 0.03 ", "noise_mm = 0.03\nnoise_deg = 1 # ");
-    fit(&bench, &[]).assert_says(&["note: 40 rows repeat the orientation of another point"]);
+    warns(&bench, &["40 rows repeat the orientation of another point"]);
 }
 
 #[test]
@@ -307,7 +317,7 @@ fn hang_loads(bench: &Bench) {
 fn what_the_loads_do_not_show_is_named_and_kept_on_request() {
     let bench = bench();
     hang_loads(&bench);
-    refused(&bench, &["k_1 turns under no load", "fit.reduce = true"]);
+    refused(&bench, &["no reading depends on k_1", "fit.reduce = true"]);
     bench.replace(CONFIG, "reduce = false", "reduce = true");
     let document = fit(&bench, &["--json"]).json();
     assert_eq!(document["held"], serde_json::json!([1]));
@@ -320,9 +330,37 @@ fn what_the_loads_do_not_show_is_named_and_kept_on_request() {
 }
 
 #[test]
+fn held_joints_keep_the_compliance_of_the_robot_file() {
+    let bench = bench();
+    bench.replace(CONFIG, "# hold = [4, 6]", "hold = [4, 6]");
+    let document = fit(&bench, &["--json"]).json();
+    assert_eq!(document["held"], serde_json::json!([4, 6]));
+    let joints = |key: &str| document[key].as_array().unwrap().iter().map(|c| c["joint"].as_u64()).collect::<Vec<_>>();
+    assert!(joints("compliances").iter().all(|joint| *joint != Some(4) && *joint != Some(6)));
+    let (old, new) = (bench.read(ROBOT), bench.read("out/robot-identified.toml"));
+    let given =
+        |text: &str| text.lines().filter(|l| l.starts_with("stiffness_mnm_per_rad")).map(str::to_owned).collect();
+    let (old, new): (Vec<String>, Vec<String>) = (given(&old), given(&new));
+    assert_eq!(new, [old[3].clone(), old[5].clone()]);
+    let robot: toml::Table = bench.read("out/robot-identified.toml").parse().unwrap();
+    let names: Vec<&str> =
+        robot["covariance"]["parameters"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    assert_eq!(names.len(), 6);
+    assert!(names.iter().all(|name| !name.starts_with("joints[4]") && !name.starts_with("joints[6]")), "{names:?}");
+    warns(&bench, &["the compliance of joint 6 is held at the value of the robot file"]);
+}
+
+#[test]
 fn bad_configs_are_refused_at_their_line() {
     for (from, to, parts) in [
-        ("load_point_mm = [250.0,", "load_point_mm = [inf,", &[":9: load_point_mm[1]: ", "found inf"][..]),
+        ("# hold = [4, 6]", "hold = [0]", &["fit.hold[1]: ", "found 0", "from 1 to 6"][..]),
+        ("# hold = [4, 6]", "hold = [4, 7]", &["fit.hold[2]: ", "found 7", "from 1 to 6"]),
+        ("# hold = [4, 6]", "hold = [4, 4]", &["fit.hold[2]: is there twice", "found 4", "each once"]),
+        ("# hold = [4, 6]", "hold = [4.5]", &["fit.hold[1]: is not a whole number", "found 4.5"]),
+        ("# hold = [4, 6]", "hold = 4", &["fit.hold: ", "found 4", "one to five joints"]),
+        ("# hold = [4, 6]", "hold = []", &["fit.hold: ", "one to five joints"]),
+        ("# hold = [4, 6]", "hold = [1, 2, 3, 4, 5, 6]", &["fit.hold: holds every joint", "one to five joints"]),
+        ("load_point_mm = [250.0,", "load_point_mm = [inf,", &[":9: load_point_mm[1]: ", "found inf"]),
         ("# noise_mm = 0.03 ", "noise_mm = 0 # ", &["noise_mm: ", "found 0", "above 0"]),
         ("sheet = \"../tasks", "sheet = \"../tusks", &[":8: sheet: ", "cannot be read", "tusks"]),
         ("joint = 2", "joint = 7", &["compensator.joint: ", "found 7", "from 1 to 6"]),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stead_format::read_run;
-use stead_placement::problem::Problem;
+use stead_placement::problem::{Placement, Problem};
 
 /// The problem of the shipped run.
 pub fn problem() -> Problem {
@@ -11,16 +11,16 @@ pub fn problem() -> Problem {
 }
 
 /// So many placements (x, y, z in m, yaw in rad) spread over the cell.
-pub fn poses(count: usize) -> Vec<[f64; 4]> {
+pub fn poses(count: usize) -> Vec<Placement> {
     let share = |k: usize, n: usize| (k * 7 % n) as f64 / n as f64;
     (0..count)
         .map(|k| {
-            [
+            Placement::from([
                 -0.3 + 0.6 * share(k, 20),
                 -2.24 + 0.6 * share(k, 11),
                 -0.6 + 0.38 * share(k, 13),
                 -3.1 + 6.2 * share(k, 17),
-            ]
+            ])
         })
         .collect()
 }

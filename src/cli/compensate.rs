@@ -1,24 +1,22 @@
 //! `stead compensate`: correct a path, then files, then a table.
 
 use super::arguments::CompensateOptions;
-use super::{Failure, out_folder, print, say};
-use stead_calibration::compensation::compensate;
-use stead_format::read_compensation;
-use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
-use stead_report::document;
+use super::{Failure, out_folder, print_json, say_notes, say_warnings};
+use stead::{CompensationRun, Error};
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
-    let run = read_compensation(&options.config, options.reality.as_deref())?;
+    let run = CompensationRun::read_with(&options.config, options.reality.as_deref())?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
-    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    let outcome = compensate(&run.job).inspect_err(|failure| {
-        if options.json {
-            print(&document::bytes(&not_compensated_json(&run, failure)));
+    say_notes(run.notes());
+    let path = run.compensate().inspect_err(|error| {
+        if let (true, Error::NotCompensated(failure)) = (options.json, error) {
+            // What cannot be printed is said as the error all the same.
+            let _ = print_json(&run.not_compensated_json(failure));
         }
         out.give_up();
     })?;
-    let written = write_compensation(&out.folder, &run, &outcome);
-    let document = || compensation_json(&run, &outcome);
-    let where_to = |folder| format!("results in {folder}\n");
-    out.show(written, options.json, document, where_to, |where_to| compensation_text(&run, &outcome) + &where_to)
+    say_warnings(path.warnings());
+    out.show(path.write(&out.path), &path, options.json, |folder| {
+        if folder.is_empty() { folder } else { format!("results in {folder}\n") }
+    })
 }

@@ -1,34 +1,18 @@
 //! `stead explain`: one placement, one path point, one beta, eight postures.
 
 use super::arguments::ExplainOptions;
-use super::score::mention_cell;
-use super::{Failure, print, say};
-use stead_format::read_run;
-use stead_placement::feasibility::explain;
-use stead_report::document;
-use stead_report::placement::{Context, evaluation};
+use super::{Failure, print, print_json, say_notes};
+use stead::Run;
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
-    let run = read_run(&options.config)?;
-    let count = run.problem.task.points().len();
-    if options.point >= count {
-        let last = count - 1;
-        return Err(Failure::Usage(format!(
-            "--point: no such path point, found {}; allowed: 0 to {last}",
-            options.point
-        )));
-    }
+    let run = Run::read(&options.config)?;
     let placement = options.place.placement();
-    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    mention_cell(&run.problem, &placement);
     let beta = options.beta_deg.to_radians();
-    let pose = [placement.x, placement.y, placement.z, placement.yaw];
-    let postures = explain(&run.problem, &pose, options.point, beta);
-    let context = Context::new(&run, run.search);
+    let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;
+    say_notes(explanations.notes());
     if options.json {
-        print(&document::bytes(&evaluation::explain_json(&placement, options.point, beta, &postures, &context)));
-    } else {
-        print(evaluation::explain_text(&placement, options.point, beta, &postures).as_bytes());
+        return print_json(&explanations);
     }
+    print(explanations.to_string().as_bytes());
     Ok(())
 }

@@ -6,7 +6,6 @@
 
 mod arguments;
 mod assess;
-mod certify;
 mod circularity;
 mod compensate;
 mod completions;
@@ -22,39 +21,28 @@ mod stability;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;
-use serde_json::Value;
+use serde::Serialize;
+use std::fmt::Display;
 use std::io::Write;
-use std::path::{Display, Path};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use stead_assessment::comparison::AssessError;
-use stead_calibration::compensation::NotCompensated;
-use stead_format::input::InputError;
-use stead_placement::place::Infeasible;
+use stead::Warning;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
 /// Why a command ends without its result.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
-    /// Something in a file is wrong.
+    /// Something in a file is wrong, or the job failed.
     #[error("{0}")]
-    Input(#[from] InputError),
+    Stead(#[from] stead::Error),
     /// Something on the command line is wrong beyond what the parser sees.
     #[error("{0}")]
     Usage(String),
     /// A place to write to is wrong.
     #[error("{0}")]
     Output(ReportError),
-    /// No placement is feasible.
-    #[error("{0}")]
-    Nothing(#[from] Infeasible),
-    /// No robot can mill the benchmark, or nobody wants to know any more.
-    #[error("{0}")]
-    Assessment(#[from] AssessError),
-    /// Some points of a path cannot be compensated.
-    #[error("{0}")]
-    NotCompensated(#[from] NotCompensated),
-    /// The job itself failed.
+    /// A file could not be written, or the threads not be started.
     #[error("{0}")]
     Job(String),
 }
@@ -62,8 +50,17 @@ enum Failure {
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
-            Failure::Input(_) | Failure::Usage(_) | Failure::Output(_) => 2,
-            Failure::Nothing(_) | Failure::Assessment(_) | Failure::NotCompensated(_) | Failure::Job(_) => 1,
+            Failure::Usage(_) | Failure::Output(_) => 2,
+            Failure::Stead(error) if error.is_bad_input() => 2,
+            Failure::Stead(_) | Failure::Job(_) => 1,
+        }
+    }
+
+    /// An error at an option, which is named where the error does not say it.
+    fn at(option: &str, error: stead::Error) -> Self {
+        match error {
+            stead::Error::Argument(problem) => Failure::Usage(format!("{option}: {problem}")),
+            error => Failure::Stead(error),
         }
     }
 }
@@ -104,24 +101,29 @@ fn say(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
+/// Says what the user should know about the input.
+fn say_notes(notes: &[String]) {
+    notes.iter().for_each(|note| say(&format!("note: {note}")));
+}
+
+/// Says why a result may not be what was wanted.
+fn say_warnings(warnings: &[Warning]) {
+    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+}
+
 /// Runs a job on so many threads, or on as many as there are processors.
-fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<(T, usize), Failure> {
+fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<T, Failure> {
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = threads {
         builder = builder.num_threads(threads);
     }
     let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
-    Ok((pool.install(job), pool.current_num_threads()))
-}
-
-/// Whether the files of a job that is done could be written.
-fn files_written<T>(written: Result<T, ReportError>) -> Result<(), Failure> {
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+    Ok(pool.install(job))
 }
 
 /// The folder that results go to.
 struct OutFolder {
-    folder: Folder,
+    path: PathBuf,
     is_new: bool,
 }
 
@@ -130,38 +132,44 @@ impl OutFolder {
     fn give_up(&self) {
         if self.is_new {
             // Goes only if it is empty, as it should be.
-            let _ = std::fs::remove_dir(self.folder.path());
+            let _ = std::fs::remove_dir(&self.path);
         }
     }
 
-    /// Shows a result, as a JSON document or as text with what `where_to` says of the folder that its files are in; only then
-    /// says what went wrong with the files: whatever happened to them, the result of a long job is shown.
-    fn show<'a, T>(
-        &'a self,
-        written: Result<T, ReportError>,
+    /// Writes the files of a result and shows it, as a JSON document or as text with what `ending` says of the folder that its files
+    /// are in; only then says what went wrong with the files: whatever happened to them, the result of a long job is shown.
+    fn show<T>(
+        &self,
+        written: Result<T, stead::Error>,
+        result: &(impl Serialize + Display),
         is_json: bool,
-        document: impl FnOnce() -> Value,
-        where_to: impl FnOnce(Display<'a>) -> String,
-        text: impl FnOnce(String) -> String,
+        ending: impl FnOnce(String) -> String,
     ) -> Result<(), Failure> {
-        if !is_json {
-            return self.tell(written, where_to, text);
+        if is_json {
+            print_json(result)?;
+        } else {
+            let place = written.as_ref().map_or_else(|_| String::new(), |_| self.path.display().to_string());
+            print(format!("{result}{}", ending(place)).as_bytes());
         }
-        print(&document::bytes(&document()));
         files_written(written)
     }
+}
 
-    /// Shows a result as text, as [`OutFolder::show`] does.
-    fn tell<'a, T>(
-        &'a self,
-        written: Result<T, ReportError>,
-        where_to: impl FnOnce(Display<'a>) -> String,
-        text: impl FnOnce(String) -> String,
-    ) -> Result<(), Failure> {
-        let where_to = written.as_ref().map_or_else(|_| String::new(), |_| where_to(self.folder.path().display()));
-        print(text(where_to).as_bytes());
-        files_written(written)
-    }
+/// Whether the files of a job that is done could be written.
+fn files_written<T>(written: Result<T, impl Display>) -> Result<(), Failure> {
+    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
+}
+
+/// Prints a result as one JSON document.
+fn print_json(result: &impl Serialize) -> Result<(), Failure> {
+    let document = serde_json::to_value(result).map_err(|e| Failure::Job(e.to_string()))?;
+    print(&document::bytes(&document));
+    Ok(())
+}
+
+/// Where results are, as the last line of a text, where they could be written.
+fn results_in(folder: String) -> String {
+    if folder.is_empty() { folder } else { format!("\nresults in {folder}\n") }
 }
 
 /// The folder asked for, or `results/` and the name of the config; tried before the long work, so that one that cannot be
@@ -176,5 +184,6 @@ fn out_folder_named(asked: Option<&Path>, config: &Path, ending: &str) -> Result
     name.push(ending);
     let path = asked.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
-    Ok(OutFolder { folder: Folder::create(&path).map_err(Failure::Output)?, is_new })
+    Folder::create(&path).map_err(Failure::Output)?;
+    Ok(OutFolder { path, is_new })
 }

@@ -1,83 +1,64 @@
 //! `stead place`: search, then files, then a table, and then, where it is asked for, a certificate with its own files.
 
 use super::arguments::PlaceOptions;
-use super::certify::{certified, warn_unfit};
 use super::progress::Terminal;
-use super::score::{mention_cancellation, path_stability};
-use super::{Failure, files_written, on_threads, out_folder, print, say};
-use serde_json::Value;
-use std::time::Instant;
-use stead_format::read_run_to_certify;
-use stead_placement::outcome::Cases;
-use stead_placement::place::place;
-use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
-use stead_report::document::{self, Timing};
-use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
+use super::{Failure, files_written, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
+use stead::{Error, Run};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let run = read_run_to_certify(&options.config, options.certify)?;
-    let mut search = run.search;
-    search.seed = options.seed.unwrap_or(search.seed);
+    let mut run = match options.certify {
+        Some(gap) => Run::read_to_certify(&options.config, gap)?,
+        None => Run::read(&options.config)?,
+    };
+    if let Some(seed) = options.seed {
+        run = run.with_seed(seed);
+    }
     let out = out_folder(options.out.as_deref(), &options.config)?;
-    run.notes.iter().for_each(|note| say(&format!("note: {note}")));
-    warn_unfit(&run);
+    say_notes(run.notes());
+    say_warnings(run.certificate_warning().as_slice());
 
     let terminal = Terminal::start();
     let shown = terminal.show(None);
-    let started = Instant::now();
-    let (outcome, threads) =
-        on_threads(options.threads, || place(&run.problem, &search, &run.transfer, &shown.monitor))?;
-    let wall = started.elapsed().as_secs_f64();
+    let found = on_threads(options.threads, || run.search(&shown.monitor))?;
     let was_stopped = shown.monitor.should_stop();
     drop(shown);
-    let outcome = outcome.inspect_err(|nothing| {
-        if options.json {
-            print(&document::bytes(&evaluation::infeasible_json(nothing, &Context::new(&run, search))));
+    let mut placements = found.inspect_err(|error| {
+        if let (true, Error::Infeasible(nothing)) = (options.json, error) {
+            // What cannot be printed is said as the error all the same.
+            let _ = print_json(&run.infeasible_json(nothing));
         }
         out.give_up();
         if was_stopped {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
-
-    let Cases { best, worst, .. } = &outcome.cases;
-    let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
-    let stability = match &run.path_stability {
-        Some(analysis) => Some(on_threads(options.threads, || path_stability(&run.problem, analysis, plans))?.0?),
-        None => None,
-    };
-    let context = Context { stability, ..Context::new(&run, search) };
-    let written = write_placement(&out.folder, &run.problem, &outcome, &context);
-    let mut document = place_json(&outcome, &context, &Timing { wall, threads });
+    let mut written = files_written(placements.write(&out.path));
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
-    let mut shown = match options.json {
-        true => files_written(written),
-        false => out.tell(
-            written,
-            |folder| format!("; results in {folder}"),
-            |where_to| {
-                let table = placement_text(&run.problem, &outcome, &context);
-                format!("{table}in {wall:.1} s on {threads} threads{where_to}\n")
-            },
-        ),
-    };
-    mention_cancellation(&run.problem, outcome.cases.best.plan.mean);
-    if outcome.interrupted {
-        say("interrupted: the results are the best found so far, not the end of the search");
+    if !options.json {
+        let timing = placements.timing();
+        let folder =
+            written.as_ref().map_or_else(|_| String::new(), |()| format!("; results in {}", out.path.display()));
+        print(format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads).as_bytes());
     }
-    if let Some(settings) = run.certificate {
-        let certificate = certified(&run, settings, &outcome, options.threads, &terminal)?;
-        shown = shown.and(files_written(write_certificate(&out.folder, &run.problem, &certificate)));
-        if let Value::Object(entries) = &mut document {
-            entries.insert("certificate".to_owned(), certificate_json(&certificate));
+    say_warnings(placements.warnings());
+
+    let shown = terminal.show(None);
+    let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
+    drop(shown);
+    if is_certified {
+        written = written.and(files_written(placements.write_certificate(&out.path)));
+        // What cannot be certified was said before.
+        if run.certificate_warning().is_none() {
+            say_warnings(placements.certificate().map_or(&[], |certificate| &certificate.warnings));
         }
-        if !options.json {
-            let wall = certificate.wall;
-            print(format!("\n{}in {wall:.1} s\n", certificate_text(&certificate)).as_bytes());
+        if let (false, Some(text), Some(certificate)) =
+            (options.json, placements.certificate_text(), placements.certificate())
+        {
+            print(format!("\n{text}in {:.1} s\n", certificate.wall).as_bytes());
         }
     }
     if options.json {
-        print(&document::bytes(&document));
+        print_json(&placements)?;
     }
-    shown
+    written
 }

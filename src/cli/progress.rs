@@ -3,7 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
-use stead_report::certificate::MOST_GAP_PERCENT;
+use stead_placement::certify::MAX_GAP_PERCENT;
 use stead_report::units::figures;
 
 /// Shows the progress of the jobs of one command, and stops them at Ctrl-C.
@@ -62,7 +62,7 @@ fn draw(bar: &ProgressBar, progress: &Progress) {
         Progress::Bound { stage, nodes: 0, .. } => (BOUND, stage, None, "tables are being made".to_owned()),
         Progress::Bound { stage, value, bound, gap, open, nodes } => {
             let reached = 100.0 * (1.0 - bound / value).abs();
-            let reached = if bound > 0.0 && reached <= MOST_GAP_PERCENT {
+            let reached = if bound > 0.0 && reached <= MAX_GAP_PERCENT {
                 format!("gap {} %", figures(reached))
             } else {
                 "no gap yet".to_owned()

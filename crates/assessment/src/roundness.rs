@@ -3,6 +3,8 @@
 use super::circle::plane::FittedPlane;
 use super::circle::{CircleError, Circles, Fit, least_squares};
 use std::f64::consts::TAU;
+use stead_numerics::digits::figures;
+use stead_numerics::message::Warning;
 
 /// Measured points in one unit of length.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,6 +132,9 @@ impl Sector {
     }
 }
 
+/// Points farther off their plane than this, in radii, are hardly one profile.
+const MAX_FLATNESS: f64 = 0.1;
+
 impl Roundness {
     /// Points that no sector leaves out.
     pub fn kept(&self) -> impl Iterator<Item = &Assessed> {
@@ -143,6 +148,19 @@ impl Roundness {
             let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
             high - low
         })
+    }
+
+    /// What speaks against the points being those of one circular profile.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let radius = self.circles.lsc.circle.radius;
+        let flatness = self.flatness().filter(|flatness| *flatness > MAX_FLATNESS * radius);
+        let message = |flatness| {
+            let spread = figures(flatness);
+            format!(
+                "the points are spread over {spread} mm across their plane, more than a tenth of the radius: are they one profile?"
+            )
+        };
+        flatness.map(|flatness| Warning::new("not-flat", message(flatness))).into_iter().collect()
     }
 
     /// The centre of a circle in the frame of the points, with z where they have one.

@@ -2,9 +2,10 @@
 
 use super::reader::{Field, Table};
 use crate::input::InputError;
-use stead_placement::certify::{Unfit, certifiable};
+use stead_placement::certify::certifiable;
 use stead_placement::problem::Problem;
 use stead_placement::settings::CertificateSettings;
+use stead_placement::symmetry::Unsupported;
 
 /// Which gaps can be asked for, on the command line as well.
 pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";
@@ -19,9 +20,9 @@ pub(super) fn certificate_from(table: &Table<'_>) -> Result<CertificateSettings,
 /// the workpiece without one.
 pub(super) fn check_size(cell: &Field<'_>, problem: &Problem) -> Result<(), InputError> {
     match certifiable(problem) {
-        Err(unfit @ Unfit::TooLarge(_, allowed)) => {
-            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", allowed as f64 / 1e9);
-            Err(InputError::new(cell.source.file(), unfit.to_string())
+        Err(too_large @ Unsupported::TooLarge { max, .. }) => {
+            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", max as f64 / 1e9);
+            Err(InputError::new(cell.source.file(), too_large.to_string())
                 .at_line(cell.line())
                 .in_field("cell")
                 .allowed(allowed))

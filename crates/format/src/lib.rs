@@ -43,7 +43,7 @@ mod testing;
 pub use assess::{AssessRun, read_assessment};
 pub use certificate::GAPS_ALLOWED;
 pub use compensate::{CompensateRun, read_compensation};
-pub use identify::{IdentifyRun, PlanRun, read_identification, read_plan};
+pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{Run, read_run, read_run_to_certify};

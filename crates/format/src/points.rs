@@ -3,8 +3,9 @@
 use super::source::input_file;
 use crate::input::table::Table;
 use crate::input::{InputError, InputFile};
-use std::path::Path;
-use stead_assessment::roundness::Measured;
+use std::path::{Path, PathBuf};
+use stead_assessment::circle::CircleError;
+use stead_assessment::roundness::{Measured, RoundnessError};
 
 /// What a file of points holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +14,9 @@ pub struct PointFile {
     pub measured: Measured,
     /// Line of each point in the file, from 1.
     pub lines: Vec<usize>,
-    /// The file itself.
+    /// The file as the user named it.
+    pub file: PathBuf,
+    /// The file with its digest.
     pub input: InputFile,
 }
 
@@ -55,7 +58,45 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
     }
     let measured = if z.is_some() { Measured::Spatial(spatial) } else { Measured::Planar(planar) };
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(PointFile { measured, lines, input: input_file("points", name, &bytes) })
+    Ok(PointFile { measured, lines, file: file.to_owned(), input: input_file("points", name, &bytes) })
+}
+
+impl PointFile {
+    /// What is wrong with the points, at the line that is at fault.
+    pub fn locate(&self, error: RoundnessError) -> InputError {
+        const ALLOWED: &str = "at least three different points that are not on one straight line";
+        let (cause, excluded) = match error {
+            RoundnessError::Points(cause) => (cause, None),
+            RoundnessError::Left { count, cause } => (cause, Some(count)),
+        };
+        let columns = match self.measured {
+            Measured::Planar(_) => "x_mm,y_mm",
+            Measured::Spatial(_) => "x_mm,y_mm,z_mm",
+        };
+        let first = self.lines.first().copied().unwrap_or(1);
+        let (line, found, allowed) = match cause {
+            CircleError::NotFinite { point } => {
+                (self.lines.get(point).copied().unwrap_or(first), None, "finite numbers")
+            }
+            CircleError::TooFew { distinct } => (first, Some(format!("{distinct} different points")), ALLOWED),
+            CircleError::Collinear => (first, Some(format!("{} points on a line", self.lines.len())), ALLOWED),
+            CircleError::Straight => {
+                (first, None, "points of a circle, or of an arc that is bent more than it is rough")
+            }
+        };
+        let located = match excluded {
+            None => InputError::new(&self.file, cause.to_string()).at_line(line).in_field(columns),
+            Some(count) => {
+                let all = self.lines.len();
+                InputError::new(&self.file, format!("with {count} of {all} points left, {cause}"))
+                    .in_field("--exclude-deg")
+            }
+        };
+        match found {
+            Some(found) => located.found(found).allowed(allowed),
+            None => located.allowed(allowed),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -123,44 +123,6 @@ pub(super) fn sheet_from(file: &Path, bytes: &[u8], robot: &Robot) -> Result<She
     Ok(sheet)
 }
 
-/// Readings that are there more than once, whose errors therefore hang together, in sentences.
-pub(super) fn repeated(sheet: &Sheet) -> Vec<String> {
-    let mut unloaded: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
-    let mut turns = 0;
-    for configuration in &sheet.configurations {
-        let own = &sheet.readings[configuration.readings.clone()];
-        turns += (1..own.len()).filter(|k| own[*k].turn.is_some_and(|turn| own[k - 1].turn == Some(turn))).count();
-        for reading in own {
-            let bits: [u64; 3] = std::array::from_fn(|axis| reading.unloaded[axis].to_bits());
-            unloaded.entry(bits).or_default().push(reading.line);
-        }
-    }
-    let mut notes = Vec::new();
-    let shared = || unloaded.values().filter(|lines| lines.len() > 1);
-    // Where several are as long as the longest, the one that comes first.
-    if let Some(lines) = shared().min_by_key(|lines| (std::cmp::Reverse(lines.len()), lines[0])) {
-        // Differences to one common reading: a variance of one and a covariance of a half, at worst all alike.
-        let factor = libm::sqrt((1.0 + lines.len() as f64) / 2.0);
-        let listed: Vec<String> = lines.iter().map(usize::to_string).collect();
-        let more = match shared().count() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more such groups)"),
-        };
-        notes.push(format!(
-            "lines {}{more} have one unloaded reading in common: standard deviations and intervals take all readings for \
-             independent and may be {factor:.2} times too small; read anew without load before every load",
-            listed.join(", ")
-        ));
-    }
-    if turns > 0 {
-        notes.push(format!(
-            "{turns} rows repeat the orientation of another point of their configuration: it counts every time, which makes \
-             standard deviations too small; give orientations with one point alone"
-        ));
-    }
-    notes
-}
-
 fn name(row: &Row<'_>, column: usize) -> Result<String, InputError> {
     match row.text(column) {
         "" => Err(row.fail(column, "is blank", "a name")),

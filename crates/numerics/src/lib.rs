@@ -1,6 +1,7 @@
 //! What every job computes with: numbers that carry derivatives, the widest vectors of the processor, warnings, and
 //! the monitor of long jobs.
 
+pub mod digits;
 pub mod message;
 pub mod monitor;
 pub mod scalar;

@@ -2,11 +2,13 @@
 //!
 //! Whatever goes on from the search is looked at by the planner in any case.
 
+use super::candidate::{Candidate, Objective, rank};
 use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::Generation;
-use super::redundancy::{self, Objective, Planner};
-use super::search::{Candidate, rank};
+use super::problem::Placement;
+use super::redundancy::{self, Planner};
 use super::sense::Sense;
+use super::symmetry::about_axis_1;
 use rayon::prelude::*;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::Monitor;
@@ -54,7 +56,7 @@ fn apart<'s>(
 ) -> Vec<(&'s Candidate, Candidate)> {
     let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
     for (start, end) in sorted {
-        let place = table.cylindrical(&end.pose);
+        let place = about_axis_1(table.problem(), &end.placement);
         let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
             other.1.scheme == end.scheme
                 && (known[0] - place[0]).abs() < SAME[0]
@@ -101,24 +103,24 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under its best plan on the planner's grid, with
+    /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with
     /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
-    pub fn objective(&self, pose: &[f64; 4], scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
+    pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
         match (self.table, &mut workspace.table) {
-            (Some(table), Some(space)) => table.objective(pose, &self.grid, scheme, space),
-            _ => self.planned_objective(pose, scheme, workspace),
+            (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, space),
+            _ => self.planned_objective(placement, scheme, workspace),
         }
     }
 
     /// The same by the planner.
     pub fn planned_objective(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
         let space = workspace.planner.get_or_insert_with(|| self.planner.workspace());
-        self.planner.objective(pose, Sense::Min, scheme, space)
+        self.planner.objective(placement, Sense::Min, scheme, space)
     }
 
     /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are
@@ -146,7 +148,7 @@ impl<'a> Evaluator<'a> {
                 || self.workspace(),
                 |workspace, (start, end)| {
                     let mut plan = |from: &Candidate| Candidate {
-                        objective: self.planned_objective(&from.pose, from.scheme.as_deref(), workspace),
+                        objective: self.planned_objective(&from.placement, from.scheme.as_deref(), workspace),
                         ..from.clone()
                     };
                     let planned = plan(end);
@@ -189,8 +191,9 @@ impl<'a> Evaluator<'a> {
         match &mut workspace.table {
             Some(space) if !monitor.should_stop() => {
                 let scheme = start.scheme.as_deref();
-                let (pose, objective, looks) = table.coordinate_search(&start.pose, sense, scheme, &self.grid, space);
-                (Candidate { pose, objective, ..start.clone() }, looks)
+                let (placement, objective, looks) =
+                    table.coordinate_search(&start.placement, sense, scheme, &self.grid, space);
+                (Candidate { placement, objective, ..start.clone() }, looks)
             }
             _ => (start.clone(), 0),
         }
@@ -201,13 +204,13 @@ impl<'a> Evaluator<'a> {
         if self.table.is_none() {
             return;
         }
-        let is_new = |k: &usize| *k == 0 || best[*k].pose != best[*k - 1].pose;
+        let is_new = |k: &usize| *k == 0 || best[*k].placement != best[*k - 1].placement;
         let new: Vec<usize> = (0..best.len()).filter(is_new).collect();
         let worths: Vec<Objective> = new
             .par_iter()
             .map_init(
                 || self.workspace(),
-                |workspace, k| self.planned_objective(&best[*k].pose, best[*k].scheme.as_deref(), workspace),
+                |workspace, k| self.planned_objective(&best[*k].placement, best[*k].scheme.as_deref(), workspace),
             )
             .collect();
         let mut known: Option<Objective> = None;

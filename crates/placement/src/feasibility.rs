@@ -1,93 +1,12 @@
 //! Why a state or a placement is not allowed: which constraint is broken, and by how much.
 
+use super::constraints::{ConstraintKind, Measured, on_joints, on_state};
 use super::evaluate::reference::{State, state};
-use super::outcome::{Blocked, DeflectionMap, MapCell};
-use super::problem::Problem;
+use super::problem::{Placement, Problem};
 use super::redundancy::NoFeasiblePlan;
 use rayon::prelude::*;
 use std::fmt;
-use stead_model::robot::{Posture, Unreachable, turns::Range};
-
-/// One broken constraint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Violation {
-    /// The posture does not reach the point.
-    Reach(Unreachable),
-    /// A joint limit is passed.
-    JointLimit {
-        /// The joint, from 1.
-        joint: u8,
-        /// The joint angle, in the turn nearest to its range. rad
-        angle: f64,
-        /// The limit that is passed. rad
-        limit: f64,
-    },
-    /// 1/kappa_F is below its bound.
-    Conditioning {
-        /// What it is.
-        value: f64,
-        /// What it must be at least.
-        limit: f64,
-    },
-    /// The score is above c_max.
-    Deflection {
-        /// What it is. m
-        value: f64,
-        /// What it may be. m
-        limit: f64,
-    },
-}
-
-impl Violation {
-    /// Its kind.
-    pub fn kind(&self) -> Blocked {
-        match self {
-            Violation::Reach(_) => Blocked::Reach,
-            Violation::JointLimit { joint, .. } => Blocked::JointLimit(*joint),
-            Violation::Conditioning { .. } => Blocked::Conditioning,
-            Violation::Deflection { .. } => Blocked::Deflection,
-        }
-    }
-
-    /// How bad it is, to tell which of several states comes nearest: in tenths of a metre or radian, or relative.
-    fn severity(&self) -> f64 {
-        match self {
-            // A point out of reach has no joint angles to speak of, so it counts as farther off than any of them.
-            Violation::Reach(unreachable) => 100.0 + unreachable.by() * 10.0,
-            Violation::JointLimit { angle, limit, .. } => (angle - limit).abs() * 10.0,
-            Violation::Conditioning { value, limit } => 1.0 - value / limit,
-            Violation::Deflection { value, limit } => value / limit - 1.0,
-        }
-    }
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Violation::Reach(Unreachable::InsideOffset { by }) => {
-                write!(f, "wrist centre {:.1} mm too near to axis 1 for the arm's lateral offset", by * 1e3)
-            }
-            Violation::Reach(Unreachable::TooFar { by }) => {
-                write!(f, "wrist centre {:.1} mm beyond the stretched arm", by * 1e3)
-            }
-            Violation::Reach(Unreachable::TooNear { by }) => {
-                write!(f, "wrist centre {:.1} mm nearer to the shoulder than the folded arm", by * 1e3)
-            }
-            Violation::JointLimit { joint, angle, limit } => {
-                let (side, by) = if angle > limit { ("above", angle - limit) } else { ("below", limit - angle) };
-                let (angle, limit, by) = (angle.to_degrees(), limit.to_degrees(), by.to_degrees());
-                write!(f, "joint {joint} at {angle:.2} deg is {by:.2} deg {side} its limit {limit:.2} deg")
-            }
-            Violation::Conditioning { value, limit } => {
-                write!(f, "1/kappa {value:.4} is {:.4} below {limit}", limit - value)
-            }
-            Violation::Deflection { value, limit } => {
-                let (value, by, limit) = (value * 1e3, (value - limit) * 1e3, limit * 1e3);
-                write!(f, "deflection {value:.4} mm is {by:.4} mm above c_max = {limit} mm")
-            }
-        }
-    }
-}
+use stead_model::robot::{Posture, turns::Range};
 
 /// What one posture gives at one point and beta.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,7 +16,7 @@ pub struct Explanation {
     /// The state with its joint angles in the turn nearest to their ranges; `None` when out of reach.
     pub state: Option<State<f64>>,
     /// The constraints broken; none means allowed.
-    pub violations: Vec<Violation>,
+    pub violations: Vec<Measured>,
 }
 
 impl Explanation {
@@ -107,56 +26,63 @@ impl Explanation {
     }
 
     fn severity(&self) -> f64 {
-        self.violations.iter().map(Violation::severity).sum()
+        self.violations.iter().map(Measured::severity).sum()
     }
 
     /// The worst of the broken constraints.
-    fn worst(&self) -> Option<&Violation> {
+    fn worst(&self) -> Option<&Measured> {
         self.violations.iter().max_by(|a, b| a.severity().total_cmp(&b.severity()))
     }
 }
 
-/// What each of the eight postures gives at path point `point`, workpiece at `pose` (x, y, z in m, yaw in rad), free angle
+/// What each of the eight postures gives at path point `point`, workpiece at a placement, free angle
 /// `beta` (rad), in the order of their numbers.
-pub fn explain(problem: &Problem, pose: &[f64; 4], point: usize, beta: f64) -> [Explanation; 8] {
-    Posture::ALL.map(|posture| match state(problem, point, pose, beta, posture) {
-        Err(unreachable) => Explanation { posture, state: None, violations: vec![Violation::Reach(unreachable)] },
+pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
+    Posture::ALL.map(|posture| match state(problem, point, placement, beta, posture) {
+        Err(unreachable) => Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)] },
         Ok(mut found) => {
-            let mut violations = Vec::new();
-            for (j, joint) in problem.robot.joints().iter().enumerate() {
-                let (angle, excess) = Range::of(joint).nearest(found.joints[j]);
-                found.joints[j] = angle;
-                if excess > 0.0 {
-                    let limit = if angle > joint.max { joint.max } else { joint.min };
-                    violations.push(Violation::JointLimit { joint: j as u8 + 1, angle, limit });
-                }
+            for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
+                *angle = Range::of(joint).nearest(*angle).0;
             }
-            let limit = problem.constraints.min_inverse_condition;
-            if found.inverse_condition < limit {
-                violations.push(Violation::Conditioning { value: found.inverse_condition, limit });
-            }
-            if let Some(limit) = problem.constraints.max_deflection
-                && found.score() > limit
-            {
-                violations.push(Violation::Deflection { value: found.score(), limit });
-            }
+            let measured = on_joints(problem, &found.joints).into_iter().chain(on_state(problem, &found));
+            let violations = measured.filter(|measured| !measured.holds()).collect();
             Explanation { posture, state: Some(found), violations }
         }
     })
 }
 
+/// Deflection over path point and beta (the paper's Fig. 7 and 9): for every grid state the smallest score over the
+/// allowed postures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeflectionMap {
+    /// Number of grid values of beta; the k-th is `-pi + 2 pi k / beta_count`.
+    pub beta_count: usize,
+    /// For each path point the row of its `beta_count` states: a score (m), or the constraint that the posture nearest to
+    /// being allowed breaks most.
+    pub rows: Vec<Vec<Result<MapCell, ConstraintKind>>>,
+}
+
+/// An allowed state of a [`DeflectionMap`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapCell {
+    /// The smallest score over the allowed postures. m
+    pub score: f64,
+    /// The posture that has it.
+    pub posture: Posture,
+}
+
 /// The smallest score over the allowed postures for every path point and grid value of beta (Caro 2013, Fig. 7 and 9).
-pub fn deflection_map(problem: &Problem, pose: &[f64; 4]) -> DeflectionMap {
+pub fn deflection_map(problem: &Problem, placement: &Placement) -> DeflectionMap {
     let beta_count = problem.redundancy.beta_count;
     let cell = |point: usize, k: usize| {
-        let all = explain(problem, pose, point, problem.redundancy.beta(k));
+        let all = explain(problem, placement, point, problem.redundancy.beta(k));
         let allowed = all
             .iter()
             .filter(|e| e.is_allowed())
             .filter_map(|e| e.state.as_ref().map(|s| MapCell { score: s.score(), posture: e.posture }));
         allowed.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or_else(|| {
             let nearest = all.iter().min_by(|a, b| a.severity().total_cmp(&b.severity()));
-            nearest.and_then(Explanation::worst).map_or(Blocked::Reach, Violation::kind)
+            nearest.and_then(Explanation::worst).map_or(ConstraintKind::Reach, Measured::kind)
         })
     };
     let rows = (0..problem.task.points().len())
@@ -188,7 +114,7 @@ pub struct Nearest {
     /// Its posture.
     pub posture: Posture,
     /// What it breaks.
-    pub violations: Vec<Violation>,
+    pub violations: Vec<Measured>,
 }
 
 impl fmt::Display for Finding {
@@ -224,13 +150,18 @@ impl fmt::Display for Finding {
 
 /// Which constraint fails at which points of a placement that has no plan, in any posture or in a given scheme (one
 /// posture per segment).
-pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, none: &NoFeasiblePlan) -> Vec<Finding> {
+pub fn diagnose(
+    problem: &Problem,
+    placement: &Placement,
+    scheme: Option<&[Posture]>,
+    none: &NoFeasiblePlan,
+) -> Vec<Finding> {
     let beta_count = problem.redundancy.beta_count;
     let nearest_of = |point: usize| {
         let only = scheme.map(|postures| postures[problem.task.path().segment_of(point)]);
         let states = (0..beta_count).flat_map(|k| {
             let beta = problem.redundancy.beta(k);
-            explain(problem, pose, point, beta).map(|e| (beta, e))
+            explain(problem, placement, point, beta).map(|e| (beta, e))
         });
         let states = states.filter(|(_, e)| only.is_none_or(|posture| e.posture == posture));
         states.min_by(|a, b| a.1.severity().total_cmp(&b.1.severity()))
@@ -240,13 +171,13 @@ pub fn diagnose(problem: &Problem, pose: &[f64; 4], scheme: Option<&[Posture]>, 
     for (point, found) in nearest {
         let Some((beta, explanation)) = found else { continue };
         let segment = problem.task.path().segment_of(point) + 1;
-        let kinds: Vec<Blocked> = explanation.violations.iter().map(Violation::kind).collect();
+        let kinds: Vec<ConstraintKind> = explanation.violations.iter().map(Measured::kind).collect();
         let severity = explanation.severity();
         let nearest = Nearest { point, beta, posture: explanation.posture, violations: explanation.violations };
         if let Some((least, last)) = findings.last_mut()
             && last.segment == segment
             && last.points.1 + 1 == point
-            && last.nearest.as_ref().is_some_and(|n| n.violations.iter().map(Violation::kind).eq(kinds.iter().copied()))
+            && last.nearest.as_ref().is_some_and(|n| n.violations.iter().map(Measured::kind).eq(kinds.iter().copied()))
         {
             last.points.1 = point;
             if severity < *least {
@@ -278,14 +209,14 @@ mod tests {
     #[test]
     fn explains_the_eight_postures_at_the_check_point() {
         let problem = five_segments();
-        let pose = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
-        let all = explain(&problem, &pose, 30, 40.0_f64.to_radians());
+        let placement = Placement::from([2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]);
+        let all = explain(&problem, &placement, 30, 40.0_f64.to_radians());
         assert!(all[2].is_allowed() && all[3].is_allowed());
         for e in &all {
             let Some(s) = &e.state else { continue };
             let outside =
                 problem.robot.joints().iter().zip(s.joints).any(|(j, q)| q < j.min - 1e-8 || q > j.max + 1e-8);
-            let told = e.violations.iter().any(|v| matches!(v, Violation::JointLimit { .. }));
+            let told = e.violations.iter().any(|v| matches!(v, Measured::JointLimit { .. }));
             assert_eq!(outside, told);
         }
     }
@@ -294,11 +225,11 @@ mod tests {
     fn map_agrees_with_the_planner_on_what_is_allowed() {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
-        let pose = [0.1, -1.9, -0.4, 1.0];
-        let map = deflection_map(&problem, &pose);
+        let placement = Placement::from([0.1, -1.9, -0.4, 1.0]);
+        let map = deflection_map(&problem, &placement);
         let blocked = map.rows.iter().filter(|row| row.iter().all(Result::is_err)).count();
         let planner = Planner::new(&problem);
-        let none = planner.plan(&pose, Sense::Min, None, &mut planner.workspace());
+        let none = planner.plan(&placement, Sense::Min, None, &mut planner.workspace());
         assert_eq!(none.err().map_or(0, |n| n.blocked_points.len()), blocked);
         assert_eq!((map.rows.len(), map.rows[0].len()), (105, 24));
     }
@@ -308,7 +239,7 @@ mod tests {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
         let planner = Planner::new(&problem);
-        let far = [0.0, -4.0, -0.4, 0.0];
+        let far = Placement::from([0.0, -4.0, -0.4, 0.0]);
         let none = planner.plan(&far, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let findings = diagnose(&problem, &far, None, &none);
         assert_eq!(findings.first().map(|f| f.points), Some((0, 20)));
@@ -316,7 +247,7 @@ mod tests {
         assert!(text.contains("segment 1, points 0 to 20") && text.contains("beyond the stretched arm"), "{text}");
         problem.constraints.min_inverse_condition = 0.95;
         let planner = Planner::new(&problem);
-        let near = [0.0, -1.8, -0.4, 0.0];
+        let near = Placement::from([0.0, -1.8, -0.4, 0.0]);
         let none = planner.plan(&near, Sense::Min, None, &mut planner.workspace()).unwrap_err();
         let text = diagnose(&problem, &near, None, &none)[0].to_string();
         assert!(text.contains("1/kappa") && text.contains("below 0.95"), "{text}");

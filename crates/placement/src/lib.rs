@@ -2,10 +2,11 @@
 //!
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
+//! - [`constraints`]: what a plan must satisfy, by kind, with signed margins.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
 //! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
 //!   planner.
-//! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
+//! - [`candidate`]: a placement with its objective value; [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`sense`]: minimise or maximise.
 //!
@@ -14,7 +15,9 @@
 //! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
+pub mod candidate;
 pub mod certify;
+pub mod constraints;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
@@ -27,6 +30,7 @@ pub mod refine;
 pub mod search;
 pub mod sense;
 pub mod settings;
+pub mod symmetry;
 pub mod transfer;
 
 #[cfg(any(test, feature = "testing"))]

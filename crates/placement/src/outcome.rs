@@ -1,8 +1,10 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::lookup::{Accuracy, Shape, Unsuited};
+use super::feasibility::DeflectionMap;
+use super::lookup::{Accuracy, Shape};
 use super::problem::Placement;
 use super::sense::Sense;
+use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use stead_model::robot::Posture;
 
@@ -154,38 +156,6 @@ pub struct Generation {
     pub evaluations: usize,
 }
 
-/// Why a state (point and beta) has no allowed posture: the constraint broken by the posture that comes nearest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Blocked {
-    /// No posture reaches the point.
-    Reach,
-    /// A joint limit; the joint from 1.
-    JointLimit(u8),
-    /// Too near to a singularity.
-    Conditioning,
-    /// More deflection than c_max.
-    Deflection,
-}
-
-/// Deflection over path point and beta (the paper's Fig. 7 and 9): for every grid state the smallest score over the
-/// allowed postures.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeflectionMap {
-    /// Number of grid values of beta; the k-th is `-pi + 2 pi k / beta_count`.
-    pub beta_count: usize,
-    /// For each path point the row of its `beta_count` states: a score (m), or why there is none.
-    pub rows: Vec<Vec<Result<MapCell, Blocked>>>,
-}
-
-/// An allowed state of a [`DeflectionMap`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapCell {
-    /// The smallest score over the allowed postures. m
-    pub score: f64,
-    /// The posture that has it.
-    pub posture: Posture,
-}
-
 /// How one gradient refinement went.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement {
@@ -206,8 +176,34 @@ pub struct Refinement {
     /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit of
     /// the variables (see [`super::refine`]).
     pub kkt_residual: f64,
-    /// How each round ended, in words.
-    pub statuses: Vec<String>,
+    /// How each round ended.
+    pub statuses: Vec<RefinementStatus>,
+}
+
+/// How a round of the gradient refinement ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum RefinementStatus {
+    /// The mean deflection is below [`CANCELLATION`].
+    #[error("converged: the deflection is cancelled")]
+    Cancelled,
+    /// The linear model promises no gain worth a step: a first-order optimum.
+    #[error("converged: no first-order gain")]
+    NoFirstOrderGain,
+    /// Several steps in a row gained next to nothing.
+    #[error("converged: no more gain")]
+    NoMoreGain,
+    /// No step inside the smallest trust region is allowed and better.
+    #[error("converged: no gain in the smallest trust region")]
+    SmallestTrustRegion,
+    /// The largest number of iterations was reached.
+    #[error("stopped at the largest number of iterations")]
+    MaxIterations,
+    /// The solver of the convex subproblem refused it or found no solution.
+    #[error("the subproblem could not be solved")]
+    SubproblemFailed,
+    /// A state of the solution has no derivatives.
+    #[error("a point cannot be linearised")]
+    NotLinearised,
 }
 
 /// What a search looked through.
@@ -225,7 +221,7 @@ pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
     /// The table that the searches looked through, or why there is none; `None` where none was asked for.
-    pub tabled: Option<Result<Tabled, Unsuited>>,
+    pub tabled: Option<Result<Tabled, Unsupported>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.

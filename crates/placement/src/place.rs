@@ -1,16 +1,18 @@
 //! The placement job: search, refine, plan, map.
 
+use super::candidate::Candidate;
 use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
-use super::lookup::{LookupTable, Unsuited};
+use super::lookup::LookupTable;
 use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
-use super::search::{self, Candidate, Found};
+use super::search::{self, Found};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -85,7 +87,7 @@ pub fn place(
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     if found.iter().any(|f| f.misled && !f.interrupted) && !monitor.should_stop() {
-        (table, tabled) = (None, Some(Err(Unsuited::Misleading)));
+        (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }
@@ -96,27 +98,28 @@ pub fn place(
         [false, true] => found[0].basins = found[1].basins.clone(),
         [false, false] => {
             let nearest = &found[0].basins[0];
-            return Err(nothing(&planner, &nearest.pose, nearest.scheme.as_deref(), true));
+            return Err(nothing(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
         }
     }
     let planner = Planner::finer(problem);
     let (solutions, refinements) =
-        finish(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor)
-            .ok_or_else(|| nothing(&planner, &found[0].basins[0].pose, found[0].basins[0].scheme.as_deref(), true))?;
+        finish(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(|| {
+            nothing(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true)
+        })?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let case = |placement_sense, solution: &Refined, plan_sense| {
         let plans = match plan_sense {
             Sense::Min => Ok(solution.solution.plans.clone()),
-            Sense::Max => worst_plan(&planner, &solution.solution.pose, solution.scheme.as_deref()),
+            Sense::Max => worst_plan(&planner, &solution.solution.placement, solution.scheme.as_deref()),
         };
-        // A pose with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
         let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
         Case {
             placement_sense,
             plan_sense,
-            placement: solution.solution.placement(),
-            plan: detailed(problem, &solution.solution.pose, &plans),
+            placement: solution.solution.placement,
+            plan: detailed(problem, &solution.solution.placement, &plans),
             cycle: cycle(problem, transfer, &plans),
         }
     };
@@ -130,8 +133,8 @@ pub fn place(
         tabled,
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
-        map_best: deflection_map(problem, &best.solution.pose),
-        map_worst: deflection_map(problem, &worst.solution.pose),
+        map_best: deflection_map(problem, &best.solution.placement),
+        map_worst: deflection_map(problem, &worst.solution.placement),
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
         interrupted: found.iter().any(|f| f.interrupted) || monitor.should_stop(),
@@ -155,18 +158,17 @@ pub struct Score {
 /// [`Infeasible`] when it has no plan.
 pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasible> {
     let planner = Planner::finer(problem);
-    let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let mut workspace = planner.workspace();
     let spacing = off_grid::Spacing::full(planner.grid());
     let (Some(best), Ok(worst)) =
-        (planned(&planner, &pose, None, spacing, &mut workspace), worst_plan(&planner, &pose, None))
+        (planned(&planner, placement, None, spacing, &mut workspace), worst_plan(&planner, placement, None))
     else {
-        return Err(nothing(&planner, &pose, None, false));
+        return Err(nothing(&planner, placement, None, false));
     };
     Ok(Score {
         placement: *placement,
-        best: detailed(problem, &pose, &best.plans),
-        worst: detailed(problem, &pose, &worst),
+        best: detailed(problem, placement, &best.plans),
+        worst: detailed(problem, placement, &worst),
     })
 }
 
@@ -243,13 +245,13 @@ fn refine_one(
     candidate: &Candidate,
     monitor: &Monitor,
 ) -> Option<(Refined, Option<Refinement>)> {
-    let (pose, scheme) = (&candidate.pose, candidate.scheme.as_deref());
+    let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
     let (solution, report) = if monitor.should_stop() {
         let planner = evaluator.planner();
         let spacing = off_grid::Spacing::full(planner.grid());
-        (planned(planner, pose, scheme, spacing, &mut planner.workspace())?, None)
+        (planned(planner, placement, scheme, spacing, &mut planner.workspace())?, None)
     } else {
-        let (solution, report) = refine(evaluator, pose, sense, scheme)?;
+        let (solution, report) = refine(evaluator, placement, sense, scheme)?;
         (solution, Some(report))
     };
     Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
@@ -257,43 +259,41 @@ fn refine_one(
 
 fn worst_plan(
     planner: &Planner<'_>,
-    pose: &[f64; 4],
+    placement: &Placement,
     scheme: Option<&[Posture]>,
 ) -> Result<Vec<SegmentPlan>, super::redundancy::NoFeasiblePlan> {
     let spacing = off_grid::Spacing::full(planner.grid());
-    planner.plan_fine(pose, Sense::Max, scheme, spacing, &mut planner.workspace())
+    planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
 }
 
-fn nothing(planner: &Planner<'_>, pose: &[f64; 4], scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
-    let none = planner.plan(pose, Sense::Min, scheme, &mut planner.workspace());
-    let findings = none.err().map(|none| diagnose(planner.problem(), pose, scheme, &none)).unwrap_or_default();
-    let [x, y, z, yaw] = *pose;
-    Infeasible { placement: Placement { x, y, z, yaw }, searched, findings }
+fn nothing(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
+    let none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace());
+    let findings = none.err().map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
+    Infeasible { placement: *placement, searched, findings }
 }
 
 /// A plan with everything that there is to say of each point, from the ordinary evaluator.
-fn detailed(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) -> Plan {
-    let [x, y, z, yaw] = *pose;
-    let base_from_workpiece = Placement { x, y, z, yaw }.base_from_workpiece();
+fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
     let mut points = Vec::with_capacity(problem.task.points().len());
     let known = problem.robot.uncertainty();
     let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
-            let Ok(s) = state(problem, point, pose, plan.betas[place], plan.posture) else { continue };
+            let Ok(s) = state(problem, point, placement, plan.betas[place], plan.posture) else { continue };
+            let placed = problem.placed(point, placement);
             let sign = if s.normal_part < 0.0 { -1.0 } else { 1.0 };
-            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, pose, &s.joints)) {
+            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, placement, &s.joints)) {
                 *sum += sign * slope;
             }
             points.push(PlanPoint {
                 point,
                 segment: segment + 1,
-                position: base_from_workpiece.point(&problem.task.points()[point].position),
+                position: placed.tip,
                 beta: wrap(plan.betas[place]),
                 posture: plan.posture,
                 joints: plan.joints[place],
                 inverse_condition: s.inverse_condition,
-                force: base_from_workpiece.rotation * problem.task.wrenches()[point].force,
+                force: placed.force,
                 deflection: s.deflection,
                 feed_part: s.feed_part,
                 normal_part: s.normal_part,

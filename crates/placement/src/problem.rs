@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
+use std::ops::{Index, IndexMut};
 use stead_model::robot::{
     Pose, Robot, Spindle,
     angles::{q4_from_yaw, wrap},
@@ -74,16 +75,67 @@ impl Cell {
 }
 
 /// Where the workpiece stands: its origin in the robot base frame, and its rotation about the vertical.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Placement<T = f64> {
     /// x of the workpiece origin. m
-    pub x: f64,
+    pub x: T,
     /// y of the workpiece origin. m
-    pub y: f64,
+    pub y: T,
     /// z of the workpiece origin. m
-    pub z: f64,
+    pub z: T,
     /// Yaw gamma about the vertical, with Q4 = sin(gamma / 2). rad
-    pub yaw: f64,
+    pub yaw: T,
+}
+
+impl<T> From<[T; 4]> for Placement<T> {
+    /// From x, y, z and yaw.
+    fn from([x, y, z, yaw]: [T; 4]) -> Self {
+        Self { x, y, z, yaw }
+    }
+}
+
+impl<T> From<Placement<T>> for [T; 4] {
+    /// To x, y, z and yaw.
+    fn from(Placement { x, y, z, yaw }: Placement<T>) -> Self {
+        [x, y, z, yaw]
+    }
+}
+
+/// Coordinates by number: x, y, z, and yaw for every other number.
+impl<T> Index<usize> for Placement<T> {
+    type Output = T;
+
+    fn index(&self, number: usize) -> &T {
+        match number {
+            0 => &self.x,
+            1 => &self.y,
+            2 => &self.z,
+            _ => &self.yaw,
+        }
+    }
+}
+
+impl<T> IndexMut<usize> for Placement<T> {
+    fn index_mut(&mut self, number: usize) -> &mut T {
+        match number {
+            0 => &mut self.x,
+            1 => &mut self.y,
+            2 => &mut self.z,
+            _ => &mut self.yaw,
+        }
+    }
+}
+
+impl<T: Scalar> Placement<T> {
+    /// The transform from workpiece to robot base (Caro 2013, eq. 8 as corrected: a plain rotation about z).
+    pub fn base_from_workpiece(&self) -> Pose<T> {
+        let (sine, cosine) = self.yaw.sin_cos();
+        let (zero, one) = (T::zero(), T::one());
+        Pose {
+            rotation: Matrix3::new(cosine, -sine, zero, sine, cosine, zero, zero, zero, one),
+            translation: Vector3::new(self.x, self.y, self.z),
+        }
+    }
 }
 
 impl Placement {
@@ -91,21 +143,19 @@ impl Placement {
     pub fn q4(&self) -> f64 {
         q4_from_yaw(self.yaw)
     }
-
-    /// The transform from workpiece to robot base (Caro 2013, eq. 8 as corrected: a plain rotation about z).
-    pub fn base_from_workpiece(&self) -> Pose<f64> {
-        base_from_workpiece(&[self.x, self.y, self.z, self.yaw])
-    }
 }
 
-/// The transform from workpiece to robot base for x, y, z (m) and yaw (rad) in any number type.
-pub fn base_from_workpiece<T: Scalar>(pose: &[T; 4]) -> Pose<T> {
-    let (sine, cosine) = pose[3].sin_cos();
-    let (zero, one) = (T::zero(), T::one());
-    Pose {
-        rotation: Matrix3::new(cosine, -sine, zero, sine, cosine, zero, zero, zero, one),
-        translation: Vector3::new(pose[0], pose[1], pose[2]),
-    }
+/// A path point with its wrench, put by a placement into the robot base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlacedPoint<T: Scalar = f64> {
+    /// Tool centre point. m
+    pub tip: Vector3<T>,
+    /// The point's axes as columns: the feed (made normal to the tool axis), the left of the feed, the tool axis.
+    pub axes: Matrix3<T>,
+    /// Force on the tool. N
+    pub force: Vector3<T>,
+    /// Moment on the tool. N m
+    pub moment: Vector3<T>,
 }
 
 /// What every point of a plan must satisfy, joint limits apart.
@@ -184,19 +234,32 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Flange frame in the base frame at path point `point` for a workpiece placed at `pose` (x, y, z in m, yaw in rad)
+    /// Flange frame in the base frame at path point `point` for a workpiece at a placement
     /// and free angle `beta` in rad (Caro 2013, eq. 7 with eq. 8 to 10).
-    pub fn base_from_flange<T: Scalar>(&self, point: usize, pose: &[T; 4], beta: T) -> Pose<T> {
+    pub fn base_from_flange<T: Scalar>(&self, point: usize, placement: &Placement<T>, beta: T) -> Pose<T> {
         let path_point = &self.task.points()[point];
         let workpiece_from_point = Pose {
             rotation: path_point.workpiece_from_point().map(T::constant),
             translation: cast(&path_point.position),
         };
         let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
-        base_from_workpiece(pose)
+        placement
+            .base_from_workpiece()
             .then(&workpiece_from_point)
             .then(&point_from_tool)
             .then(&self.spindle.flange_from_tool.inverse().cast())
+    }
+
+    /// Path point `point` and its wrench in the robot base frame, the workpiece at a placement.
+    pub fn placed<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> PlacedPoint<T> {
+        let workpiece = placement.base_from_workpiece();
+        let (path_point, wrench) = (&self.task.points()[point], &self.task.wrenches()[point]);
+        PlacedPoint {
+            tip: workpiece.point(&cast(&path_point.position)),
+            axes: workpiece.rotation * path_point.workpiece_from_point().map(T::constant),
+            force: workpiece.rotation * cast(&wrench.force),
+            moment: workpiece.rotation * cast(&wrench.moment),
+        }
     }
 
     /// The feed at every path point in the base frame, with the workpiece placed.

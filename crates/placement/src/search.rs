@@ -1,4 +1,4 @@
-//! The global search: a genetic algorithm over table pose and, if wanted, the posture scheme.
+//! The global search: a genetic algorithm over table placement and, if wanted, the posture scheme.
 //!
 //! Genes are x, y, z and the yaw (not Q4, which is stretched near +-1 and has a seam there). In the exact mode every
 //! candidate gets its best posture scheme from the planner; in the genetic mode the scheme is part of the genome, one
@@ -11,10 +11,10 @@
 //! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
 
+use super::candidate::{Candidate, Objective, rank};
 use super::evaluator::Evaluator;
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
-use super::redundancy::Objective;
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
@@ -24,17 +24,6 @@ use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
-
-/// One candidate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
-    /// x, y, z (m) and yaw (rad).
-    pub pose: [f64; 4],
-    /// One posture per segment, in the genetic mode.
-    pub scheme: Option<Vec<Posture>>,
-    /// What it is worth under its best plan.
-    pub objective: Objective,
-}
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,21 +55,6 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 
 /// Basins kept in mind during the search.
 const ARCHIVE: usize = 64;
-
-/// Order of two candidates, better first.
-pub fn rank(sense: Sense, a: Objective, b: Objective) -> Ordering {
-    match (a, b) {
-        (Objective::Feasible(a), Objective::Feasible(b)) => match sense {
-            Sense::Min => a.total_cmp(&b),
-            Sense::Max => b.total_cmp(&a),
-        },
-        (Objective::Feasible(_), Objective::Infeasible { .. }) => Ordering::Less,
-        (Objective::Infeasible { .. }, Objective::Feasible(_)) => Ordering::Greater,
-        (Objective::Infeasible { points: p, segments: s }, Objective::Infeasible { points: q, segments: t }) => {
-            (p, s).cmp(&(q, t))
-        }
-    }
-}
 
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> Found {
@@ -173,13 +147,17 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
     (0..size)
         .map(|index| {
             let mut random = stream(settings.seed, sense, 0, index);
-            let pose = std::array::from_fn(|k| {
+            let placement = std::array::from_fn(|k| {
                 let share = (slices[k][index] as f64 + random.random::<f64>()) / size as f64;
                 bounds[k].0 + share * (bounds[k].1 - bounds[k].0)
             });
             let scheme = (settings.postures == PostureSearch::Genetic)
                 .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
-            Candidate { pose, scheme, objective: Objective::Infeasible { points: usize::MAX, segments: 0 } }
+            Candidate {
+                placement: Placement::from(placement),
+                scheme,
+                objective: Objective::Infeasible { points: usize::MAX, segments: 0 },
+            }
         })
         .collect()
 }
@@ -192,7 +170,7 @@ fn evaluate(evaluator: &Evaluator<'_>, population: &mut [Candidate], from: usize
     population[from..].par_iter_mut().for_each_init(
         || evaluator.workspace(),
         |workspace, candidate| {
-            candidate.objective = evaluator.objective(&candidate.pose, candidate.scheme.as_deref(), workspace);
+            candidate.objective = evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace);
         },
     );
 }
@@ -212,8 +190,8 @@ fn breed(
         let father = tournament(population, sense, random);
         for k in 0..4 {
             let share = random.random_range(-OVERSHOOT..1.0 + OVERSHOOT);
-            let apart = father.pose[k] - mother.pose[k];
-            child.pose[k] += share * if k == 3 && cell.is_yaw_free() { wrap(apart) } else { apart };
+            let apart = father.placement[k] - mother.placement[k];
+            child.placement[k] += share * if k == 3 && cell.is_yaw_free() { wrap(apart) } else { apart };
         }
         if let (Some(scheme), Some(other)) = (&mut child.scheme, &father.scheme) {
             for (posture, theirs) in scheme.iter_mut().zip(other) {
@@ -226,7 +204,7 @@ fn breed(
         let progress = generation as f64 / settings.generations.max(1) as f64;
         let spread = MUTATION.0 * libm::pow(MUTATION.1 / MUTATION.0, progress);
         for (k, (min, max)) in bounds(cell).into_iter().enumerate() {
-            child.pose[k] += spread * (max - min) * normal(random);
+            child.placement[k] += spread * (max - min) * normal(random);
         }
         if let Some(scheme) = &mut child.scheme {
             let chance = 1.0 / scheme.len() as f64;
@@ -237,9 +215,7 @@ fn breed(
             }
         }
     }
-    let [x, y, z, yaw] = child.pose;
-    let inside = cell.clamp(&Placement { x, y, z, yaw });
-    child.pose = [inside.x, inside.y, inside.z, inside.yaw];
+    child.placement = cell.clamp(&child.placement);
     child
 }
 
@@ -283,9 +259,9 @@ pub fn distinct(cell: &Cell, sorted: &[Candidate], most: usize) -> Vec<Candidate
         let is_new = basins.iter().all(|known| {
             let far = (0..3).any(|k| {
                 let width = cell.position[k].width();
-                width > 0.0 && (known.pose[k] - candidate.pose[k]).abs() / width > BASIN.0
+                width > 0.0 && (known.placement[k] - candidate.placement[k]).abs() / width > BASIN.0
             });
-            far || wrap(known.pose[3] - candidate.pose[3]).abs() > BASIN.1
+            far || wrap(known.placement.yaw - candidate.placement.yaw).abs() > BASIN.1
         });
         if is_new {
             basins.push(candidate.clone());
@@ -343,21 +319,9 @@ mod tests {
             assert!(best.windows(2).all(|pair| pair[1] * sign <= pair[0] * sign));
             assert_eq!(found.history.len(), 7);
             for candidate in &found.basins {
-                let [x, y, z, yaw] = candidate.pose;
-                assert!(problem.cell.contains(&Placement { x, y, z, yaw }));
+                assert!(problem.cell.contains(&candidate.placement));
                 assert_eq!(candidate.scheme.is_some(), postures == PostureSearch::Genetic);
             }
         }
-    }
-
-    #[test]
-    fn feasible_ranks_before_infeasible() {
-        let (a, b) = (Objective::Feasible(1.0), Objective::Feasible(2.0));
-        let (c, d) =
-            (Objective::Infeasible { points: 1, segments: 5 }, Objective::Infeasible { points: 2, segments: 0 });
-        assert_eq!(rank(Sense::Min, a, b), Ordering::Less);
-        assert_eq!(rank(Sense::Max, a, b), Ordering::Greater);
-        assert_eq!(rank(Sense::Max, a, c), Ordering::Less);
-        assert_eq!(rank(Sense::Min, d, c), Ordering::Greater);
     }
 }

@@ -1,12 +1,14 @@
 //! The direction in which the mean score is optimised.
 
+use serde::Serialize;
 use std::cmp::Ordering;
 
 /// Whether the mean score is minimised or maximised.
 ///
 /// Over placements, `Min` finds the best placement and `Max` the worst, each valued under its best plan; over the plans of
 /// one placement, `Min` finds the best plan and `Max` the worst.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Sense {
     /// Minimise.
     Min,

@@ -68,7 +68,7 @@ impl Default for TransferSettings {
 }
 
 /// How sharp a certificate ([`super::certify`]) is to be, and how long it may take.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct CertificateSettings {
     /// How much better than the value found a placement may still be, relative to it: from [`Self::MIN_GAP`] to below 1.
     pub gap: f64,

@@ -50,7 +50,7 @@ pub fn circularity_json(file: &PointFile, found: &Roundness) -> Value {
     for (name, _, fit) in circles(found) {
         entries[name] = circle(found, fit);
     }
-    Document::new(std::slice::from_ref(&file.input)).with(entries)
+    Document::new(std::slice::from_ref(&file.input)).warnings(found.warnings()).with(entries)
 }
 
 fn circle(found: &Roundness, fit: &Fit) -> Value {

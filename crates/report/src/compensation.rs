@@ -162,12 +162,12 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
         DeflectionModel::Linear => "the linear displacement",
     };
     let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
-    let played = if run.has_reality {
-        format!("played on {} ({})", run.job.reality.name(), run.inputs.last().map_or("", |input| &input.name))
+    let executed = if run.has_reality {
+        format!("executed on {} ({})", run.job.reality.name(), run.inputs.last().map_or("", |input| &input.name))
     } else {
-        "played on the same arm".to_owned()
+        "executed on the same arm".to_owned()
     };
-    text.push_str(&format!("{played}\n\n"));
+    text.push_str(&format!("{executed}\n\n"));
     let header = ["", "before: mean mm", "max mm", "after: mean mm", "max mm", "reduction %"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (name, pair) in [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())] {

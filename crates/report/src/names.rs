@@ -1,7 +1,8 @@
 //! Names of things as files and pictures state them.
 
 use stead_model::robot::Posture;
-use stead_placement::outcome::Blocked;
+use stead_placement::constraints::{ConstraintKind, describe};
+use stead_placement::outcome::RefinementStatus;
 use stead_placement::sense::Sense;
 
 /// `best` or `worst`.
@@ -12,24 +13,20 @@ pub(super) fn sense(sense: Sense) -> &'static str {
     }
 }
 
-/// Why a state is not allowed, as the maps' CSV files state it.
-pub(super) fn reason(blocked: Blocked) -> String {
-    match blocked {
-        Blocked::Reach => "reach".to_owned(),
-        Blocked::JointLimit(joint) => format!("joint_{joint}"),
-        Blocked::Conditioning => "conditioning".to_owned(),
-        Blocked::Deflection => "deflection".to_owned(),
+/// The constraint that a state breaks, for a legend.
+pub(super) fn constraint_in_legend(kind: ConstraintKind) -> String {
+    match kind {
+        ConstraintKind::Reach => "out of reach".to_owned(),
+        ConstraintKind::JointLimit(joint) => format!("limit of joint {joint}"),
+        ConstraintKind::Conditioning => "near a singularity".to_owned(),
+        ConstraintKind::MaxDeflection => "deflection above its limit".to_owned(),
+        other => describe(&[other]).concat(),
     }
 }
 
-/// Why a state is not allowed, for a legend.
-pub(super) fn reason_in_legend(blocked: Blocked) -> String {
-    match blocked {
-        Blocked::Reach => "out of reach".to_owned(),
-        Blocked::JointLimit(joint) => format!("limit of joint {joint}"),
-        Blocked::Conditioning => "near a singularity".to_owned(),
-        Blocked::Deflection => "deflection above its limit".to_owned(),
-    }
+/// How the rounds of a refinement ended, one after the other.
+pub(super) fn statuses(rounds: &[RefinementStatus]) -> String {
+    rounds.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
 /// A posture scheme: the numbers with blanks between.
@@ -47,12 +44,6 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     let runs = scheme.chunk_by(|a, b| a == b).map(|run| format!("{}x{}", run[0], run.len()));
     let counted = runs.collect::<Vec<_>>().join(" ");
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
-}
-
-/// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
-pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
-    let number = joint + 1;
-    angle.map_or_else(|| format!("k_{number}"), |angle| format!("k_{number} at {:.2} deg", angle.to_degrees()))
 }
 
 #[cfg(test)]

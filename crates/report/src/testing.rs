@@ -6,7 +6,9 @@ use std::sync::OnceLock;
 use stead_format::input::{InputFile, Reference};
 use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
+use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
+use stead_placement::feasibility::{DeflectionMap, MapCell};
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::sense::Sense;
@@ -70,6 +72,7 @@ pub fn context() -> Context {
     let input = |role: &'static str, name: &str| InputFile { role, name: name.to_owned(), sha256: "0".repeat(64) };
     Context {
         notes: Vec::new(),
+        warnings: Vec::new(),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),
@@ -100,12 +103,12 @@ fn refinement(sense: Sense, case: &Case) -> Refinement {
         rounds: 2,
         iterations: 17,
         kkt_residual: 3.2e-10,
-        statuses: vec!["converged".to_owned(), "plan unchanged".to_owned()],
+        statuses: vec![RefinementStatus::NoMoreGain, RefinementStatus::NoFirstOrderGain],
     }
 }
 
 /// A state in each posture, or why it is not allowed.
-type Postures = [Result<State<f64>, Blocked>; 8];
+type Postures = [Result<State<f64>, ConstraintKind>; 8];
 
 /// All states of a placement: for point, beta and posture the state, or why it is not allowed.
 struct Grid {
@@ -115,9 +118,8 @@ struct Grid {
 
 impl Grid {
     fn new(placement: Placement) -> Self {
-        let pose = [placement.x, placement.y, placement.z, placement.yaw];
         let betas = 0..problem().redundancy.beta_count;
-        let at = |point: usize, k: usize| Posture::ALL.map(|posture| allowed(point, &pose, k, posture));
+        let at = |point: usize, k: usize| Posture::ALL.map(|posture| allowed(point, &placement, k, posture));
         let states = (0..problem().task.points().len()).map(|point| betas.clone().map(|k| at(point, k)).collect());
         Self { placement, states: states.collect() }
     }
@@ -127,7 +129,7 @@ impl Grid {
             let allowed = states.iter().zip(Posture::ALL).filter_map(|(s, posture)| Some((s.as_ref().ok()?, posture)));
             let cells = allowed.map(|(state, posture)| MapCell { score: state.score(), posture });
             let nearest = states.iter().filter_map(|s| s.as_ref().err().copied()).max();
-            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(nearest.unwrap_or(Blocked::Reach))
+            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(nearest.unwrap_or(ConstraintKind::Reach))
         };
         let rows = self.states.iter().map(|row| row.iter().map(cell).collect()).collect();
         DeflectionMap { beta_count: problem().redundancy.beta_count, rows }
@@ -203,20 +205,17 @@ impl Grid {
     }
 }
 
-fn allowed(point: usize, pose: &[f64; 4], k: usize, posture: Posture) -> Result<State<f64>, Blocked> {
-    let found = state(problem(), point, pose, problem().redundancy.beta(k), posture).map_err(|_| Blocked::Reach)?;
-    for (j, joint) in problem().robot.joints().iter().enumerate() {
-        if Range::of(joint).nearest(found.joints[j]).1 > 0.0 {
-            return Err(Blocked::JointLimit(j as u8 + 1));
-        }
+fn allowed(point: usize, placement: &Placement, k: usize, posture: Posture) -> Result<State<f64>, ConstraintKind> {
+    let mut found =
+        state(problem(), point, placement, problem().redundancy.beta(k), posture).map_err(|_| ConstraintKind::Reach)?;
+    for (angle, joint) in found.joints.iter_mut().zip(problem().robot.joints()) {
+        *angle = Range::of(joint).nearest(*angle).0;
     }
-    if found.inverse_condition < problem().constraints.min_inverse_condition {
-        return Err(Blocked::Conditioning);
+    let broken = on_joints(problem(), &found.joints).into_iter().chain(on_state(problem(), &found));
+    match broken.into_iter().find(|measured| !measured.holds()) {
+        Some(measured) => Err(measured.kind()),
+        None => Ok(found),
     }
-    if problem().constraints.max_deflection.is_some_and(|limit| found.score() > limit) {
-        return Err(Blocked::Deflection);
-    }
-    Ok(found)
 }
 
 /// A document whose tags nest and whose attributes are quoted; fails otherwise.

@@ -1,4 +1,4 @@
-//! One point: the iteration of eq. 27, and the playing of its result.
+//! One point: the iteration of eq. 27, and the execution of its result.
 
 use super::{CompensatedPoint, CompensationProblem, Deflection, DeflectionModel, PathPoint, PointError, Settings};
 use std::f64::consts::TAU;
@@ -7,14 +7,14 @@ use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
 use stead_model::stiffness::rotation::{rotation_from_vector, rotation_vector};
 use stead_model::stiffness::{Displacement, displacement};
 
-/// What is to be commanded.
+/// A commanded pose.
 struct Command {
     base_from_tool: Pose<f64>,
     joints: [f64; 6],
     iterations: usize,
 }
 
-/// Corrects one point and plays it, without and with the correction.
+/// Corrects one point and executes it, without and with the correction.
 pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> Result<CompensatedPoint, PointError> {
     let command = corrected(job, point)?;
     let target = &point.base_from_tool;

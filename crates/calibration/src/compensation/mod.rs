@@ -1,9 +1,9 @@
-//! Compensating the deflection: the path to command so that the loaded tool follows the path that is wanted.
+//! Offline compensation of deflections: the path to command so that the loaded tool follows its target path.
 //!
 //! Under a wrench the tool comes to rest beside the pose that was commanded. For every point of a plan, [`compensate`] looks
 //! for the commanded pose t* at which the loaded tool rests at the target t_0 (Klimchik et al. 2017, eq. 26),
 //! `t_0 = f(t*)`, by the iteration of eq. 27, `t* <- t* + alpha (t_0 - f(t*))`. Errors of orientation are corrected with
-//! those of position, as rotation vectors. What f says is the [`Model`]'s; the wrench keeps its directions in space, and
+//! those of position, as rotation vectors. f is given by the [`DeflectionModel`]; the wrench keeps its directions in space, and
 //! posture and turns are those of the plan.
 //!
 //! A correction is about as large as the deflection, and over so small a way the deflection hardly changes: with `alpha = 1`
@@ -11,9 +11,9 @@
 //! `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is never taken for
 //! a result.
 //!
-//! Then the commands are played: on the same arm, or on another one of the same geometry, which stands for reality. There
-//! the arm always comes to rest in its exact static equilibrium. What remains is the share of the deflection that the model
-//! does not know.
+//! Then the commands are executed in simulation: on the same arm, or on another one of the same geometry, which stands for
+//! reality. There the arm always comes to rest in its exact static equilibrium. The remaining error is the share of the
+//! deflection that the model does not predict.
 
 mod iteration;
 mod outcome;
@@ -27,18 +27,18 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use stead_model::robot::{Pose, Posture, Robot, Spindle};
 
-/// Everything that a compensation depends on.
+/// Inputs of a compensation. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensationProblem {
-    /// The arm as the corrections know it.
+    /// The arm by whose model the corrections are computed.
     pub robot: Robot,
-    /// The arm that the corrected commands are played on, of the same geometry ([`other_geometry`]).
+    /// The arm that executes the corrected commands, of the same geometry ([`other_geometry`]).
     pub reality: Robot,
     /// The spindle as mounted.
     pub spindle: Spindle,
     /// The points of the plan, in order.
     pub points: Vec<PathPoint>,
-    /// How the corrections are found.
+    /// Settings of the iteration.
     pub settings: Settings,
 }
 
@@ -61,7 +61,7 @@ pub struct PathPoint {
     pub normal: Vector3<f64>,
 }
 
-/// What the corrections take for the deflection.
+/// The deflection model of the corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeflectionModel {
     /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
@@ -70,7 +70,7 @@ pub enum DeflectionModel {
     Linear,
 }
 
-/// How the corrections are found.
+/// Settings of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Alpha of eq. 27: the share of the error that one iteration corrects, above 0. Up to 1 the corrections approach the
@@ -82,7 +82,7 @@ pub struct Settings {
     pub characteristic_length: f64,
     /// Iterations at the most.
     pub max_iterations: usize,
-    /// What f of eq. 26 is.
+    /// The deflection model, f of eq. 26.
     pub model: DeflectionModel,
 }
 
@@ -99,7 +99,7 @@ impl Default for Settings {
     }
 }
 
-/// Corrects every point of a plan, and plays the corrected commands. The result does not depend on the number of threads.
+/// Corrects every point of a path, and executes the corrected commands in simulation. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`NotCompensated`] with the points that cannot be corrected and the reason for each.

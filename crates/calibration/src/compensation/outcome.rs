@@ -1,12 +1,13 @@
-//! What comes of a compensation: corrected points with what remains, or the points that cannot be corrected and why.
+//! Results of a compensation: corrected points with their remaining errors, or the points that cannot be corrected and why.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 use std::fmt;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
 
 /// Where the loaded tool rests, seen from the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Deflection {
     /// From the target to the tool centre point, in the base frame. m
     pub linear: Vector3<f64>,
@@ -17,7 +18,7 @@ pub struct Deflection {
 }
 
 /// One corrected point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CompensatedPoint {
     /// Number of its segment, from 1.
     pub segment: usize,
@@ -38,14 +39,14 @@ pub struct CompensatedPoint {
 }
 
 /// A corrected path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompensatedPath {
     /// The points, in order; at least one.
     pub points: Vec<CompensatedPoint>,
 }
 
 /// Mean and largest value over the points of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeanAndMax {
     /// Mean. m
     pub mean: f64,
@@ -82,10 +83,10 @@ pub fn reduction([before, after]: [MeanAndMax; 2]) -> Option<f64> {
 }
 
 /// Why a point cannot be corrected.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, thiserror::Error)]
 pub enum PointError {
     /// The correction leads out of reach.
-    #[error("the correction leads out of reach: {0}")]
+    #[error("the corrected pose is out of reach: {0}")]
     Reach(Unreachable),
     /// The corrected command is beyond a joint limit.
     #[error("corrected, joint {joint} would be {:.6} deg beyond its limit", by.to_degrees())]
@@ -96,18 +97,18 @@ pub enum PointError {
         by: f64,
     },
     /// The arm of the model has no equilibrium under the load.
-    #[error("the arm gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    #[error("the arm has no stable equilibrium beyond {share:.3} of the load")]
     Unstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
     /// The arm that stands for reality has none.
-    #[error("the arm of reality gives way: it has no stable equilibrium beyond {share:.3} of the load")]
+    #[error("the arm of reality has no stable equilibrium beyond {share:.3} of the load")]
     RealityUnstable {
         /// The share of the load up to which there is one.
         share: f64,
     },
-    /// An iteration made the error larger.
+    /// An iteration increased the error.
     #[error(
         "iteration {iterations} diverges: the error goes from {:.3e} to {:.3e} mm; a smaller alpha may help",
         from * 1e3,
@@ -121,7 +122,7 @@ pub enum PointError {
         /// The error after it. m
         to: f64,
     },
-    /// All iterations were used up.
+    /// The iteration limit was reached.
     #[error("after {iterations} iterations the error is still {:.3e} mm; more iterations, or an alpha nearer to 1, may help", error * 1e3)]
     NotConverged {
         /// How many.
@@ -132,7 +133,7 @@ pub enum PointError {
 }
 
 impl PointError {
-    /// Whether two reasons are the same but for numbers.
+    /// Whether two errors differ in their numbers only.
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::JointLimit { joint: a, .. }, Self::JointLimit { joint: b, .. }) => a == b,
@@ -142,7 +143,7 @@ impl PointError {
 }
 
 /// A path that cannot be corrected all along.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NotCompensated {
     /// The points that cannot, from 0 and ascending, each with the reason; at least one.
     pub failed: Vec<(usize, PointError)>,

@@ -240,8 +240,8 @@ fn failures_are_told_in_runs_of_points() {
     let message = compensate(&job(&robot, &robot, points)).unwrap_err().to_string();
     let lines: Vec<&str> = message.lines().collect();
     assert_eq!(lines[0], "4 of 6 points cannot be compensated:");
-    assert!(lines[1].starts_with("  point 0: the arm gives way"), "{message}");
-    assert!(lines[2].starts_with("  points 2 to 4: at point 2, the arm gives way"), "{message}");
+    assert!(lines[1].starts_with("  point 0: the arm has no stable equilibrium"), "{message}");
+    assert!(lines[2].starts_with("  points 2 to 4: at point 2, the arm has no stable equilibrium"), "{message}");
     assert_eq!(lines.len(), 3);
 }
 

@@ -1,4 +1,4 @@
-//! What has been estimated, put together: intervals, the arm, rows, prediction error.
+//! The result of an identification from its estimates: intervals, arm, residuals, prediction error.
 
 use super::cross_validation::{compliances, leave_one_out};
 use super::distribution::{half_width, tail};
@@ -6,7 +6,7 @@ use super::error::IdentifyError;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
 use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal_equations::FreeParameters;
-use super::outcome::{Estimate, Identified, RowResult};
+use super::outcome::{Estimate, Held, HeldReason, Identified, RowResult};
 use super::outliers::{ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::{Setup, SetupFit};
@@ -14,32 +14,33 @@ use super::sheet::Reading;
 use nalgebra::Vector6;
 use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 
-/// A compliance so many standard deviations below zero is not below it by chance.
+/// A compliance so many standard deviations below zero is not negative by chance.
 const NEGATIVE: f64 = 6.0;
 
-/// Everything that has been estimated, to be put together.
+/// The estimates that the result is assembled from.
 pub(super) struct Assembly<'a> {
-    /// What was asked.
+    /// The problem.
     pub problem: &'a Problem,
-    /// The compliances sought.
+    /// The parameters.
     pub layout: &'a Layout,
     /// Base transform and reference points.
     pub setup: Setup,
-    /// How well those fit the unloaded readings.
+    /// Their fit to the unloaded readings.
     pub fit: SetupFit,
     /// The equations of all readings.
     pub equations: &'a [Observation],
-    /// Which compliances are free.
+    /// Which parameters are free.
     pub free: &'a FreeParameters,
     /// The estimate without outliers.
     pub robust: RobustEstimate,
-    /// What the equations were divided by.
+    /// Standard deviations by which the equations were divided.
     pub noise: Noise,
 }
 
 impl Assembly<'_> {
-    /// All of it, with the law of the varying joint fitted. `held` are the parameters that are not free.
-    pub fn assemble(self, held: Vec<Parameter>) -> Result<Identified, IdentifyError> {
+    /// All of it, with the law of the varying joint fitted; warnings are left to be added. `dropped` are the unidentifiable
+    /// parameters that are not free.
+    pub fn assemble(self, dropped: Vec<Parameter>) -> Result<Identified, IdentifyError> {
         let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
         let is_noise_estimated = self.problem.noise.is_none();
@@ -64,7 +65,7 @@ impl Assembly<'_> {
             arm: estimates,
             covariance: &arm.covariance * variance,
             robot,
-            held,
+            held: self.held(dropped),
             residual_rms: libm::sqrt(squares / (3 * inside().count()).max(1) as f64),
             noise: self.noise.position * libm::sqrt(variance),
             is_noise_estimated,
@@ -76,7 +77,15 @@ impl Assembly<'_> {
             setup: self.setup.clone(),
             setup_fit: self.fit.clone(),
             rows,
+            warnings: vec![],
         })
+    }
+
+    fn held(&self, dropped: Vec<Parameter>) -> Vec<Held> {
+        let asked = (0..6).filter(|joint| self.problem.hold[*joint]).map(Parameter::Joint);
+        let asked = asked.map(|parameter| Held { parameter, reason: HeldReason::Asked });
+        let dropped = dropped.into_iter();
+        asked.chain(dropped.map(|parameter| Held { parameter, reason: HeldReason::Unidentifiable })).collect()
     }
 
     fn compliances(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
@@ -94,7 +103,7 @@ impl Assembly<'_> {
         self.layout.parameters().into_iter().filter(|parameter| self.free.contains(*parameter)).map(estimate).collect()
     }
 
-    /// Refuses what no noise explains: a joint that turns against its load.
+    /// Refuses a compliance that noise cannot explain: the joint turns against its load.
     fn refuse_negative(&self, compliances: &[Estimate<Parameter>]) -> Result<(), IdentifyError> {
         let worst = compliances.iter().filter(|e| e.value < -NEGATIVE * e.deviation).min_by(|a, b| {
             let [a, b] = [a, b].map(|e| e.value / e.deviation.max(f64::MIN_POSITIVE));
@@ -124,7 +133,7 @@ impl Assembly<'_> {
         Ok(estimates.map(|(index, p)| interval(*p, None, arm.values[index], deviation(index), width)).collect())
     }
 
-    /// The starting arm with the numbers that have been estimated.
+    /// The starting arm with the estimated parameters.
     fn robot(&self, arm: &ArmFit) -> Result<Robot, RobotError> {
         let value = |joint: usize, quantity: Quantity| {
             let place = arm.parameters.iter().position(|p| p.joint == joint && p.quantity == quantity);
@@ -154,8 +163,8 @@ impl Assembly<'_> {
                 line: reading.line,
                 configuration: reading.configuration,
                 point: reading.point,
-                measured: linear(equation.deflection),
-                predicted: linear(equation.design * compliances),
+                measured: linear(equation.deflection + equation.by_held),
+                predicted: linear(equation.design * compliances + equation.by_held),
                 studentised: self.robust.studentised[index],
                 is_outlier: !self.robust.kept[index],
             }
@@ -163,7 +172,8 @@ impl Assembly<'_> {
         self.problem.sheet.readings.iter().enumerate().map(row).collect()
     }
 
-    /// How likely it is that the law of the varying joint costs as much as it does beside one compliance for each angle.
+    /// F test of the law of the varying joint against one compliance for each angle: the probability of so large an increase of the
+    /// residuals under a right law.
     fn law_probability(&self, arm: &ArmFit) -> Option<f64> {
         let unknowns = match self.problem.varying?.1 {
             Law::Constant => 1,

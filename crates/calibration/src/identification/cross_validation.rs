@@ -7,9 +7,10 @@ use super::law::{ArmFit, ArmParameter};
 use super::model::{Layout, Observation};
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, DVector, Vector6};
+use serde::Serialize;
 
 /// The error of predicted deflections, each from all other configurations.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
     /// Root of the mean square of a component, for equations of unit variance; over all configurations that the others predict.
     pub rms: f64,

@@ -1,4 +1,4 @@
-//! Why nothing can be identified.
+//! Why nothing can be identified, and which entry of the sheet is at fault.
 
 use super::law::LawError;
 use super::model::Layout;
@@ -9,7 +9,7 @@ use stead_model::robot::RobotError;
 /// Why nothing can be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IdentifyError {
-    /// Base transform and reference points cannot be told.
+    /// Base transform and reference points are not identifiable.
     #[error("{0}")]
     Setup(#[from] SetupError),
     /// A deflection is far larger than the load could cause on the starting arm.
@@ -23,7 +23,7 @@ pub enum IdentifyError {
         expected_mm: f64,
     },
     /// Fewer equations than unknowns.
-    #[error("{equations} deflection components do not tell {unknowns} compliances")]
+    #[error("{equations} deflection components do not determine {unknowns} compliances")]
     TooFew {
         /// Components read.
         equations: usize,
@@ -36,17 +36,20 @@ pub enum IdentifyError {
         /// Components read, and compliances sought.
         equations: usize,
     },
+    /// Every joint is held.
+    #[error("every compliance is held: nothing is left to identify")]
+    NothingFree,
     /// Compliances, or combinations of them, that change no reading.
-    #[error("the readings do not see every compliance")]
+    #[error("{}", unidentifiable_text(unidentifiable, layout, outliers))]
     Unidentifiable {
-        /// What they do not see.
+        /// The combinations.
         unidentifiable: Vec<Unidentifiable>,
         /// The parameters, to name them by.
         layout: Layout,
-        /// Lines of the outliers without which it is so, from 1; none where all readings together do not see them.
+        /// Lines of the outliers without which it is so, from 1; none where it is so with all readings.
         outliers: Vec<usize>,
     },
-    /// A compliance comes out far below zero: the arm goes against the load.
+    /// The estimate of a compliance is far below zero: the arm moves against the load.
     #[error(
         "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
          urad/(N m): the joint turns against its load"
@@ -59,13 +62,13 @@ pub enum IdentifyError {
         /// Its standard deviation. urad/(N m)
         deviation_urad: f64,
     },
-    /// The compensator cannot be told.
+    /// The compensator is not identifiable.
     #[error("{0}")]
     Law(#[from] LawError),
     /// A compliance comes out at zero or below.
     #[error(
         "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
-         urad/(N m): it is not told by these readings"
+         urad/(N m): it is not identifiable from these readings"
     )]
     NotPositive {
         /// Number of the joint, from 1.
@@ -78,4 +81,91 @@ pub enum IdentifyError {
     /// The identified arm is refused, as where the compensator makes a joint give way inside its limits.
     #[error("the identified arm is none: {0}")]
     Robot(#[from] RobotError),
+}
+
+/// Every combination by the names of its parameters, in a sentence.
+fn unidentifiable_text(unidentifiable: &[Unidentifiable], layout: &Layout, outliers: &[usize]) -> String {
+    let combination = |combination: &Unidentifiable| {
+        let names: Vec<String> = combination.parameters.iter().map(|parameter| layout.name(*parameter)).collect();
+        match &names[..] {
+            [alone] => format!("no reading depends on {alone}"),
+            several => format!("{} are identifiable only in combination", several.join(", ")),
+        }
+    };
+    let all: Vec<String> = unidentifiable.iter().map(combination).collect();
+    let text = format!("not every compliance is identifiable from the readings: {}", all.join("; "));
+    if outliers.is_empty() {
+        return text;
+    }
+    let lines: Vec<String> = outliers.iter().map(usize::to_string).collect();
+    format!("without the outliers of lines {}, {text}", lines.join(", "))
+}
+
+/// The entry of a sheet that is at fault for an error.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SheetFault {
+    /// Line of the sheet, from 1; none where it is the sheet as a whole.
+    pub line: Option<usize>,
+    /// The column, if it is one.
+    pub column: Option<String>,
+    /// What is needed instead.
+    pub needed: &'static str,
+}
+
+impl IdentifyError {
+    /// What is wrong with the sheet; nothing where a sound sheet gives no robot.
+    pub fn fault(&self) -> Option<SheetFault> {
+        let fault = |line: Option<usize>, column: &str, needed: &'static str| {
+            Some(SheetFault { line, column: (!column.is_empty()).then(|| column.to_owned()), needed })
+        };
+        match self {
+            Self::TooFar { line, .. } => fault(
+                Some(*line),
+                "loaded_x_mm",
+                "places in millimetres, both of the same point, and wrenches in N and N m",
+            ),
+            Self::Setup(SetupError::Scale { .. }) => fault(
+                None,
+                "unloaded_x_mm",
+                "places in millimetres, and joint angles in degrees as the robot counts them",
+            ),
+            Self::Setup(SetupError::Misfit { line, .. }) => fault(
+                Some(*line),
+                "unloaded_x_mm",
+                "places in millimetres in a right-handed frame that does not move, and joint angles in degrees as the \
+                 robot file counts them, each with its own reading",
+            ),
+            Self::Setup(_) => {
+                fault(None, "unloaded_x_mm", "more configurations, with the flange in different orientations")
+            }
+            Self::TooFew { .. } => fault(
+                None,
+                "",
+                "at least as many loaded coordinates as compliances: more configurations, or more at the same q2",
+            ),
+            Self::NoiseUnknown { .. } => fault(None, "", "more readings, or noise_mm in the config"),
+            Self::Unidentifiable { outliers, .. } if !outliers.is_empty() => fault(
+                outliers.first().copied(),
+                "",
+                "readings that agree with each other, and more of them for every compliance",
+            ),
+            Self::Unidentifiable { .. } => fault(
+                None,
+                "",
+                "loads that turn every joint, each in its own way; or fit.hold or fit.reduce = true to keep compliances of \
+                 the robot file",
+            ),
+            Self::Negative { .. } => fault(
+                None,
+                "force_x_n",
+                "the wrench that acts on the robot, in its base frame, and the place under it as loaded_*_mm",
+            ),
+            Self::Law(LawError::TooFewAngles { joint, .. } | LawError::Unidentifiable { joint }) => {
+                fault(None, &format!("theta{joint}_deg"), "three or more distinct angles, wide apart")
+            }
+            Self::Law(LawError::NoSpring { .. }) | Self::NotPositive { .. } | Self::NothingFree | Self::Robot(_) => {
+                None
+            }
+        }
+    }
 }

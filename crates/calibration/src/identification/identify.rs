@@ -9,22 +9,27 @@ use super::outliers::{OutlierSearch, ROUNDING};
 use super::problem::Problem;
 use super::setup::{Setup, check, estimate};
 use super::sheet::Sheet;
+use super::warnings::warnings;
 use nalgebra::Vector6;
 use stead_model::robot::Pose;
 
-/// Deflections may be this many times what the starting arm lets expect.
+/// Largest ratio of a deflection to the one predicted by the starting arm.
 const FAR: f64 = 50.0;
-/// Setup and outliers hardly depend on each other: two rounds settle them.
+/// Rounds of setup and outliers, which depend on each other only weakly: two usually suffice.
 const ROUNDS: usize = 4;
 
 /// Identifies the compliances of an arm.
 ///
-/// Outliers are left out of the deflections and then of the setup too, until both agree. Where the noise is not stated it is
-/// estimated from the residuals, with twice its variance in the difference of two readings.
+/// Outliers are left out of the deflections and then of the setup too, until both agree. Noise that is not stated is estimated
+/// from the residuals; a deflection is the difference of two readings and has twice their variance.
 ///
 /// # Errors
-/// [`IdentifyError`] when the sheet does not tell them.
+/// [`IdentifyError`] when they are not identifiable from the sheet.
 pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
+    if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
+        // The joint keeps the law that it has in the starting arm: there is none to fit.
+        return identify(&Problem { varying: None, ..problem.clone() });
+    }
     let sheet = &problem.sheet;
     let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| problem.robot.forward(&c.theta)).collect();
@@ -36,11 +41,12 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let held = (&start_joints, &start_groups[..]);
     let noise = Noise { position: problem.noise.unwrap_or(1.0), orientation: problem.orientation_noise.unwrap_or(1.0) };
     let min_scale = if problem.noise.is_some() { 1.0 } else { ROUNDING };
-    let equations = |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise);
+    let equations =
+        |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise, problem.hold);
     let mut observations = equations(&setup);
     let (free, dropped) = free_parameters(problem, &layout, &observations)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
-        // Seen at no angle: then there is no law to be found either, and the joint keeps the one it has.
+        // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.
         return identify(&Problem { varying: None, ..problem.clone() });
     }
     let estimate_robustly = |observations: &[Observation]| {
@@ -66,10 +72,12 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let fit = check(sheet, &flanges, &used, &setup)?;
     let assembly =
         Assembly { problem, layout: &layout, setup, fit, equations: &observations, free: &free, robust, noise };
-    assembly.assemble(dropped)
+    let mut identified = assembly.assemble(dropped)?;
+    identified.warnings = warnings(problem, &identified);
+    Ok(identified)
 }
 
-/// What the readings that are kept do not see, and which outliers would be needed for it.
+/// What is unidentifiable from the readings that are kept, and which outliers would be needed for it.
 fn unidentifiable_without_outliers(
     sheet: &Sheet,
     layout: &Layout,
@@ -83,7 +91,7 @@ fn unidentifiable_without_outliers(
     IdentifyError::Unidentifiable { unidentifiable, layout: layout.clone(), outliers: outliers.collect() }
 }
 
-/// Refuses a deflection that is far larger than the starting arm lets expect.
+/// Refuses a deflection far larger than the one predicted by the starting arm.
 fn check_lengths(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> {
     for configuration in &problem.sheet.configurations {
         let compliances = problem.robot.compliances_at(&configuration.theta);
@@ -113,18 +121,21 @@ fn starting_values(problem: &Problem, layout: &Layout) -> (Vector6<f64>, Vec<f64
     (joints, layout.angles.iter().map(at).collect())
 }
 
-/// Which parameters are sought, and those that are not because nothing is seen of them.
+/// The parameters to estimate, and those given up so that these are identifiable.
 fn free_parameters(
     problem: &Problem,
     layout: &Layout,
     equations: &[Observation],
 ) -> Result<(FreeParameters, Vec<Parameter>), IdentifyError> {
+    if problem.hold == [true; 6] {
+        return Err(IdentifyError::NothingFree);
+    }
     let sheet = &problem.sheet;
     let normal = NormalEquations::new(sheet, layout, equations, &vec![1.0; equations.len()]);
-    let (free, unidentifiable) = normal.identifiable();
+    let (free, unidentifiable) = normal.identifiable(problem.hold);
     let rows = sheet.readings.len() * sheet.rows_per_reading();
     if !unidentifiable.is_empty() && !problem.reduce {
-        let unknowns = layout.parameters().len();
+        let unknowns = normal.free_unless(problem.hold).count();
         return Err(if rows < unknowns {
             IdentifyError::TooFew { equations: rows, unknowns }
         } else {
@@ -133,7 +144,7 @@ fn free_parameters(
     }
     let dropped: Vec<Parameter> =
         unidentifiable.iter().filter_map(|unidentifiable| unidentifiable.parameters.first().copied()).collect();
-    let unknowns = layout.parameters().len() - dropped.len();
+    let unknowns = free.count();
     if rows < unknowns || unknowns == 0 {
         return Err(IdentifyError::TooFew { equations: rows, unknowns });
     }

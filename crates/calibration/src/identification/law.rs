@@ -1,5 +1,5 @@
-//! From the compliances seen to those of the arm: one constant for each joint, or joint, spring and its free length where a
-//! compensator stands beside one.
+//! From the compliances at distinct angles to the parameters of the arm: one constant compliance for each joint, or compliance,
+//! spring stiffness and free length where a compensator acts on a joint.
 //!
 //! The compliances at the distinct angles of a joint become stiffnesses, which are linear in (K_theta, K_GC, s_0 K_GC)
 //! (Klimchik et al. 2017, eq. 21 and 22, with the sign of its eq. 14 corrected), weighted by their covariance. From there
@@ -9,9 +9,11 @@
 use super::normal_equations::{NormalEquations, Solution};
 use super::spring::{Geometry, scaled_inverse, spring_start};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+use serde::Serialize;
+use std::fmt;
 
 /// How the compliance of the varying joint depends on its angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Law {
     /// Not at all.
     Constant,
@@ -19,17 +21,28 @@ pub enum Law {
     Spring(Geometry),
 }
 
-/// A number of the arm that has been estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A parameter of the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct ArmParameter {
     /// Which joint, from 0.
     pub joint: usize,
-    /// Which of its numbers.
+    /// Which of its quantities.
     pub quantity: Quantity,
 }
 
-/// What a number of the arm is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+impl fmt::Display for ArmParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = self.joint + 1;
+        match self.quantity {
+            Quantity::Compliance => write!(f, "the compliance of joint {number}"),
+            Quantity::SpringStiffness => write!(f, "the stiffness of the spring beside joint {number}"),
+            Quantity::FreeLength => write!(f, "the free length of the spring beside joint {number}"),
+        }
+    }
+}
+
+/// Which quantity of a joint a parameter is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Quantity {
     /// Compliance of the joint, without its compensator. rad/(N m)
     Compliance,
@@ -39,7 +52,7 @@ pub enum Quantity {
     FreeLength,
 }
 
-/// The arm's numbers.
+/// The parameters of the arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArmFit {
     /// What they are, joint by joint.
@@ -54,11 +67,11 @@ pub struct ArmFit {
     pub groups: Vec<(f64, DVector<f64>)>,
 }
 
-/// Why the compensator cannot be told from the compliances at the distinct angles.
+/// Why the compensator is not identifiable from the compliances at the distinct angles.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LawError {
     /// Fewer distinct angles than unknowns.
-    #[error("{found} distinct angles of joint {joint} do not tell the three unknowns of a compensator")]
+    #[error("{found} distinct angles of joint {joint} do not determine the three unknowns of a compensator")]
     TooFewAngles {
         /// How many there are.
         found: usize,
@@ -66,15 +79,17 @@ pub enum LawError {
         joint: usize,
     },
     /// The angles are too much alike.
-    #[error("the distinct angles of joint {joint} do not tell its own stiffness from its compensator's")]
+    #[error(
+        "at the distinct angles of joint {joint} its own stiffness and its compensator's are not identifiable separately"
+    )]
     Unidentifiable {
         /// Number of the joint, from 1.
         joint: usize,
     },
-    /// What fits best is no compensator.
+    /// The best fit is no compensator.
     #[error(
-        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the distinct angles do not tell the \
-         compensator; take more of them, wider apart, or leave out the table [compensator]"
+        "joint {joint}: {what} comes out as {value:.4} {unit}, which is not above zero: the compensator is not identifiable from \
+         the distinct angles; take more of them, wider apart, or leave out the table [compensator]"
     )]
     NoSpring {
         /// Number of the joint, from 1.
@@ -90,11 +105,11 @@ pub enum LawError {
 
 const STEPS: usize = 60;
 
-/// Fits the arm's numbers to the sums of the readings. `joints` says which joints are free, `by_angle` is the estimate with one
+/// Fits the parameters of the arm to the normal equations. `joints` says which joints are free, `by_angle` is the estimate with one
 /// compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors
-/// [`LawError`] where the law is a spring that the angles do not tell.
+/// [`LawError`] where the law is a spring that is not identifiable from the angles.
 pub fn fit(
     normal: &NormalEquations,
     joints: [bool; 6],

@@ -1,17 +1,18 @@
 //! From measurements to joint compliances, with their uncertainty (Klimchik et al. 2017, section 3.2).
 //!
-//! Makers publish no stiffness. It is identified by loading the arm at known joint angles with a known wrench and reading where
-//! some reference points go. [`identify`] takes such a [`Sheet`] through these steps:
+//! Makers publish no stiffness. It is identified by loading the arm at known joint angles with a known wrench and measuring the
+//! displacement of some reference points. [`identify`] takes such a [`Sheet`] through these steps:
 //!
-//! 1. [`setup`]: where the tracker stands and where the points sit, from the unloaded readings alone (eq. 24);
+//! 1. [`setup`]: poses of tracker and reference points, from the unloaded readings alone (eq. 24);
 //! 2. [`model`]: deflections as linear functions of the compliances, the joint beside a compensator having one for each
 //!    distinct angle (eq. 16, 20);
-//! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters cannot be seen;
-//! 4. [`outliers`]: readings that do not belong with the others;
-//! 5. [`law`]: from the compliances at distinct angles to joint, spring and free length (eq. 21, 22);
-//! 6. [`cross_validation`]: how well a configuration is predicted that was left out.
+//! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters are identifiable;
+//! 4. [`outliers`]: a robust estimate, and readings that deviate from the others by more than noise;
+//! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21, 22);
+//! 6. [`cross_validation`]: the error of predicting a configuration that was left out.
 //!
-//! Nothing is regularised: what cannot be seen is refused by name, or on request held at its value in the starting robot.
+//! Nothing is regularised: unidentifiable compliances are refused by name, or on request held at their value in the starting
+//! robot. [`design`] chooses the measurements.
 
 mod assemble;
 pub mod cross_validation;
@@ -32,9 +33,10 @@ pub mod spring;
 pub mod synthetic;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
-pub use error::IdentifyError;
+pub use error::{IdentifyError, SheetFault};
 pub use identify::identify;
-pub use outcome::{Estimate, Identified, RowResult};
+pub use outcome::{Estimate, Held, HeldReason, Identified, RowResult};
 pub use problem::Problem;
 pub use sheet::{Configuration, LoadCase, Reading, Sheet};

@@ -7,10 +7,11 @@
 use super::setup::Setup;
 use super::sheet::{Configuration, Sheet};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+use serde::Serialize;
 use stead_model::robot::{Frames, Robot};
 
 /// Which compliances are sought.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Layout {
     /// The joint (from 0) with one compliance for each distinct angle, if there is one.
     pub varying: Option<usize>,
@@ -21,7 +22,7 @@ pub struct Layout {
 }
 
 /// One of the compliances sought.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Parameter {
     /// Of a joint (from 0), the same in all configurations.
     Joint(usize),
@@ -74,6 +75,11 @@ impl Layout {
         }
     }
 
+    /// The name of a parameter in messages.
+    pub fn name(&self, parameter: Parameter) -> String {
+        compliance_name(self.joint(parameter), self.angle(parameter))
+    }
+
     /// The angle of a parameter of the varying joint. rad
     pub fn angle(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
@@ -81,6 +87,12 @@ impl Layout {
             Parameter::Group(group) => self.angles.get(group).copied(),
         }
     }
+}
+
+/// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
+pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
+    let number = joint + 1;
+    angle.map_or_else(|| format!("k_{number}"), |angle| format!("k_{number} at {:.2} deg", angle.to_degrees()))
 }
 
 /// Runs of sorted items that lie within a tolerance of their first.
@@ -154,19 +166,32 @@ impl Noise {
 /// without orientations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Columns are the six joints.
+    /// Design matrix: columns are the six joints, those of held joints zero.
     pub design: Matrix6<f64>,
-    /// What was read.
+    /// Deflection read, less that by the held joints.
     pub deflection: Vector6<f64>,
+    /// Deflection by the held joints, with the compliances of the starting arm at the angles of the configuration.
+    pub by_held: Vector6<f64>,
 }
 
-/// The equations of all readings.
+impl Observation {
+    /// Takes what a joint of known compliance (rad/(N m)) contributes out of the equations.
+    fn hold(&mut self, joint: usize, compliance: f64) {
+        let known = self.design.column(joint) * compliance;
+        self.deflection -= known;
+        self.by_held += known;
+        self.design.fill_column(joint, 0.0);
+    }
+}
+
+/// The equations of all readings, with those joints held at the compliances of `robot` for which `hold` says so.
 pub fn observations(
     robot: &Robot,
     sheet: &Sheet,
     setup: &Setup,
     load_point: &Vector3<f64>,
     noise: &Noise,
+    hold: [bool; 6],
 ) -> Vec<Observation> {
     let base_from_tracker = setup.tracker_from_base.rotation.transpose();
     let (linear, angular) = noise.weights();
@@ -177,13 +202,17 @@ pub fn observations(
         for reading in &sheet.readings[configuration.readings.clone()] {
             let read = frames.base_from_flange.point(&setup.points[reading.point]);
             let response = Response::new(&frames, &read, &load, &configuration.force, &configuration.moment);
-            let mut observation = Observation { design: Matrix6::zeros(), deflection: Vector6::zeros() };
+            let mut observation =
+                Observation { design: Matrix6::zeros(), deflection: Vector6::zeros(), by_held: Vector6::zeros() };
             let moved = base_from_tracker * (reading.loaded - reading.unloaded);
             observation.design.fixed_rows_mut::<3>(0).copy_from(&(response.linear * linear));
             observation.deflection.fixed_rows_mut::<3>(0).copy_from(&(moved * linear));
             if let Some(turn) = &reading.turn {
                 observation.design.fixed_rows_mut::<3>(3).copy_from(&(response.angular * angular));
                 observation.deflection.fixed_rows_mut::<3>(3).copy_from(&(base_from_tracker * turn * angular));
+            }
+            for joint in (0..6).filter(|joint| hold[*joint]) {
+                observation.hold(joint, robot.joints()[joint].compliance_at(configuration.theta[joint]));
             }
             observations.push(observation);
         }

@@ -4,6 +4,7 @@
 use super::model::{Layout, Observation, Parameter};
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, Matrix6, SymmetricEigen, Vector6};
+use serde::Serialize;
 
 /// Sums over readings: of the products of columns, and of columns and deflections.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +53,11 @@ impl FreeParameters {
         std::mem::replace(slot, false)
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.joints.iter().chain(&self.groups).filter(|free| **free).count()
+    }
+
     /// Whether a parameter is free.
     pub fn contains(&self, parameter: Parameter) -> bool {
         match parameter {
@@ -74,10 +80,10 @@ pub struct Solution {
     pub follow: Vec<(Vector6<f64>, f64)>,
 }
 
-/// A combination of parameters that the readings do not see.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A combination of parameters along which no reading changes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Unidentifiable {
-    /// The parameters in it, the one with the largest share first. One alone cannot be seen at all.
+    /// The parameters in it, the one with the largest share first. A single one affects no reading at all.
     pub parameters: Vec<Parameter>,
 }
 
@@ -125,15 +131,15 @@ impl NormalEquations {
         self.weight += weight;
     }
 
-    /// All parameters free.
-    pub fn all_free(&self) -> FreeParameters {
+    /// All parameters free but those of held joints; the varying one is not held.
+    pub fn free_unless(&self, hold: [bool; 6]) -> FreeParameters {
         FreeParameters {
-            joints: std::array::from_fn(|joint| self.varying != Some(joint)),
+            joints: std::array::from_fn(|joint| self.varying != Some(joint) && !hold[joint]),
             groups: vec![true; self.groups.len()],
         }
     }
 
-    /// Parameters whose columns are nothing but rounding.
+    /// Parameters whose columns are zero but for rounding.
     fn zero_columns(&self, free: &FreeParameters) -> Vec<Parameter> {
         let mean = |square: f64, weight: f64| if weight > 0.0 { square / weight } else { 0.0 };
         let joint = |joint: usize| mean(self.shared[(joint, joint)], self.weight);
@@ -147,7 +153,7 @@ impl NormalEquations {
         joints.chain(groups.map(Parameter::Group)).collect()
     }
 
-    /// Everything that the readings do not see: dead columns first, or, where there are none, dependent ones.
+    /// The unidentifiable combinations: zero columns first, or, where there are none, dependent ones.
     pub fn unidentifiable(&self, free: &FreeParameters) -> Vec<Unidentifiable> {
         let zero_columns = self.zero_columns(free);
         if !zero_columns.is_empty() {
@@ -181,10 +187,10 @@ impl NormalEquations {
         dependent.map(name).collect()
     }
 
-    /// The parameters that can be told, and what the readings do not see, all of it: of every combination the first parameter is
-    /// taken out until the others can be told.
-    pub fn identifiable(&self) -> (FreeParameters, Vec<Unidentifiable>) {
-        let mut free = self.all_free();
+    /// The identifiable parameters among those that are not held, and every unidentifiable combination: of each the first
+    /// parameter is taken out until the others are identifiable.
+    pub fn identifiable(&self, hold: [bool; 6]) -> (FreeParameters, Vec<Unidentifiable>) {
+        let mut free = self.free_unless(hold);
         let mut all: Vec<Unidentifiable> = Vec::new();
         loop {
             let unidentifiable = self.unidentifiable(&free);

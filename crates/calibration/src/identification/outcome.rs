@@ -1,16 +1,18 @@
-//! What an identification finds. SI units and radians.
+//! The result of an identification. SI units and radians, in its serialised form too.
 
 use super::cross_validation::Prediction;
 use super::law::ArmParameter;
 use super::model::Parameter;
 use super::setup::{Setup, SetupFit};
 use nalgebra::{DMatrix, Vector3};
+use serde::{Serialize, Serializer};
 use stead_model::robot::Robot;
+use stead_numerics::message::Warning;
 
 /// An estimate with its uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate<P> {
-    /// What is estimated.
+    /// The parameter.
     pub parameter: P,
     /// The joint angle to which it belongs, where that matters. rad
     pub angle: Option<f64>,
@@ -22,8 +24,8 @@ pub struct Estimate<P> {
     pub interval: [f64; 2],
 }
 
-/// One reading beside the model.
-#[derive(Debug, Clone, PartialEq)]
+/// One reading and its prediction by the model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RowResult {
     /// Line in the sheet, from 1.
     pub line: usize,
@@ -41,8 +43,26 @@ pub struct RowResult {
     pub is_outlier: bool,
 }
 
-/// What an identification finds.
-#[derive(Debug, Clone, PartialEq)]
+/// A parameter that keeps its value in the starting robot. Intervals and covariances take that for exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Held {
+    /// Which.
+    pub parameter: Parameter,
+    /// Why.
+    pub reason: HeldReason,
+}
+
+/// Why a parameter was held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum HeldReason {
+    /// By [`Problem::hold`](super::Problem::hold).
+    Asked,
+    /// It is not identifiable, and [`Problem::reduce`](super::Problem::reduce) allows to hold it.
+    Unidentifiable,
+}
+
+/// The result of an identification.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identified {
     /// Base transform and reference points.
     pub setup: Setup,
@@ -52,14 +72,16 @@ pub struct Identified {
     pub compliances: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.
     pub varying: Option<usize>,
-    /// The numbers of the arm, in the units of [`ArmParameter`].
+    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity).
     pub arm: Vec<Estimate<ArmParameter>>,
-    /// Covariance of those, in their order.
+    /// Covariance of those, in their order; serialised row by row.
+    #[serde(serialize_with = "rows_of")]
     pub covariance: DMatrix<f64>,
-    /// The arm with its new compliances.
+    /// The arm with its new compliances; serialised as its name.
+    #[serde(serialize_with = "name_of")]
     pub robot: Robot,
-    /// Parameters that the sheet does not see, held at the values of the starting robot.
-    pub held: Vec<Parameter>,
+    /// Parameters that were not estimated but held at the values of the starting robot.
+    pub held: Vec<Held>,
     /// Every reading, in the order of the sheet.
     pub rows: Vec<RowResult>,
     /// Root of the mean square residual of a deflection's component, outliers left out. m
@@ -72,15 +94,33 @@ pub struct Identified {
     pub variance_ratio: f64,
     /// Equations less parameters.
     pub degrees_of_freedom: usize,
-    /// Whether there were equations enough to look for outliers.
+    /// Whether there were enough equations to look for outliers.
     pub are_outliers_searched: bool,
-    /// Probability of residuals that grow so much by the law of the varying joint, were the law right.
+    /// Probability that a right law of the varying joint increases the residuals as much as this one does.
     pub law_probability: Option<f64>,
     /// Error of predicted deflections, for a configuration that was left out. Component; m
     pub prediction: Prediction,
+    /// What may be wrong with the result though the identification has not failed.
+    pub warnings: Vec<Warning>,
+}
+
+fn rows_of<S: Serializer>(matrix: &DMatrix<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>()))
+}
+
+fn name_of<S: Serializer>(robot: &Robot, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(robot.name())
 }
 
 impl Identified {
+    /// The joint (from 0) of a parameter.
+    pub fn joint(&self, parameter: Parameter) -> usize {
+        match parameter {
+            Parameter::Joint(joint) => joint,
+            Parameter::Group(_) => self.varying.unwrap_or_default(),
+        }
+    }
+
     /// The readings that were left out.
     pub fn outliers(&self) -> impl Iterator<Item = &RowResult> {
         self.rows.iter().filter(|row| row.is_outlier)

@@ -1,4 +1,4 @@
-//! Readings that do not belong with the others.
+//! Robust estimation: readings that deviate from the others by more than noise.
 //!
 //! A first estimate that outliers hardly move (Huber's weights, then Tukey's bisquare, both by iterated least squares with the
 //! median of the residuals as scale) tells which readings to leave out at first. Then the ordinary estimate from the others judges
@@ -11,7 +11,7 @@ use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::sheet::Sheet;
 use nalgebra::{Matrix6, Vector6};
 
-/// The estimate without outliers, and how each reading stands to it.
+/// The estimate without outliers, and the residual of each reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustEstimate {
     /// The estimate.
@@ -26,11 +26,11 @@ pub struct RobustEstimate {
     pub kept: Vec<bool>,
     /// Root of the mean square of the studentised residual of each reading: about 1.
     pub studentised: Vec<f64>,
-    /// Whether there are equations enough to look for outliers.
+    /// Whether there are enough equations to look for outliers.
     pub is_searched: bool,
 }
 
-/// What is to be estimated.
+/// Inputs of the robust estimate.
 pub struct OutlierSearch<'a> {
     /// The readings.
     pub sheet: &'a Sheet,
@@ -40,9 +40,9 @@ pub struct OutlierSearch<'a> {
     pub observations: &'a [Observation],
     /// Which parameters are free.
     pub free: &'a FreeParameters,
-    /// What the others are held at.
+    /// Values of the others.
     pub held: (&'a Vector6<f64>, &'a [f64]),
-    /// The scale of the residuals is not less than this: what the noise is known to be, or what no tracker resolves.
+    /// Lower limit of the scale of the residuals: the known noise, or the resolution of any tracker.
     pub min_scale: f64,
 }
 
@@ -50,16 +50,12 @@ pub struct OutlierSearch<'a> {
 pub(super) const ROUNDING: f64 = 1e-10;
 /// One false outlier in so many sheets of ordinary noise.
 const SHEETS: f64 = 100.0;
-/// Rounds of reweighting, and of judging.
+/// Rounds of reweighting, and of testing for outliers.
 const ROUNDS: usize = 30;
 /// No weight is less in the robust start, so that no parameter is left without readings.
 const MIN_WEIGHT: f64 = 1e-6;
 
 impl OutlierSearch<'_> {
-    fn parameters(&self) -> usize {
-        self.free.joints.iter().chain(&self.free.groups).filter(|free| **free).count()
-    }
-
     fn solve(&self, weights: &[f64]) -> Option<(NormalEquations, Solution)> {
         let normal = NormalEquations::new(self.sheet, self.layout, self.observations, weights);
         let solution = normal.solve(self.free, self.held)?;
@@ -79,12 +75,12 @@ impl OutlierSearch<'_> {
     /// The estimate without outliers.
     ///
     /// # Errors
-    /// The readings that were kept when they did not tell all parameters any more.
+    /// The readings that were kept when not all parameters were identifiable from them any more.
     pub fn robust_estimate(&self) -> Result<RobustEstimate, Vec<bool>> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();
         let mut kept = vec![true; readings];
-        let is_searched = equations >= 2 * self.parameters() + 2 * self.sheet.rows_per_reading();
+        let is_searched = equations >= 2 * self.free.count() + 2 * self.sheet.rows_per_reading();
         if is_searched {
             kept = self.robust_start(equations).ok_or_else(|| kept.clone())?;
         }
@@ -101,7 +97,7 @@ impl OutlierSearch<'_> {
     fn robust_start(&self, equations: usize) -> Option<Vec<bool>> {
         // 95 % and median of the length of a vector of standard normal numbers.
         let (reach, median) = if self.sheet.is_full_pose() { (3.548, 2.313) } else { (2.795, 1.538) };
-        let correction = libm::sqrt(equations as f64 / (equations - self.parameters()) as f64);
+        let correction = libm::sqrt(equations as f64 / (equations - self.free.count()) as f64);
         let mut weights = vec![1.0; self.observations.len()];
         let mut kept = vec![true; weights.len()];
         for round in 0..2 * ROUNDS {
@@ -145,7 +141,7 @@ impl OutlierSearch<'_> {
         let (normal, solution) = self.solve(&weights)?;
         let rows = self.sheet.rows_per_reading();
         let count = kept.iter().filter(|kept| **kept).count();
-        let degrees = (count * rows).saturating_sub(self.parameters());
+        let degrees = (count * rows).saturating_sub(self.free.count());
         let residuals: Vec<Vector6<f64>> = (0..kept.len()).map(|index| self.residual(&solution, index)).collect();
         let squares: f64 = residuals.iter().zip(kept).filter(|(_, kept)| **kept).map(|(r, _)| r.norm_squared()).sum();
         let variance = if degrees > 0 { squares / degrees as f64 } else { 0.0 };

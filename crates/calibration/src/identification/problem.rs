@@ -1,11 +1,11 @@
-//! What an identification starts from.
+//! Inputs of an identification.
 
 use super::law::Law;
 use super::sheet::Sheet;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Robot;
 
-/// What is to be identified, from what.
+/// Inputs of an identification: the starting arm, the measurements and what is known beside them. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// The arm to start from: geometry, limits, and compliances of about the right size.
@@ -24,6 +24,8 @@ pub struct Problem {
     pub angle_tolerance: f64,
     /// Rotation from the robot base to the tracker's frame to start from; without it, all round.
     pub start: Option<Matrix3<f64>>,
-    /// Whether parameters that cannot be seen are held at the values of `robot`; else they are refused.
+    /// Whether unidentifiable parameters are held at the values of `robot`; else they are refused.
     pub reduce: bool,
+    /// Joints whose compliance is held at that of `robot`, whatever the readings tell of it.
+    pub hold: [bool; 6],
 }

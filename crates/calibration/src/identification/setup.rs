@@ -1,4 +1,4 @@
-//! Where the tracker stands and where the reference points sit: from the unloaded readings alone.
+//! Pose of the tracker and positions of the reference points, from the unloaded readings alone.
 //!
 //! Reading i of point p in configuration j is `R (R_j p_i + o_j) + t`, with the flange at (R_j, o_j) by the forward
 //! kinematics and the tracker at (R, t). Given R it is linear in t and the points: their least-squares estimate is the mean of
@@ -8,10 +8,11 @@
 use super::rotation::rotation_from_vector;
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use serde::Serialize;
 use stead_model::robot::Pose;
 
-/// Where things are in the measuring cell.
-#[derive(Debug, Clone, PartialEq)]
+/// Pose of the tracker and positions of the reference points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Setup {
     /// The robot base in the tracker's frame.
     pub tracker_from_base: Pose<f64>,
@@ -21,12 +22,12 @@ pub struct Setup {
     pub residual_rms: f64,
 }
 
-/// Why base transform and tool points cannot be told.
+/// Why base transform and reference points are not identifiable.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SetupError {
     /// Fewer equations than unknowns.
     #[error(
-        "{equations} unloaded coordinates do not tell the {unknowns} unknowns of base transform and reference points"
+        "{equations} unloaded coordinates do not determine the {unknowns} unknowns of base transform and reference points"
     )]
     TooFew {
         /// Coordinates read without load.
@@ -35,7 +36,7 @@ pub enum SetupError {
         unknowns: usize,
     },
     /// The configurations are too much alike.
-    #[error("the unloaded readings do not tell the base transform from the reference points")]
+    #[error("base transform and reference points are not identifiable separately from the unloaded readings")]
     Unidentifiable,
     /// The readings are not where any tracker and reference points would put them.
     #[error(
@@ -65,8 +66,8 @@ pub enum SetupError {
     },
 }
 
-/// How well base transform and reference points fit the unloaded readings, and how well those tell them.
-#[derive(Debug, Clone, PartialEq)]
+/// How well base transform and reference points fit the unloaded readings, and how well those determine them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SetupFit {
     /// The reading farthest from where kinematics puts its point: line of the sheet from 1, distance in m.
     pub worst: (usize, f64),
@@ -96,7 +97,7 @@ const STEPS: usize = 60;
 /// the rotation of `tracker_from_base` the best of 24 orientations all round is taken.
 ///
 /// # Errors
-/// [`SetupError`] when the readings do not tell them.
+/// [`SetupError`] when the readings do not determine them.
 pub fn estimate(
     sheet: &Sheet,
     flanges: &[Pose<f64>],

@@ -1,10 +1,11 @@
 //! What was measured: configurations under load, and readings of reference points without and with the load.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 use std::ops::Range;
 
 /// Joint angles and a wrench: a configuration to measure, or one in which the deflection is to be predicted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LoadCase {
     /// Joint angles. rad
     pub theta: [f64; 6],
@@ -15,7 +16,7 @@ pub struct LoadCase {
 }
 
 /// One configuration of the arm and the load that was put on it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Configuration {
     /// Its name in the sheet.
     pub name: String,
@@ -30,7 +31,7 @@ pub struct Configuration {
 }
 
 /// One reference point in one configuration, seen without and with the load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reading {
     /// Line of the file, from 1.
     pub line: usize,
@@ -47,7 +48,7 @@ pub struct Reading {
 }
 
 /// A measurement sheet.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sheet {
     /// Names of the reference points, in the order of their first reading.
     pub points: Vec<String>,

@@ -2,9 +2,10 @@
 
 use super::normal_equations::{NormalEquations, Solution};
 use nalgebra::{DMatrix, Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
+use serde::Serialize;
 
 /// Where the two ends of a compensator's spring are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Geometry {
     /// Distance of the spring's one end from the joint axis. m
     pub a: f64,

@@ -143,10 +143,9 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow) -> PathPoint {
-    let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let base_from_workpiece = placement.base_from_workpiece();
     let (path_point, wrench) = (&problem.task.points()[point], &problem.task.wrenches()[point]);
-    let base_from_flange = problem.base_from_flange(point, &pose, row.beta);
+    let base_from_flange = problem.base_from_flange(point, placement, row.beta);
     let tool = base_from_flange.then(&problem.spindle.flange_from_tool);
     PathPoint {
         segment: problem.task.path().segment_of(point) + 1,

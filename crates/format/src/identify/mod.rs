@@ -1,12 +1,14 @@
 //! Identification files: the config of `stead identify fit` and `stead identify plan`, so that one file serves both.
 
+mod locate;
 mod plan;
 
+pub use locate::LocatedError;
 pub use plan::{PlanRun, read_plan};
 
 use super::reader::{Field, Table};
 use super::robot::robot_from;
-use super::sheet::{repeated, sheet_from};
+use super::sheet::sheet_from;
 use super::source::{Document, Source, input_file};
 use crate::input::{InputError, InputFile};
 use nalgebra::{Matrix3, Vector3};
@@ -37,7 +39,7 @@ pub struct IdentifyRun {
 /// Keys: `robot`, `sheet` (paths relative to the folder of the file), `load_point_mm` (where the wrench acts, flange frame);
 /// optionally `noise_mm` and `noise_deg` (standard deviation of one coordinate of one reading; both are needed for sheets with
 /// orientations), `[compensator]` (`joint`, `a_mm`, `l_mm`, `alpha_deg`; else that of the robot file, if it has one), `[base]`
-/// (`rotation` from the robot base to the tracker's frame, to start from), `[fit]` (`reduce`,
+/// (`rotation` from the robot base to the tracker's frame, to start from), `[fit]` (`reduce`, `hold`,
 /// `distinct_q2`, `angle_tolerance_deg`) and `[plan]`, which is for [`read_plan`] alone. The shipped file explains each.
 ///
 /// # Errors
@@ -59,7 +61,6 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
             }
         }
     }
-    let notes = note.into_iter().chain(repeated(&readings)).collect();
     let inputs = vec![source.as_config(), robot_input, input_file("sheet", &sheet_file.name, &sheet_file.bytes)];
     let problem = Problem {
         robot,
@@ -71,7 +72,9 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         angle_tolerance: fit.angle_tolerance,
         start,
         reduce: fit.reduce,
+        hold: fit.hold,
     };
+    let notes = note.into_iter().collect();
     Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
 
@@ -131,6 +134,7 @@ impl<'a> Shared<'a> {
 /// The table `[fit]`.
 struct Fit {
     reduce: bool,
+    hold: [bool; 6],
     is_distinct: bool,
     angle_tolerance: f64,
 }
@@ -138,18 +142,37 @@ struct Fit {
 /// Angles of the joint beside a compensator that differ by no more than this count as one, where the file does not say.
 const TOLERANCE_DEG: f64 = 0.05;
 /// What holds without a table `[fit]`.
-const PLAIN: Fit = Fit { reduce: false, is_distinct: false, angle_tolerance: TOLERANCE_DEG * PI / 180.0 };
+const PLAIN: Fit =
+    Fit { reduce: false, hold: [false; 6], is_distinct: false, angle_tolerance: TOLERANCE_DEG * PI / 180.0 };
 
 fn fit_from(table: &Table<'_>) -> Result<Fit, InputError> {
-    let [reduce, distinct, tolerance] = table.fields(["reduce", "distinct_q2", "angle_tolerance_deg"])?;
+    let [reduce, hold, distinct, tolerance] = table.fields(["reduce", "hold", "distinct_q2", "angle_tolerance_deg"])?;
     let rule = "a number from 0 to 5";
     let tolerance = tolerance.optional(|field| field.number_where(rule, |deg| (0.0..=5.0).contains(&deg)))?;
     Ok(Fit {
         reduce: reduce.optional(Field::boolean)?.unwrap_or_default(),
+        hold: hold.optional(held_from)?.unwrap_or_default(),
         is_distinct: distinct.optional(Field::boolean)?.unwrap_or_default(),
         angle_tolerance: tolerance.unwrap_or(TOLERANCE_DEG).to_radians(),
     })
 }
+
+/// The joints that are to keep the compliance of the robot file.
+fn held_from(field: &Field<'_>) -> Result<[bool; 6], InputError> {
+    let mut hold = [false; 6];
+    for entry in field.list(HOLD)? {
+        let joint = entry.integer(1..=6)? as usize - 1;
+        if std::mem::replace(&mut hold[joint], true) {
+            return Err(entry.error("is there twice", HOLD));
+        }
+    }
+    if hold == [true; 6] {
+        return Err(field.error("holds every joint, so that nothing is left to identify", HOLD));
+    }
+    Ok(hold)
+}
+
+const HOLD: &str = "numbers of one to five joints, from 1 to 6, each once";
 
 fn compensator_from(table: &Table<'_>, robot: &Robot) -> Result<(usize, Law), InputError> {
     let [joint, a, l, alpha] = table.fields(["joint", "a_mm", "l_mm", "alpha_deg"])?;

@@ -7,7 +7,7 @@ use crate::source::Source;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
-use stead_calibration::identification::design::{Loads, Request, TestCases, Volume};
+use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
 use stead_model::robot::Robot;
@@ -121,11 +121,12 @@ pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> 
         points: points.list(POINTS)?.iter().map(|point| Ok(point.vector3()? / 1e3)).collect::<Result<_, _>>()?,
         noise: shared.noise.positive()? / 1e3,
         varying: shared.varying,
+        hold: shared.fit.hold,
         angle_tolerance: shared.fit.angle_tolerance,
         level_joint,
         levels: spread.levels_from(&levels)?,
         limits,
-        loads: directions.optional(loads_from)?.unwrap_or(Loads::Any),
+        loads: directions.optional(loads_from)?.unwrap_or(LoadDirections::Any),
         load: load.positive()?,
         volume: volume.optional(|field| volume_from(&field.table()?))?.unwrap_or(Volume::OPEN),
         max_deflection: deflection.optional(Field::positive)?.unwrap_or(MOST_MM) / 1e3,
@@ -223,10 +224,12 @@ impl Spread {
     }
 }
 
-fn loads_from(field: &Field<'_>) -> Result<Loads, InputError> {
+fn loads_from(field: &Field<'_>) -> Result<LoadDirections, InputError> {
     if !field.is_array() {
         let words = [("any", 0), ("horizontal", 1), ("vertical", 2)];
-        return Ok([Loads::Any, Loads::Horizontal, Loads::Vertical][field.one_of(&words)?].clone());
+        return Ok([LoadDirections::Any, LoadDirections::Horizontal, LoadDirections::Vertical]
+            [field.one_of(&words)?]
+        .clone());
     }
     let rule = "directions [x, y, z] in the base frame, not zero; or \"any\", \"horizontal\", \"vertical\"";
     let direction = |entry: &Field<'_>| {
@@ -237,7 +240,7 @@ fn loads_from(field: &Field<'_>) -> Result<Loads, InputError> {
             Ok(vector.normalize())
         }
     };
-    Ok(Loads::Listed(field.list(rule)?.iter().map(direction).collect::<Result<_, _>>()?))
+    Ok(LoadDirections::Listed(field.list(rule)?.iter().map(direction).collect::<Result<_, _>>()?))
 }
 
 fn volume_from(table: &Table<'_>) -> Result<Volume, InputError> {

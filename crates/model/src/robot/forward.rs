@@ -2,10 +2,11 @@
 
 use super::Robot;
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use serde::Serialize;
 use stead_numerics::scalar::Scalar;
 
 /// A rigid transform `a_from_b`: takes coordinates in b to coordinates in a.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pose<T: Scalar> {
     /// Rotation from b to a.
     pub rotation: Matrix3<T>,

@@ -10,10 +10,11 @@ use super::{
     posture::Posture,
 };
 use nalgebra::Vector3;
+use serde::Serialize;
 use stead_numerics::scalar::Scalar;
 
 /// Why a posture cannot bring the flange to a pose at all, joint limits apart.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, thiserror::Error)]
 pub enum Unreachable {
     /// The wrist centre is nearer to axis 1 than the arm's lateral offset.
     #[error("the wrist centre is {by} m too near to axis 1 for the lateral offset of the arm")]

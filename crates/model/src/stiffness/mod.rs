@@ -11,10 +11,11 @@ pub mod rotation;
 
 use crate::robot::Frames;
 use nalgebra::Vector3;
+use serde::Serialize;
 use stead_numerics::scalar::Scalar;
 
 /// Small displacement of the tool under a wrench, in the base frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Displacement<T: Scalar> {
     /// Displacement of the point. m
     pub linear: Vector3<T>,

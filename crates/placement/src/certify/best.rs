@@ -1,18 +1,20 @@
-//! The best placement: a lower bound of what placements are worth.
+//! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, End, Open, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
+use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
-use super::lower_bound::Model;
-use super::model::{Unfit, certifiable, prepared};
+use super::model::Model;
 use super::region::Region;
+use super::requirements::certifiable;
 use crate::problem::Problem;
 use crate::sense::Sense;
+use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
 use stead_numerics::monitor::Monitor;
 
-/// Bounds from below what placements of a problem are worth, until no placement can be better than `value` (mean score, m)
+/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean score, m)
 /// by more than `gap` (relative).
 ///
 /// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
@@ -20,17 +22,16 @@ use stead_numerics::monitor::Monitor;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unfit> {
+pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
-    let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (model, whole) = prepared(problem, &compliances, with_rate);
+    let (model, whole) = (Model::new(problem, with_rate), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len() };
     // Of no placement anything is known until the tables are made.
     let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
         Ok(coarse) => coarse,
         Err(stop) => {
             let open = vec![(whole, 0.0)];
-            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, end: End::Stopped(stop), open });
+            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
         }
     };
     let ceiling = search.ceiling();

@@ -3,12 +3,13 @@
 use super::region::Region;
 use crate::sense::Sense;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 
-/// A bound of what placements of the cell are worth: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
-#[derive(Debug, Clone, PartialEq)]
+/// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
     /// The mean score that was compared with. m
     pub value: f64,
@@ -17,24 +18,36 @@ pub struct Bound {
     pub bound: f64,
     /// Whether the rate of beta was kept.
     pub with_rate: bool,
-    /// Boxes model.
+    /// Boxes bounded.
     pub nodes: usize,
-    /// Why the search ended.
-    pub end: End,
+    /// How the search ended.
+    pub status: Status,
     /// Boxes that may hold placements better (of the worst: worse) than `value` by more than the gap asked for, each with its
     /// own bound. m
     pub open: Vec<(Region, f64)>,
 }
 
-/// Why a search ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+/// How a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
     /// The gap asked for is reached.
     Reached,
-    /// The caller ended it, or the deadline has passed.
-    Stopped(Stop),
     /// What is left open is smaller than the tables can tell apart.
     Exhausted,
+    /// The time was over.
+    TimeLimit,
+    /// The caller ended it.
+    Interrupted,
+}
+
+impl From<Stop> for Status {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Asked => Self::Interrupted,
+            Stop::Deadline => Self::TimeLimit,
+        }
+    }
 }
 
 impl Bound {
@@ -145,7 +158,7 @@ impl BranchAndBound {
 
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
     ///
-    /// `nodes` is the number of boxes model before; `parts` gives those of a box, `None` where it is not to be cut further.
+    /// `nodes` is the number of boxes bounded before; `parts` gives those of a box, `None` where it is not to be cut further.
     /// Where bounds are the same, the younger box comes first: what cannot be told apart is found by going down, not by cutting
     /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
     /// The result does not depend on the number of threads.
@@ -166,14 +179,14 @@ impl BranchAndBound {
             heap.push(queued(open, if self.sense == Sense::Min { number } else { u64::MAX - number }));
         }
         let mut stuck: Vec<Queued<T>> = Vec::new();
-        let mut end = End::Reached;
+        let mut status = Status::Reached;
         while let Some(first) = heap.peek() {
             // Whatever becomes of the others, the bound stays there.
             if stuck.iter().any(|stuck| stuck.rank >= first.rank) {
                 break;
             }
             if let Some(stop) = self.report(monitor, first.open.bound / count, heap.len() + stuck.len(), nodes) {
-                end = End::Stopped(stop);
+                status = stop.into();
                 break;
             }
             let batch: Vec<_> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
@@ -193,8 +206,8 @@ impl BranchAndBound {
                 }
             }
         }
-        if end == End::Reached && !stuck.is_empty() {
-            end = End::Exhausted;
+        if status == Status::Reached && !stuck.is_empty() {
+            status = Status::Exhausted;
         }
         let mut left = heap.into_sorted_vec();
         left.reverse();
@@ -202,6 +215,6 @@ impl BranchAndBound {
         let farthest = left.iter().map(|queued| queued.rank).fold(ceiling, f64::max);
         let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
         let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
-        Bound { value: self.value, bound, with_rate: self.with_rate, nodes, end, open }
+        Bound { value: self.value, bound, with_rate: self.with_rate, nodes, status, open }
     }
 }

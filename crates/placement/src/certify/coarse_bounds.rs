@@ -1,15 +1,15 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
 use super::compliance_table::{Extent, Steps};
-use super::lower_bound::Model;
 use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
+use super::model::Model;
 use super::region::{Point, Region};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Stop;
 
-/// CoarseBounds tables, one for each kind of force, in ever coarser levels.
+/// Coarse tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
 pub(super) struct CoarseBounds {
     pub levels: Vec<Level>,
@@ -26,12 +26,12 @@ pub(super) struct Level {
     pub entries: Vec<Affine>,
 }
 
-/// Kinds of force looked at: the most frequent ones.
-const MOST_FORCES: usize = 12;
-/// Rows made between two questions whether to go on.
+/// Kinds of force that have a table: the most frequent ones.
+const MAX_FORCES: usize = 12;
+/// Rows computed between two questions whether to go on.
 const ROWS: usize = 64;
 /// Kinds of force counted: a task may have as many as points.
-const MOST_LOOKED_AT: usize = 1000;
+const MAX_COUNTED: usize = 1000;
 
 impl CoarseBounds {
     /// Makes them, unless `stop`, asked again and again, gives a reason to stop before that.
@@ -140,12 +140,12 @@ fn kinds(points: &[Point]) -> Vec<[f64; 3]> {
     for p in points {
         match forces.iter().position(|(f, _)| same(f, &p.force)) {
             Some(at) => forces[at].1 += 1,
-            None if forces.len() < MOST_LOOKED_AT => forces.push((p.force, 1)),
+            None if forces.len() < MAX_COUNTED => forces.push((p.force, 1)),
             None => {}
         }
     }
     forces.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    forces.truncate(MOST_FORCES);
+    forces.truncate(MAX_FORCES);
     forces.into_iter().map(|(force, _)| force).collect()
 }
 

@@ -4,7 +4,7 @@
 //! to half a step around any state, and within half a step in heading: headings are cut into cells once and for all. It says
 //! that none of its states is allowed, or gives an affine model of the compliances with what that leaves out.
 
-use super::arm::{Arm, ArmCompliance};
+use super::arm::{Arm, ArmCompliance, LimitSpan};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::interval_simd::{Lanes, WIDTH};
@@ -213,19 +213,21 @@ fn enclosed(
 }
 
 fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Node {
-    if y.lost.lane(lane) {
+    if y.violated.lane(lane) {
         return Node::Empty;
     }
-    if !y.regular[2].lane(lane) {
+    if !y.regular.lane(lane) {
         return Node::Unknown;
     }
-    let holds = |c: usize| y.constraints[c].value.low().0[lane] >= 0.0;
-    let within = |joint: usize| match arm.is_wide(joint) {
-        None => true,
-        Some(true) => holds(1 + 2 * joint) || holds(2 + 2 * joint),
-        Some(false) => holds(1 + 2 * joint) && holds(2 + 2 * joint),
+    let holds = |margin: &Enclosure| margin.value.low().0[lane] >= 0.0;
+    let margins = &y.margins;
+    let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
+        (LimitSpan::Full, _) => true,
+        (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
+        (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
     };
-    let sure = y.conditioned.lane(lane) && [0, 5, 6, 7].into_iter().all(holds) && within(0) && within(1);
+    let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
+    let sure = y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1);
     let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1]];
     let values = functions.map(|f| {
         let f = f.middle();

@@ -1,6 +1,6 @@
 //! Intervals that are sure to hold the value, the gradient and the second derivatives of a function over a region.
 
-use super::elbow::{Bend, Links};
+use super::continuation::{Bend, Links};
 use super::interval::Interval;
 use super::interval_simd::{Lanes, Mask};
 use super::number::{Number, PAIR, PAIRS, Slope, VARIABLES, ZERO};

@@ -112,10 +112,10 @@ impl Mask {
         Lanes(out)
     }
 
-    /// Whether every lane that the other says yes in says yes here.
+    /// Whether every lane says yes.
     #[inline(always)]
-    pub fn covers(self, other: Self) -> bool {
-        (0..WIDTH).fold(0, |missing, k| missing | (other.0[k] & !self.0[k])) == 0
+    pub fn all(self) -> bool {
+        self.0.iter().fold(u64::MAX, |all, lane| all & lane) == u64::MAX
     }
 
     /// The answer of one lane.

@@ -1,4 +1,4 @@
-//! A lower bound of what any placement of a box is worth, with the rate of beta: dynamic programming over cells of heading at
+//! A lower bound of the objective over a box of placements, with the rate of beta: dynamic programming over cells of heading at
 //! the corners of the box.
 //!
 //! Every cell costs an affine function of the placement, a way through the cells their sum, the best way the least of these:
@@ -6,171 +6,65 @@
 //! the one is within the rate of some beta of the other.
 
 use super::active_cells::ActiveCells;
-use super::arm::Arm;
-use super::compliance_table::{ComplianceTable, Node};
+use super::compliance_table::Node;
 use super::cost::{CORNERS, PointCost};
-use super::model::Yaws;
-use super::region::{Point, PolarModel, Region};
-use super::sliding_min::{NOTHING, SlidingMin, least, plus};
+use super::model::Model;
+use super::region::Region;
+use super::sliding_min::{INFINITE, SlidingMin, min_into, plus};
 use std::f64::consts::TAU;
-use std::ops::Range;
 use stead_model::robot::PostureClass;
 
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
 
-/// What is to be model, prepared.
-#[derive(Debug)]
-pub(super) struct Model {
-    pub arm: Arm,
-    pub table: ComplianceTable,
-    pub points: Vec<Point>,
-    pub segments: Vec<Range<usize>>,
-    /// Largest change of beta from the point before. rad; infinite without the rate
-    pub rates: Vec<f64>,
-    /// Compliance of joint 1. rad/(N m)
-    pub first: f64,
-    pub yaws: Yaws,
-}
-
 #[derive(Debug, Clone)]
 pub(super) struct LowerBound {
     /// Least sum of the scores; infinite where nothing is feasible. m
     pub sum: f64,
+    /// Cells of heading that some placement of the box may still need.
     pub active: ActiveCells,
 }
 
 impl Model {
-    /// The finest level whose nodes answer for every point of a box that is surely off axis 1; `None` for a box that is too
-    /// large, or where there is no such point.
-    pub fn level(&self, region: &Region) -> Option<usize> {
-        let mut placed = self.points.iter().filter_map(|p| p.over(region)).peekable();
-        placed.peek()?;
-        placed.try_fold(usize::MAX, |level, placed| {
-            Some(level.min(self.table.level(placed.reach[0].max(placed.reach[1]))?))
-        })
-    }
-
-    /// Where a point is over a box; `None` where some of it may be nearer to axis 1 than tables reach, so that nothing is known.
-    ///
-    /// Tables hold every radius of the cell beyond that, and every height ([`super::prepare`]).
-    pub fn placed(&self, point: usize, region: &Region) -> Option<PolarModel> {
-        let placed = self.points[point].over(region)?;
-        // A point is never nearer to axis 1 than the workpiece origin less its distance from there.
-        let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
-        let least = nearest.max(placed.r - placed.reach[0]);
-        if least < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
-    }
-
-    /// Every point over a box, where something is known of it.
-    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost>> {
-        let placed = (0..self.points.len()).map(|point| self.placed(point, region));
-        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.first))).collect()
-    }
-
-    /// Bounds a box from below, on the level of the active; cells through which every way costs `ceiling` (m, sum) or more
-    /// leave the active.
+    /// Bounds a box from below, on the level of the active cells; cells through which every way costs `ceiling` (m, sum) or more
+    /// become inactive.
     ///
     /// A point that tables do not answer for, whether the box is too large for the level, or may have it near axis 1, costs
-    /// nothing and loses no cell, and beta may step anywhere from it and to it. What the box is worth is up to the others.
+    /// nothing and loses no cell, and beta may step anywhere from it and to it. The bound is left to the other points.
     pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64) -> LowerBound {
-        let mut active = active.clone();
         let count = active.count();
-        let width = TAU / count as f64;
-        let points = self.point_costs(region);
+        let mut pass = Pass {
+            model: self,
+            region,
+            points: self.point_costs(region),
+            active: active.clone(),
+            neighbours: SlidingMin::new(count),
+            width: TAU / count as f64,
+        };
         let mut totals = [0.0; CORNERS];
-        let mut all: Vec<Ways> = Vec::new();
-        let mut bests = Vec::new();
-        let mut sliding = SlidingMin::new(count);
-        for (segment, span) in self.segments.iter().enumerate() {
-            let mut best = NOTHING;
+        let (mut all, mut bests) = (Vec::new(), Vec::new());
+        for segment in 0..self.segments.len() {
+            let mut best = INFINITE;
             for class in PostureClass::ALL {
-                let mut ways = Ways { segment, class: class.index(), rows: Vec::with_capacity(span.len()) };
-                let mut end = NOTHING;
-                for (place, point) in span.clone().enumerate() {
-                    if place > 0 {
-                        let (low, high) = self.steps(region, &points, point, width);
-                        sliding.least(&ways.rows[place - 1].sums, -high, -low);
-                    }
-                    let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums: vec![NOTHING; count] };
-                    end = NOTHING;
-                    let found = points[point].as_ref().and_then(|p| {
-                        let placed = &p.placed;
-                        let answers = self.table.answers(active.level, [placed.reach[0], placed.reach[1]]);
-                        let (at, off) = self.table.nearest(active.level, placed.r, placed.z).filter(|_| answers)?;
-                        Some((p, at, off))
-                    });
-                    let cells: Vec<usize> = active.cells(point, class.index()).collect();
-                    for cell in cells {
-                        if place > 0 && sliding.out[cell][0] == f64::INFINITY {
-                            active.clear(point, class.index(), cell);
-                            continue;
-                        }
-                        let cost = match found {
-                            None => [0.0; CORNERS],
-                            Some((p, at, off)) => match self.table.node(&self.arm, active.level, at, cell, class) {
-                                Node::Empty => {
-                                    active.clear(point, class.index(), cell);
-                                    continue;
-                                }
-                                Node::Unknown => [0.0; CORNERS],
-                                Node::Known(known) => p.least(known, off, 0.5 * width, region),
-                            },
-                        };
-                        let sum = if place == 0 { cost } else { plus(&sliding.out[cell], &cost) };
-                        row.sums[cell] = sum;
-                        row.cells.push(cell);
-                        row.costs.push(cost);
-                        least(&mut end, &sum);
-                    }
-                    ways.rows.push(row);
-                    if end[0] == f64::INFINITY {
-                        break;
-                    }
+                if let Some(ways) = pass.forward(segment, class) {
+                    min_into(&mut best, &ways.end);
+                    all.push(ways);
                 }
-                if end[0] == f64::INFINITY {
-                    span.clone().for_each(|point| active.clear_all(point, class.index()));
-                    continue;
-                }
-                least(&mut best, &end);
-                all.push(ways);
             }
             if best[0] == f64::INFINITY {
-                return LowerBound { sum: f64::INFINITY, active };
+                return LowerBound { sum: f64::INFINITY, active: pass.active };
             }
             totals = plus(&totals, &best);
             bests.push(best);
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
-        if sum >= ceiling {
-            return LowerBound { sum, active };
-        }
-        // From the ends back: what leads to no good leaves the active.
-        for ways in &all {
-            let span = &self.segments[ways.segment];
-            let others: [f64; CORNERS] = std::array::from_fn(|k| totals[k] - bests[ways.segment][k]);
-            let mut after = vec![NOTHING; count];
-            for (place, row) in ways.rows.iter().enumerate().rev() {
-                let point = span.start + place;
-                let is_end = place + 1 == span.len();
-                if !is_end {
-                    let (low, high) = self.steps(region, &points, point + 1, width);
-                    sliding.least(&after, low, high);
-                }
-                after.fill(NOTHING);
-                for (cell, cost) in row.cells.iter().zip(&row.costs) {
-                    let onward = if is_end { [0.0; CORNERS] } else { sliding.out[*cell] };
-                    let sum = &row.sums[*cell];
-                    let through = (0..CORNERS).map(|k| sum[k] + onward[k] + others[k]).fold(f64::INFINITY, f64::min);
-                    if through >= ceiling {
-                        active.clear(point, ways.class, *cell);
-                    } else {
-                        after[*cell] = plus(&onward, cost);
-                    }
-                }
+        if sum < ceiling {
+            for ways in &all {
+                let best = bests[ways.segment];
+                pass.prune(ways, &std::array::from_fn(|k| totals[k] - best[k]), ceiling);
             }
         }
-        LowerBound { sum, active }
+        LowerBound { sum, active: pass.active }
     }
 
     /// From which to which number of cells a way may step up, to `point` from the one before.
@@ -195,11 +89,25 @@ impl Model {
     }
 }
 
+/// The dynamic programming over one box.
+struct Pass<'a> {
+    model: &'a Model,
+    region: &'a Region,
+    /// `None` for a point of which nothing is known.
+    points: Vec<Option<PointCost>>,
+    active: ActiveCells,
+    neighbours: SlidingMin,
+    /// Width of a cell. rad
+    width: f64,
+}
+
 /// The ways through one segment in one class.
 struct Ways {
     segment: usize,
     class: usize,
     rows: Vec<Row>,
+    /// The least sum at the end.
+    end: [f64; CORNERS],
 }
 
 /// The cells of one point, their costs, and for every cell the least sum up to it.
@@ -207,4 +115,99 @@ struct Row {
     cells: Vec<usize>,
     costs: Vec<[f64; CORNERS]>,
     sums: Vec<[f64; CORNERS]>,
+    /// The least of the sums.
+    least: [f64; CORNERS],
+}
+
+/// A point with its node, and how far the point is from it in radius and height (m).
+type Answer = (PointCost, [usize; 2], [f64; 2]);
+
+impl Pass<'_> {
+    /// The ways through a segment from its start; `None`, with all its cells inactive, where there is none.
+    fn forward(&mut self, segment: usize, class: PostureClass) -> Option<Ways> {
+        let span = self.model.segments[segment].clone();
+        let mut rows: Vec<Row> = Vec::with_capacity(span.len());
+        let mut end = INFINITE;
+        for point in span.clone() {
+            let row = self.row(point, class, rows.last());
+            end = row.least;
+            if end[0] == f64::INFINITY {
+                span.clone().for_each(|point| self.active.clear_all(point, class.index()));
+                return None;
+            }
+            rows.push(row);
+        }
+        Some(Ways { segment, class: class.index(), rows, end })
+    }
+
+    /// A point after the row of the one before; cells that no way leads to, or in which nothing is allowed, become inactive.
+    fn row(&mut self, point: usize, class: PostureClass, before: Option<&Row>) -> Row {
+        if let Some(before) = before {
+            let (low, high) = self.model.steps(self.region, &self.points, point, self.width);
+            self.neighbours.compute(&before.sums, -high, -low);
+        }
+        let sums = vec![INFINITE; self.active.count()];
+        let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums, least: INFINITE };
+        let answer = self.answer(point);
+        let cells: Vec<usize> = self.active.cells(point, class.index()).collect();
+        for cell in cells {
+            let reached = before.map(|_| self.neighbours.out[cell]);
+            let is_reached = reached.is_none_or(|sum| sum[0] != f64::INFINITY);
+            let Some(cost) = is_reached.then(|| self.cost(answer.as_ref(), cell, class)).flatten() else {
+                self.active.clear(point, class.index(), cell);
+                continue;
+            };
+            let sum = reached.map_or(cost, |sum| plus(&sum, &cost));
+            row.sums[cell] = sum;
+            row.cells.push(cell);
+            row.costs.push(cost);
+            min_into(&mut row.least, &sum);
+        }
+        row
+    }
+
+    /// The node that answers for a point all over the box, if there is one.
+    fn answer(&self, point: usize) -> Option<Answer> {
+        let cost = self.points[point]?;
+        let (placed, level, table) = (&cost.placed, self.active.level, &self.model.table);
+        let answers = table.answers(level, [placed.reach[0], placed.reach[1]]);
+        let (at, off) = table.nearest(level, placed.r, placed.z).filter(|_| answers)?;
+        Some((cost, at, off))
+    }
+
+    /// What a point costs at least in a cell; `None` where none of its states is allowed.
+    fn cost(&self, answer: Option<&Answer>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
+        let Some((point, at, off)) = answer else { return Some([0.0; CORNERS]) };
+        match self.model.table.node(&self.model.arm, self.active.level, *at, cell, class) {
+            Node::Empty => None,
+            Node::Unknown => Some([0.0; CORNERS]),
+            Node::Known(known) => Some(point.least(known, *off, 0.5 * self.width, self.region)),
+        }
+    }
+
+    /// From the end back: cells through which every way costs `ceiling` or more, with `others` for the other segments, become
+    /// inactive.
+    fn prune(&mut self, ways: &Ways, others: &[f64; CORNERS], ceiling: f64) {
+        let span = &self.model.segments[ways.segment];
+        let mut after = vec![INFINITE; self.active.count()];
+        for (place, row) in ways.rows.iter().enumerate().rev() {
+            let point = span.start + place;
+            let is_end = place + 1 == span.len();
+            if !is_end {
+                let (low, high) = self.model.steps(self.region, &self.points, point + 1, self.width);
+                self.neighbours.compute(&after, low, high);
+            }
+            after.fill(INFINITE);
+            for (cell, cost) in row.cells.iter().zip(&row.costs) {
+                let onward = if is_end { [0.0; CORNERS] } else { self.neighbours.out[*cell] };
+                let sum = &row.sums[*cell];
+                let through = (0..CORNERS).map(|k| sum[k] + onward[k] + others[k]).fold(f64::INFINITY, f64::min);
+                if through >= ceiling {
+                    self.active.clear(point, ways.class, *cell);
+                } else {
+                    after[*cell] = plus(&onward, cost);
+                }
+            }
+        }
+    }
 }

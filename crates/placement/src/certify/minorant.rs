@@ -69,7 +69,7 @@ pub(super) fn collect(
         Node::Empty => return true,
         Node::Unknown if finest => return false,
         Node::Known(known)
-            if finest || f64::from(known.remainder[0] + known.remainder[1]) <= COARSE * arm.typical() =>
+            if finest || f64::from(known.remainder[0] + known.remainder[1]) <= COARSE * arm.typical_compliance() =>
         {
             let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
             let place = table.place(level, at);

@@ -1,39 +1,41 @@
 //! Certificates: how far a placement is from the best possible.
 //!
 //! For an upright tool a state depends on the radius and height of the tool centre point and on the spindle's heading against
-//! its azimuth, and, by the direction of the feed against the azimuth, on one more angle. That makes bounds possible that hold
-//! for every placement of the cell, every posture scheme and every plan of beta.
+//! its azimuth ([`super::symmetry`]), and, by the direction of the feed against the azimuth, on one more angle. That makes bounds possible
+//! that hold for every placement of the cell, every posture scheme and every plan of beta.
 //!
-//! 1. `arm` is the closed form, evaluated in two number types: `number` (slopes) and `enclosure` (intervals for value,
-//!    gradient and second derivatives; `interval`, `elbow`, `conditioning`, `limits`).
-//! 2. `table` holds, node by node, an affine model of the compliance with what it leaves out, or that no state is allowed.
-//! 3. `coarse` minimises over the heading once for all placements: minorants over radius, height and direction of the feed
-//!    (`minorant`).
-//! 4. `region` is a box of placements (radius, height, yaw less azimuth), `cost` what a path point costs over it at least.
-//! 5. `bound` adds the points up by dynamic programming over cells of heading, with the rate of beta, at the corners of a box.
-//! 6. `frontier` goes through the boxes, most promising first: from below for the best placement (`best`).
-//! 7. `worst` is the same for the worst placement, from above (`above`) and with the rate of beta dropped; `relaxed` what a
-//!    placement is worth then.
+//! 1. `arm` is the closed form, evaluated in two number types: `number` (value and gradient) and `enclosure` (intervals for value,
+//!    gradient and second derivatives; `interval`, `interval_simd`, `continuation`).
+//! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder, or that no state is allowed.
+//! 3. `coarse_bounds` minimises over the heading once for all placements: minorants over radius, height and direction of the
+//!    feed (`minorant`).
+//! 4. `cell` is the cell seen along axis 1, `region` a box of placements, `cost` a bound of a path point's score over it.
+//! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
+//!    (`active_cells`, `sliding_min`), with the rate of beta, at the corners of a box.
+//! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
+//! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped; `relaxed` is
+//!    the objective of a placement then.
 
 mod active_cells;
 mod arm;
 mod best;
 mod branch_and_bound;
+mod cell;
+mod certificate;
 mod coarse_bounds;
 mod compliance_table;
-mod conditioning;
+mod continuation;
 mod cost;
-mod elbow;
 mod enclosure;
 mod interval;
 mod interval_simd;
-mod limits;
 mod lower_bound;
 mod minorant;
 mod model;
 mod number;
 mod region;
 mod relaxed;
+mod requirements;
 mod sliding_min;
 mod upper_bound;
 mod worst;
@@ -42,8 +44,11 @@ mod worst;
 mod tests;
 
 pub use best::best;
-pub use branch_and_bound::{Bound, End};
-pub use model::{Unfit, certifiable};
+pub use branch_and_bound::{Bound, Status};
+pub use certificate::{
+    BOUND_DECIMALS, Certificate, MAX_GAP_PERCENT, NoProof, OpenBox, Proof, Relaxation, certify, no_certificate,
+};
 pub use region::Region;
 pub use relaxed::relaxed_value;
+pub use requirements::certifiable;
 pub use worst::worst;

@@ -3,7 +3,7 @@
 //! The other is [`super::enclosure::Enclosure`]: intervals for value, gradient and second derivatives over a whole region.
 //! One formula serves both ([`super::arm`]).
 
-use super::elbow::{Bend, Links};
+use super::continuation::{Bend, Links};
 use super::interval_simd::{Lanes, Mask};
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -4,9 +4,10 @@
 //! radius and height of the workpiece origin, and the yaw less its azimuth.
 
 use super::number::VARIABLES;
+use serde::Serialize;
 
 /// A box of placements.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Region {
     /// Radius (m), height (m), yaw less azimuth (rad) of its middle.
     pub middle: [f64; 3],
@@ -76,7 +77,7 @@ impl Point {
         let turn_of_azimuth = 1.0 - radius * cos_azimuth / r;
         let slope_r = [cos_azimuth, -radius * sin_azimuth];
         let slope_chi = [sin_azimuth / r, radius * cos_azimuth / r];
-        // Second derivatives, each model over the box by its middle value and how far that can move.
+        // Second derivatives, each bounded over the box by its middle value and how far that can move.
         let swing = (moved / least).min(2.0);
         let sine_most = (sin_azimuth.abs() + swing).min(1.0);
         let cosine_most = (cos_azimuth.abs() + swing).min(1.0);

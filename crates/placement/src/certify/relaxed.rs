@@ -1,4 +1,4 @@
-//! What a placement is worth with the limits between neighbouring points dropped, by the ordinary evaluator.
+//! The objective of a placement without the limits between neighbouring points, by the ordinary evaluator.
 
 use crate::evaluate::reference::state;
 use crate::problem::{Placement, Problem};
@@ -19,11 +19,10 @@ const NARROWINGS: usize = 43;
 /// point. So no plan of the placement has a lower mean score. Beta is sought over a grid of one degree and then by golden
 /// section about each least value; ranges of allowed beta narrower than the grid may be missed.
 pub fn relaxed_value(problem: &Problem, placement: &Placement) -> Option<f64> {
-    let pose = [placement.x, placement.y, placement.z, placement.yaw];
     let points = problem.task.points().len();
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
-        .map(|point| PostureClass::ALL.map(|class| least(&|beta| score(problem, &pose, point, class, beta))))
+        .map(|point| PostureClass::ALL.map(|class| least(&|beta| score(problem, &placement, point, class, beta))))
         .collect();
     let mut sum = 0.0;
     for span in problem.task.segments() {
@@ -34,8 +33,8 @@ pub fn relaxed_value(problem: &Problem, placement: &Placement) -> Option<f64> {
 }
 
 /// The score of a state; infinite where it is not allowed. m
-pub(super) fn score(problem: &Problem, pose: &[f64; 4], point: usize, class: PostureClass, beta: f64) -> f64 {
-    let Ok(found) = state(problem, point, pose, beta, class.postures()[0]) else { return f64::INFINITY };
+pub(super) fn score(problem: &Problem, placement: &Placement, point: usize, class: PostureClass, beta: f64) -> f64 {
+    let Ok(found) = state(problem, point, placement, beta, class.postures()[0]) else { return f64::INFINITY };
     let joints = problem.robot.joints();
     let within = |j: usize| Range::of(&joints[j]).nearest(found.joints[j]).1 == 0.0;
     let widest5 = joints[4].min.abs().max(joints[4].max.abs()) + ANGLE_ROUNDING;

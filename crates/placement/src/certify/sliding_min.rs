@@ -3,7 +3,7 @@
 use super::cost::CORNERS;
 
 /// No way.
-pub(super) const NOTHING: [f64; CORNERS] = [f64::INFINITY; CORNERS];
+pub(super) const INFINITE: [f64; CORNERS] = [f64::INFINITY; CORNERS];
 
 /// Corner by corner the sum.
 #[inline]
@@ -13,7 +13,7 @@ pub(super) fn plus(a: &[f64; CORNERS], b: &[f64; CORNERS]) -> [f64; CORNERS] {
 
 /// Corner by corner the lesser, into the first.
 #[inline]
-pub(super) fn least(a: &mut [f64; CORNERS], b: &[f64; CORNERS]) {
+pub(super) fn min_into(a: &mut [f64; CORNERS], b: &[f64; CORNERS]) {
     for k in 0..CORNERS {
         a[k] = if b[k] < a[k] { b[k] } else { a[k] };
     }
@@ -27,15 +27,15 @@ pub(super) struct SlidingMin {
 
 impl SlidingMin {
     pub fn new(count: usize) -> Self {
-        Self { out: vec![NOTHING; count], scratch: vec![NOTHING; count] }
+        Self { out: vec![INFINITE; count], scratch: vec![INFINITE; count] }
     }
 
     /// Into `out`: for each cell k the least of those from k + low to k + high. By doubling: least of 1, 2, 4 ... neighbours.
-    pub fn least(&mut self, values: &[[f64; CORNERS]], low: isize, high: isize) {
+    pub fn compute(&mut self, values: &[[f64; CORNERS]], low: isize, high: isize) {
         let count = values.len();
         let width = ((high - low + 1).max(0) as usize).min(count);
         if width == 0 {
-            self.out.fill(NOTHING);
+            self.out.fill(INFINITE);
             return;
         }
         self.scratch.copy_from_slice(values);
@@ -43,7 +43,7 @@ impl SlidingMin {
         while 2 * size <= width {
             for k in 0..count {
                 let mut best = self.scratch[k];
-                least(&mut best, &self.scratch[(k + size) % count]);
+                min_into(&mut best, &self.scratch[(k + size) % count]);
                 self.out[k] = best;
             }
             std::mem::swap(&mut self.out, &mut self.scratch);
@@ -53,7 +53,7 @@ impl SlidingMin {
         for k in 0..count {
             let from = (k + shift) % count;
             let mut best = self.scratch[from];
-            least(&mut best, &self.scratch[(from + width - size) % count]);
+            min_into(&mut best, &self.scratch[(from + width - size) % count]);
             self.out[k] = best;
         }
     }

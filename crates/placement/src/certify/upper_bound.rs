@@ -1,11 +1,11 @@
-//! An upper bound of what placements of a box are worth, limits between neighbouring points dropped.
+//! An upper bound of the objective over a box of placements, without the limits between neighbouring points.
 //!
-//! What is model is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
+//! What is bounded is the relaxed value of [`super::relaxed_value`]: the mean over the points of the least score over the heading, in
 //! the best posture class of each segment. For one box of placements and one posture class of a segment
 //! - every point has a cell of heading that is surely allowed all over the box: the sum of what these cost bounds the class, and
 //!   the best of such classes the segment;
 //! - some point has no cell that may be allowed: the class is out, and where all are out the box holds no placement;
-//! - else the class may be allowed in part of the box, and what it is worth there is at most the sum of the greatest costs of
+//! - else the class may be allowed in part of the box, and its sum there is at most that of the greatest costs of
 //!   cells that may be allowed. Only where no class is of the first kind does this count, and then the greatest over classes.
 //!
 //! All these are convex functions of the placement, so the greatest value is at a corner of the box. Cells of heading are
@@ -13,25 +13,25 @@
 
 use super::compliance_table::Node;
 use super::cost::{CORNERS, PointCost};
-use super::lower_bound::Model;
+use super::model::Model;
 use super::region::Region;
 use super::sliding_min::plus;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
-/// What is cheap at a glance, as a share of the mean that is to be stayed below.
+/// What a point may cost in the first, quick bound, as a share of the mean that is to be stayed below.
 const CHEAP: f64 = 0.8;
-/// On levels below, all cells are looked at where those near the known ones are not enough.
+/// Below this level, all cells are evaluated where those near the known ones are not enough.
 const FINE: usize = 2;
-/// Cells looked at to either side of the best one.
+/// Cells evaluated to either side of the best one.
 const NEIGHBOURS: usize = 3;
 /// No cell known.
 const NONE: u16 = u16::MAX;
-/// Nothing known of a sum.
+/// A sum of which nothing is known, and the greatest of no sums.
 const ANYTHING: [f64; CORNERS] = [f64::INFINITY; CORNERS];
 const NOTHING: [f64; CORNERS] = [f64::NEG_INFINITY; CORNERS];
 
-/// What is known of a box and goes on to its halves.
+/// What is known of a box and inherited by its halves.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Inherited {
     /// Level of the table.
@@ -76,7 +76,7 @@ impl<'a> BoxBounds<'a> {
         Some(Self { model, region, points: model.point_costs(region), level })
     }
 
-    /// Looks at cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
+    /// Bounds cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
     fn bound_cells(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> CellBounds {
         let Model { table, arm, .. } = self.model;
         let mut bounds = CellBounds { best: None, most: NOTHING };
@@ -112,8 +112,8 @@ impl<'a> BoxBounds<'a> {
         bounds
     }
 
-    /// The ways through a segment by cells near those known.
-    fn known_ways(&self, segment: usize, before: &Inherited, seen: &mut Inherited) -> Vec<ClassBound> {
+    /// The bounds of a segment, class by class, from cells near those known.
+    fn class_bounds(&self, segment: usize, before: &Inherited, seen: &mut Inherited) -> Vec<ClassBound> {
         let count = self.model.table.headings(self.level);
         let finer = self.level.saturating_sub(before.level);
         let coarser = before.level.saturating_sub(self.level);
@@ -146,7 +146,7 @@ impl<'a> BoxBounds<'a> {
 
     /// A sum that is enough for most boxes: of each point the first cell found that is cheap, in the first class that has one for
     /// each point; infinite where that is not enough. m
-    pub fn glance(&self, ceiling: f64) -> f64 {
+    pub fn quick_bound(&self, ceiling: f64) -> f64 {
         let count = self.model.table.headings(self.level);
         let cheap = CHEAP * ceiling / self.points.len() as f64;
         let mut totals = [0.0; CORNERS];
@@ -171,7 +171,7 @@ impl<'a> BoxBounds<'a> {
         greatest(&totals)
     }
 
-    /// Looks at all cells of the points missing; false for a class that is allowed nowhere in the box.
+    /// Bounds all cells of the points missing; false for a class that is allowed nowhere in the box.
     fn complete(&self, segment: usize, way: &mut ClassBound, seen: &mut Inherited) -> bool {
         let count = self.model.table.headings(self.level);
         for point in std::mem::take(&mut way.missing) {
@@ -200,7 +200,7 @@ impl<'a> BoxBounds<'a> {
         let mut seen = before.clone();
         seen.level = self.level;
         let segments = 0..self.model.segments.len();
-        let mut all: Vec<Vec<ClassBound>> = segments.map(|s| self.known_ways(s, before, &mut seen)).collect();
+        let mut all: Vec<Vec<ClassBound>> = segments.map(|s| self.class_bounds(s, before, &mut seen)).collect();
         let sure = |ways: &[ClassBound]| total(ways.iter().filter(|w| w.missing.is_empty()));
         let totals = all.iter().fold([0.0; CORNERS], |sum, ways| plus(&sum, &sure(ways)));
         if greatest(&totals) <= ceiling {
@@ -225,7 +225,7 @@ impl<'a> BoxBounds<'a> {
     }
 }
 
-/// What was found looking at cells.
+/// Bounds of one point and class over some cells.
 struct CellBounds {
     /// The best surely allowed cell with what it costs.
     best: Option<(usize, [f64; CORNERS])>,

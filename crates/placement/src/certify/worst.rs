@@ -1,15 +1,17 @@
-//! The worst placement: an upper bound of what placements are worth, limits between neighbouring points dropped.
+//! The worst placement: an upper bound of the objective without the limits between neighbouring points.
 //!
-//! Dropping limits lowers what a placement is worth, so this is no upper bound of values with the rate of beta or joint steps.
+//! Dropping limits lowers the objective of a placement, so this is no upper bound of values with the rate of beta or joint steps.
 
 use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
+use super::cell::whole;
 use super::compliance_table::{ComplianceTable, Steps};
-use super::lower_bound::Model;
-use super::model::{Unfit, certifiable, prepared};
+use super::model::Model;
 use super::region::Region;
+use super::requirements::certifiable;
 use super::upper_bound::{BoxBounds, Inherited};
 use crate::problem::Problem;
 use crate::sense::Sense;
+use crate::symmetry::Unsupported;
 use std::sync::Arc;
 use stead_numerics::monitor::Monitor;
 
@@ -19,29 +21,33 @@ const LEVELS: usize = 5;
 /// Boxes to begin with are cut to what tables can answer for, but no smaller than this, in terms of those of lower bounds.
 const SMALL: f64 = 0.25;
 
-/// A box, and what has been seen of it: `None` where it was not looked at yet.
-type Looked = Open<Option<Arc<Inherited>>>;
+/// A box, and what its halves inherit: `None` where it was not bounded in detail yet.
+type WorstBox = Open<Option<Arc<Inherited>>>;
 
-/// Bounds from above what placements of a problem are worth with the limits between neighbouring points dropped, until none can
+/// Bounds the objective of all placements of a problem from above, without the limits between neighbouring points, until none can
 /// be worse than `value` ([`super::relaxed_value`] of the worst placement known, m) by more than `gap` (relative).
 ///
 /// The rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest deflection of a point are relaxed, both in
-/// which placements count and in what they are worth: see [`super::relaxed_value`]. The result does not depend on the number of
+/// which placements are feasible and in their objective: see [`super::relaxed_value`]. The result does not depend on the number of
 /// threads.
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unfit> {
+pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unsupported> {
     certifiable(problem)?;
-    let compliances = problem.robot.constant_compliances().ok_or(Unfit::VaryingCompliance)?;
-    let (model, whole) = prepared(problem, &compliances, false);
-    let (extent, _) = model.table.grid();
-    let model = Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model };
+    let model = without_rate(problem);
     let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len() };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
-    let start = first(&model, whole).into_iter().map(unknown).collect();
+    let start = first(&model, whole(problem)).into_iter().map(unknown).collect();
     Ok(search.explore(start, 0, monitor, |open| parts(&model, open, ceiling)))
+}
+
+/// What is bounded from above: without the rate of beta, and with tables of one level more.
+fn without_rate(problem: &Problem) -> Model {
+    let model = Model::new(problem, false);
+    let (extent, _) = model.table.grid();
+    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
 }
 
 /// The boxes to begin with, together all of the cell.
@@ -57,17 +63,17 @@ fn first(model: &Model, whole: Region) -> Vec<Region> {
     out
 }
 
-/// A box not looked at yet with its bound, or the halves of one with theirs; `None` where it is not to be cut further.
-fn parts(model: &Model, open: &Looked, ceiling: f64) -> Option<Vec<Looked>> {
+/// A box not bounded in detail yet with its bound, or the halves of one with theirs; `None` where it is not to be cut further.
+fn parts(model: &Model, open: &WorstBox, ceiling: f64) -> Option<Vec<WorstBox>> {
     let (parts, seen) = match &open.known {
         None => (vec![open.region], Arc::new(Inherited::nothing(model))),
         Some(seen) => (halves(&open.region)?.to_vec(), Arc::clone(seen)),
     };
     let bound = |region: Region| match BoxBounds::new(model, &region) {
         Some(over) => {
-            let glance = if open.known.is_none() { over.glance(ceiling) } else { f64::INFINITY };
-            if glance <= ceiling {
-                return Open { bound: glance, region, known: None };
+            let quick = if open.known.is_none() { over.quick_bound(ceiling) } else { f64::INFINITY };
+            if quick <= ceiling {
+                return Open { bound: quick, region, known: None };
             }
             let (sum, seen) = over.upper_bound(&seen, ceiling);
             Open { bound: sum.min(open.bound), region, known: Some(Arc::new(seen)) }

@@ -3,9 +3,9 @@
 //! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
 //! batch evaluator of [`super::evaluate::batch`], which is tested against this one.
 
-use crate::problem::{Problem, base_from_workpiece};
+use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::Vector3;
-use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, cast, conditioning::inverse_condition};
+use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, conditioning::inverse_condition};
 use stead_model::stiffness::displacement;
 use stead_numerics::scalar::Scalar;
 
@@ -39,7 +39,7 @@ impl<T: Scalar> State<T> {
     }
 }
 
-/// Evaluates path point `point` for a workpiece at `pose` (x, y, z in m, yaw in rad), free angle `beta` (rad) and a
+/// Evaluates path point `point` for a workpiece at a placement, free angle `beta` (rad) and a
 /// posture. Joint limits are not looked at.
 ///
 /// # Errors
@@ -47,25 +47,22 @@ impl<T: Scalar> State<T> {
 pub fn state<T: Scalar>(
     problem: &Problem,
     point: usize,
-    pose: &[T; 4],
+    placement: &Placement<T>,
     beta: T,
     posture: Posture,
 ) -> Result<State<T>, Unreachable> {
-    let joints = problem.robot.inverse(&problem.base_from_flange(point, pose, beta), posture)?;
+    let joints = problem.robot.inverse(&problem.base_from_flange(point, placement, beta), posture)?;
     let frames = Frames::new(&problem.robot, &joints);
-    let workpiece = base_from_workpiece(pose);
-    let path_point = &problem.task.points()[point];
-    let wrench = &problem.task.wrenches()[point];
-    let tip = workpiece.point(&cast(&path_point.position));
-    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
-    let force = workpiece.rotation * cast(&wrench.force);
-    let moment = workpiece.rotation * cast(&wrench.moment);
+    let PlacedPoint { tip, axes, force, moment } = problem.placed(point, placement);
     let compliances = problem.robot.compliances_at(&joints);
     let deflection = displacement(&frames, &tip, &compliances, &force, &moment).linear;
     let normal = axes.column(1).into_owned();
     let uncertainty = if problem.criterion.force_uncertainty > 0.0 {
         let response = displacement(&frames, &tip, &compliances, &normal, &Vector3::zeros()).linear;
-        response.dot(&response).sqrt().scale(problem.criterion.force_uncertainty * wrench.force.norm())
+        response
+            .dot(&response)
+            .sqrt()
+            .scale(problem.criterion.force_uncertainty * problem.task.wrenches()[point].force.norm())
     } else {
         T::zero()
     };
@@ -91,19 +88,19 @@ pub fn state<T: Scalar>(
 }
 
 /// Derivatives of the normal part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
-/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `pose`. m per SI unit of each
+/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `placement`. m per SI unit of each
 /// parameter; empty where no uncertainty is known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
-pub fn normal_part_by_parameters<T: Scalar>(problem: &Problem, point: usize, pose: &[T; 4], joints: &[T; 6]) -> Vec<T> {
+pub fn normal_part_by_parameters<T: Scalar>(
+    problem: &Problem,
+    point: usize,
+    placement: &Placement<T>,
+    joints: &[T; 6],
+) -> Vec<T> {
     let frames = Frames::new(&problem.robot, joints);
-    let workpiece = base_from_workpiece(pose);
-    let path_point = &problem.task.points()[point];
-    let wrench = &problem.task.wrenches()[point];
-    let tip = workpiece.point(&cast(&path_point.position));
-    let axes = workpiece.rotation * path_point.workpiece_from_point().map(T::constant);
+    let PlacedPoint { tip, axes, force, moment } = problem.placed(point, placement);
     let normal = axes.column(1).into_owned();
-    let (force, moment) = (workpiece.rotation * cast(&wrench.force), workpiece.rotation * cast(&wrench.moment));
     let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
     by_parameters(&problem.robot, joints, &parts)
 }
@@ -141,8 +138,8 @@ mod tests {
     use stead_model::robot::angles::yaw_from_q4;
     use stead_numerics::scalar::Dual;
 
-    fn published_optimum() -> [f64; 4] {
-        [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+    fn published_optimum() -> Placement {
+        [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
     }
 
     #[test]
@@ -169,8 +166,8 @@ mod tests {
     fn uncertainty_is_the_worst_case_over_force_errors() {
         let mut problem = five_segments();
         problem.criterion.force_uncertainty = 0.1;
-        let (pose, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
-        let robust = state(&problem, 60, &pose, beta, posture).unwrap();
+        let (placement, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
+        let robust = state(&problem, 60, &placement, beta, posture).unwrap();
         let size = 0.1 * problem.task.wrenches()[60].force.norm();
         let mut worst = 0.0_f64;
         for k in 0..2000 {
@@ -183,7 +180,7 @@ mod tests {
             wrenches[60].force += error;
             let mut changed = problem.clone();
             changed.task = stead_model::task::Task::new(problem.task.path().clone(), wrenches).unwrap();
-            let c_i = state(&changed, 60, &pose, beta, posture).unwrap().normal_part.abs();
+            let c_i = state(&changed, 60, &placement, beta, posture).unwrap().normal_part.abs();
             assert!(c_i <= robust.score() * (1.0 + 1e-12));
             worst = worst.max(c_i);
         }
@@ -194,11 +191,11 @@ mod tests {
         #[test]
         fn deflection_agrees_with_the_matrix_inverse(beta in -3.0..3.0_f64, point in 0..105_usize) {
             let problem = five_segments();
-            let pose = published_optimum();
+            let placement = published_optimum();
             for posture in Posture::ALL {
-                let Ok(found) = state(&problem, point, &pose, beta, posture) else { continue };
+                let Ok(found) = state(&problem, point, &placement, beta, posture) else { continue };
                 let frames = Frames::new(&problem.robot, &found.joints);
-                let workpiece = base_from_workpiece(&pose);
+                let workpiece = placement.base_from_workpiece();
                 let tip = workpiece.point(&problem.task.points()[point].position);
                 prop_assert!((frames.base_from_flange.point(&problem.spindle.flange_from_tool.translation) - tip).norm() < 1e-9);
                 let jacobian = frames.jacobian(&tip);
@@ -219,12 +216,12 @@ mod tests {
         ) {
             let mut problem = if is_compensated { five_segments_compensated() } else { five_segments() };
             problem.criterion.force_uncertainty = 0.2;
-            let pose = published_optimum();
+            let placement = published_optimum();
             let at = |shift: [f64; 5]| {
-                let moved = std::array::from_fn(|k| pose[k] + shift[k]);
+                let moved = Placement::from(std::array::from_fn(|k| placement[k] + shift[k]));
                 state(&problem, point, &moved, beta + shift[4], Posture::ALL[2])
             };
-            let variables = std::array::from_fn(|k| Dual::<5>::variable(pose[k], k));
+            let variables = Placement::from(std::array::from_fn(|k| Dual::<5>::variable(placement[k], k)));
             let Ok(exact) = state(&problem, point, &variables, Dual::variable(beta, 4), Posture::ALL[2]) else { return Ok(()) };
             prop_assume!(exact.inverse_condition.value > 0.05);
             for k in 0..5 {

@@ -1,19 +1,19 @@
-//! How far a table is from the ordinary evaluator, measured at states drawn all over the cell.
+//! The error of a lookup table against the ordinary evaluator, at random states all over the cell.
 
 use super::{BetaGrid, LookupTable};
 use crate::feasibility::explain;
-use crate::problem::Redundancy;
+use crate::problem::{Placement, Redundancy};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use stead_model::robot::{PostureClass, angles::wrap};
 
-/// Placements and path points that are looked at.
+/// Random placements, each with a path point.
 const DRAWN: u64 = 96;
 /// Values of beta at each.
 const BETAS: usize = 12;
 
-/// What was found.
+/// The error of a lookup table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
     /// States compared: path point, beta, posture class.
@@ -61,29 +61,30 @@ impl LookupTable<'_> {
         let mut random = ChaCha8Rng::seed_from_u64(0);
         random.set_stream(draw);
         let [x, y, z] = problem.cell.position;
-        let pose = [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width());
+        let placement: Placement =
+            [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width()).into();
         let point = random.random_range(0..problem.task.points().len());
         let redundancy = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
         let grid = BetaGrid { count: redundancy.beta_count, reaches: Vec::new() };
         let mut workspace = self.workspace(&grid);
-        let evaluations: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
-            let polar = self.polar_point(&self.place(&pose), point)?;
+        let interpolated: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
+            let polar = self.polar_point(&self.place(&placement), point)?;
             let mut scores = vec![f32::INFINITY; grid.count];
-            self.interpolate(&polar, class, &grid, &mut workspace.rows, &mut scores).then_some(scores)
+            self.interpolate(&polar, class, &grid, &mut workspace.scratch, &mut scores).then_some(scores)
         });
         let mut sums = Sums::default();
         for _ in 0..BETAS {
             let k = random.random_range(0..grid.count);
-            let all = explain(problem, &pose, point, wrap(redundancy.beta(k)));
+            let all = explain(problem, &placement, point, wrap(redundancy.beta(k)));
             for class in PostureClass::ALL {
                 let mut postures = class.postures().into_iter().map(|posture| &all[usize::from(posture.number()) - 1]);
                 let ordinary = postures.find(|e| e.is_allowed()).and_then(|e| e.state.as_ref()).map(|s| s.score());
-                let looked =
-                    evaluations[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
-                sums.states += usize::from(ordinary.is_some() || looked.is_some());
-                match (ordinary, looked) {
-                    (Some(ordinary), Some(looked)) => {
-                        let error = (looked - ordinary).abs();
+                let found =
+                    interpolated[class.index()].as_ref().map(|scores| f64::from(scores[k])).filter(|s| s.is_finite());
+                sums.states += usize::from(ordinary.is_some() || found.is_some());
+                match (ordinary, found) {
+                    (Some(ordinary), Some(found)) => {
+                        let error = (found - ordinary).abs();
                         sums.scores += ordinary * ordinary;
                         sums.errors += error * error;
                         sums.largest = sums.largest.max(error);

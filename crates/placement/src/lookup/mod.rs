@@ -1,25 +1,26 @@
-//! A table for upright tools, so that a look at a placement costs a tenth of planning it.
+//! A lookup table of the scores of upright tools: candidates are scored by interpolating it, at a tenth of the cost of planning
+//! them; only survivors are planned exactly.
 //!
-//! With the tool axis along axis 1, a state depends on four things alone: the tool centre point's radius r and height z in
-//! the root frame, the heading of the spindle against the point's azimuth, and the posture class. What the arm does there is
-//! sampled once per robot and spindle, by the ordinary geometry (`sample`), and interpolated for every placement (`interpolate`);
-//! the best way through the scores is found by the planner's rules, but for joint steps and turns (`objective`); `coordinate_search` climbs
-//! on it. Joint 1 needs no table. With n the wall normal and f the force, both as (radial, tangential, up), and the in-plane
-//! compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
+//! With the tool axis along axis 1 ([`super::symmetry`]), a state depends on four things alone: the tool centre point's radius r
+//! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
+//! compliance there is sampled once per robot and spindle, by the ordinary geometry (`sample`, over the grid of `shape`). A placement
+//! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
+//! joint steps and turns (`objective`); `coordinate_search` descends on that. With n the wall normal and f the force, both as (radial,
+//! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
 //!
 //! ```text
 //! n . K^-1 f = m n.f + d1 (n_r f_r - n_t f_t) + d2 (n_r f_t + n_t f_r)     joints 2 to 6 in the plane
 //!            + f_z (c_rz n_r + c_tz n_t)                                   and out of it
-//!            + r^2 k_1 n_t f_t                                             joint 1, of compliance k_1
+//!            + r^2 k_1 n_t f_t                                             joint 1, of compliance k_1: not in the table
 //! ```
 //!
-//! A table is an aid to the search. What it finds is looked at again by the ordinary planner before it goes on, and
-//! [`LookupTable::accuracy`] tells how far the two are apart.
+//! [`LookupTable::accuracy`] measures the error of the interpolation.
 
 mod accuracy;
 pub mod coordinate_search;
 mod interpolate;
 mod objective;
+mod polar;
 mod sample;
 mod shape;
 
@@ -27,63 +28,18 @@ pub use accuracy::Accuracy;
 pub use objective::Workspace;
 pub use shape::{Axis, Shape};
 
+use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
-use interpolate::WorkpiecePoint;
-use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::{Compliance, turns::Range};
-
-/// Why a problem cannot be searched through a table.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Unsuited {
-    /// Axis 1 is not vertical, so that states depend on the azimuth.
-    #[error("axis 1 of the robot is not vertical")]
-    BaseNotVertical,
-    /// A tool axis that is not vertical, or that is upside down against the first one.
-    #[error(
-        "the tool is not upright in the same sense at every point: at point {point} it is not as at the first, vertical one"
-    )]
-    Tilted {
-        /// The first such path point.
-        point: usize,
-    },
-    /// A moment acts on the tool.
-    #[error("a moment acts on the tool at point {point}")]
-    Moment {
-        /// The first such path point.
-        point: usize,
-    },
-    /// The compliance of joint 1 changes with its angle, or that of a wrist joint with the flip.
-    #[error("the compliance of joint {joint} changes with its angle")]
-    Law {
-        /// The joint, from 1.
-        joint: usize,
-    },
-    /// Scores count how well the compliances are known.
-    #[error("scores count the uncertainty of the compliances")]
-    Uncertain,
-    /// The planner does not find what the table promises: found out only after a search through it.
-    #[error("what it promised was not to be had within the steps and turns of the joints")]
-    Misleading,
-    /// The cell is so large that the table does not fit in memory.
-    #[error(
-        "a table for this cell would take {:.1} GB, and at most {:.1} GB are allowed", *bytes as f64 / 1e9, *most as f64 / 1e9
-    )]
-    TooLarge {
-        /// What it would take.
-        bytes: u64,
-        /// What it may take.
-        most: u64,
-    },
-}
+use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+use nalgebra::Matrix3;
+use polar::WorkpiecePoint;
+use stead_model::robot::turns::Range;
 
 /// Largest size of a table. Bytes
 pub const MAX_BYTES: u64 = 1 << 30;
 
-/// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
-const UPRIGHT: f64 = 1e-9;
-
-/// What an arm with an upright tool does everywhere in a cell.
+/// The compliance of an arm with an upright tool, and the room left to its limits, everywhere in a cell.
 #[derive(Debug, Clone)]
 pub struct LookupTable<'a> {
     problem: &'a Problem,
@@ -100,7 +56,7 @@ pub struct LookupTable<'a> {
     first_compliance: f64,
 }
 
-/// A grid of beta to look along, with what the rate of beta allows between neighbouring points.
+/// A grid of beta, with the steps that the rate of beta allows between neighbouring points.
 #[derive(Debug, Clone)]
 pub struct BetaGrid {
     /// Number of grid values.
@@ -124,37 +80,28 @@ impl BetaGrid {
 }
 
 impl<'a> LookupTable<'a> {
-    /// Whether a problem can be searched through a table, and through one of what shape.
+    /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
     ///
     /// # Errors
-    /// [`Unsuited`], with the reason.
-    pub fn shape_for(problem: &Problem) -> Result<Shape, Unsuited> {
-        sense(problem)?;
-        let joints = problem.robot.joints();
-        let is_law = |j: usize| !matches!(joints[j].compliance, Compliance::Constant(_));
-        if let Some(joint) = [0, 3, 4, 5].into_iter().find(|j| is_law(*j)) {
-            return Err(Unsuited::Law { joint: joint + 1 });
-        }
-        if let Some(point) = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0) {
-            return Err(Unsuited::Moment { point });
-        }
-        if problem.criterion.confidence > 0.0 && problem.robot.uncertainty().is_some() {
-            return Err(Unsuited::Uncertain);
-        }
+    /// [`Unsupported`], with the reason.
+    pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
+        Upright::of(problem)?;
+        require_constant(problem, &[0, 3, 4, 5])?;
+        require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
-        let shape = Shape::new(problem, !is_flat, !Range::of(&joints[0]).has_turns());
+        let shape = Shape::new(problem, !is_flat, !Range::of(&problem.robot.joints()[0]).has_turns());
         let bytes = shape.bytes();
-        if bytes > MAX_BYTES { Err(Unsuited::TooLarge { bytes, most: MAX_BYTES }) } else { Ok(shape) }
+        if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(shape) }
     }
 
     /// Samples the table of a problem.
     ///
     /// # Errors
-    /// [`Unsuited`], with the reason.
-    pub fn new(problem: &'a Problem) -> Result<Self, Unsuited> {
+    /// [`Unsupported`], with the reason.
+    pub fn new(problem: &'a Problem) -> Result<Self, Unsupported> {
         let shape = Self::shape_for(problem)?;
-        let sense = sense(problem)?;
+        let sense = Upright::of(problem)?.sense;
         let (data, alive) = sample::sample(problem, &shape, sense);
         // Exactly upright, so that a level path is level to the last bit.
         let r = problem.robot.geometry().base_from_root.transpose();
@@ -164,7 +111,7 @@ impl<'a> LookupTable<'a> {
             shape,
             data,
             alive,
-            points: interpolate::points(problem),
+            points: polar::points(problem),
             root_from_base,
             sense,
             first_compliance: problem.robot.compliances_at(&[0.0; 6])[0],
@@ -176,25 +123,18 @@ impl<'a> LookupTable<'a> {
         &self.shape
     }
 
+    /// The constraints that an objective by the table leaves out: only the planner evaluates them.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
+    }
+
     /// The problem it is for.
     pub fn problem(&self) -> &'a Problem {
         self.problem
     }
-}
-
-/// +1 where the tool axis (from the workpiece to the robot) is along axis 1 at every point, -1 where it is against it.
-fn sense(problem: &Problem) -> Result<f64, Unsuited> {
-    let up = problem.robot.geometry().base_from_root.transpose() * Vector3::z();
-    let is_vertical = |v: &Vector3<f64>| libm::hypot(v.x, v.y) < UPRIGHT;
-    if !is_vertical(&up) {
-        return Err(Unsuited::BaseNotVertical);
-    }
-    let points = problem.task.points();
-    let upside = points[0].axis.z.signum();
-    if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis) || p.axis.z.signum() != upside) {
-        return Err(Unsuited::Tilted { point });
-    }
-    Ok(upside * up.z.signum())
 }
 
 #[cfg(test)]

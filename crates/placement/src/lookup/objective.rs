@@ -1,17 +1,19 @@
-//! What a placement is worth by the table: dynamic programming over its scores.
+//! The objective of a placement by the lookup table: dynamic programming over interpolated scores.
 //!
 //! The rules are those of [`crate::redundancy::band`], but for the steps and turns of the joints.
 
-use super::interpolate::{PlacedPath, PolarPoint, Rows};
+use super::interpolate::Scratch;
+use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
-use crate::redundancy::Objective;
+use crate::candidate::Objective;
+use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    pub(super) rows: Rows,
+    pub(super) scratch: Scratch,
     scores: Vec<f32>,
     /// Smallest sums of scores so far, over beta.
     costs: Vec<f32>,
@@ -21,11 +23,11 @@ pub struct Workspace {
 }
 
 impl LookupTable<'_> {
-    /// Space for one thread to look along a grid of beta.
+    /// Scratch space for one thread and one grid of beta.
     pub fn workspace(&self, grid: &BetaGrid) -> Workspace {
         let row = || vec![0.0; grid.count];
         Workspace {
-            rows: Rows::new(self, grid),
+            scratch: Scratch::new(&self.shape, grid),
             scores: row(),
             costs: row(),
             windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
@@ -33,16 +35,16 @@ impl LookupTable<'_> {
         }
     }
 
-    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best plan on a grid of beta, with the
+    /// The mean score of the workpiece at a placement under the best plan on a grid of beta, with the
     /// posture scheme found exactly or given (one posture per segment), to the accuracy of the table.
     pub fn objective(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         grid: &BetaGrid,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
-        let placed = self.place(pose);
+        let placed = self.place(placement);
         let mut sum = 0.0;
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
@@ -61,12 +63,13 @@ impl LookupTable<'_> {
                 sum += best;
                 continue;
             }
-            let Workspace { rows, scores, .. } = workspace;
+            let Workspace { scratch, scores, .. } = workspace;
             let is_blocked = |point: &usize| {
                 let polar = self.polar_point(&placed, *point);
                 let mut classes = (0..4).filter(|class| asked(*class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
-                    self.interpolate(polar, class, grid, rows, scores) && scores.iter().any(|score| score.is_finite())
+                    self.interpolate(polar, class, grid, scratch, scores)
+                        && scores.iter().any(|score| score.is_finite())
                 };
                 polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
             };
@@ -93,11 +96,11 @@ impl LookupTable<'_> {
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
-        let Workspace { rows, scores, costs, windows, .. } = workspace;
+        let Workspace { scratch, scores, costs, windows, .. } = workspace;
         // Costs are relative to this, so that long sums keep their digits.
         let mut base = 0.0;
         for (place, point) in span.enumerate() {
-            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, rows, scores) {
+            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, scratch, scores) {
                 return None;
             }
             if place == 0 {

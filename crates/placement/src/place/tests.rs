@@ -1,7 +1,7 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
-use super::super::lookup::Unsuited;
 use super::super::settings::{PostureSearch, Tables};
+use super::super::symmetry::Unsupported;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
 
@@ -59,7 +59,7 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     let mut wrenches = tilted.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
     tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsuited::Moment { point: 3 })));
+    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsupported::Moment { point: 3 })));
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn a_search_notices_that_its_table_misleads() {
     let misled = |table: Option<&LookupTable<'_>>| {
         let found = search::search(&Evaluator::new(&planner, table), &small(), Sense::Min, &Monitor::silent());
         assert_eq!(found.basins[0].objective.mean(), {
-            let (pose, scheme) = (&found.basins[0].pose, found.basins[0].scheme.as_deref());
-            planner.objective(pose, Sense::Min, scheme, &mut planner.workspace()).mean()
+            let (placement, scheme) = (&found.basins[0].placement, found.basins[0].scheme.as_deref());
+            planner.objective(placement, Sense::Min, scheme, &mut planner.workspace()).mean()
         });
         found.misled
     };
@@ -97,9 +97,9 @@ fn stopping_early_still_returns_a_result() {
 }
 
 /// Mean of |normal part| over a plan, with other compliances.
-fn mean_with(problem: &Problem, pose: &[f64; 4], plan: &Plan, compliances: [f64; 6]) -> f64 {
+fn mean_with(problem: &Problem, placement: &Placement, plan: &Plan, compliances: [f64; 6]) -> f64 {
     let problem = Problem { robot: problem.robot.with_compliances(compliances).unwrap(), ..problem.clone() };
-    let normal_part = |p: &PlanPoint| state(&problem, p.point, pose, p.beta, p.posture).unwrap().normal_part;
+    let normal_part = |p: &PlanPoint| state(&problem, p.point, placement, p.beta, p.posture).unwrap().normal_part;
     plan.points.iter().map(|p| normal_part(p).abs()).sum::<f64>() / plan.points.len() as f64
 }
 
@@ -115,8 +115,8 @@ fn the_mean_errs_as_all_its_points_together() {
         let h = 1e-4;
         let changes = problem.robot.uncertainty().unwrap().directions().iter().map(|direction| {
             let at = |h: f64| std::array::from_fn(|j| nominal[j] + h * direction[j]);
-            let pose = [2.2e-3, -1.6435, -0.5564, yaw];
-            (mean_with(&problem, &pose, plan, at(h)) - mean_with(&problem, &pose, plan, at(-h))) / (2.0 * h)
+            let placement = Placement::from([2.2e-3, -1.6435, -0.5564, yaw]);
+            (mean_with(&problem, &placement, plan, at(h)) - mean_with(&problem, &placement, plan, at(-h))) / (2.0 * h)
         });
         let expected = libm::sqrt(changes.map(|change| change * change).sum());
         let found = plan.mean_deviation.unwrap();

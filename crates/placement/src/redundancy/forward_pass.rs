@@ -8,7 +8,7 @@
 use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
 use super::transition::{JointStep, Step, advance, begin};
 use super::{Planner, Sense, Workspace};
-use crate::problem::MAX_JOINT_STEP;
+use crate::problem::{MAX_JOINT_STEP, Placement};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
 
@@ -91,12 +91,12 @@ impl Record {
     }
 }
 
-/// What is planned in a pass: for the workpiece at `pose`, one segment.
+/// What is planned in a pass: for the workpiece at `placement`, one segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pass<'p> {
     pub evaluator: &'p BatchEvaluator<'p>,
     pub span: &'p Span<usize>,
-    pub pose: &'p [f64; 4],
+    pub placement: &'p Placement,
     pub sense: Sense,
     /// Whether steps of beta are saved up between points too close for one.
     pub is_accumulated: bool,
@@ -137,7 +137,7 @@ impl Planner<'_> {
         let Workspace { before, now, record } = workspace;
         record.costs.clear();
         for (place, point) in pass.span.clone().enumerate() {
-            pass.evaluator.evaluate_classes(point, pass.pose, asked, now);
+            pass.evaluator.evaluate_classes(point, pass.placement, asked, now);
             if PostureClass::ALL.iter().all(|class| !now.is_alive(*class)) {
                 forward_pass.blocked.push(point);
             }
@@ -207,7 +207,7 @@ impl Planner<'_> {
         let last = (first + record.block).min(pass.span.len() - 1);
         for place in first..=last {
             let point = pass.span.start + place;
-            pass.evaluator.evaluate_classes(point, pass.pose, asked, now);
+            pass.evaluator.evaluate_classes(point, pass.placement, asked, now);
             if place == first {
                 let (pad, count) = (now.pad(), now.count());
                 now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));

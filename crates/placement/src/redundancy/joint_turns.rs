@@ -1,8 +1,9 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
-use super::super::evaluate::reference;
-use super::super::problem::Problem;
-use super::{STEP_ROUNDING, SegmentPlan};
+use super::SegmentPlan;
+use crate::constraints::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+use crate::evaluate::reference::State;
+use crate::problem::{Placement, Problem};
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
@@ -42,7 +43,7 @@ pub(super) struct JointPath {
 pub(super) fn unwind(
     problem: &Problem,
     span: &Span<usize>,
-    pose: &[f64; 4],
+    placement: &Placement,
     betas: &[f64],
     postures: &[Posture],
     cost: f64,
@@ -51,7 +52,7 @@ pub(super) fn unwind(
     let mut joint_paths = Vec::new();
     for posture in postures {
         let solve = |(point, beta): (usize, &f64)| {
-            problem.robot.inverse(&problem.base_from_flange(point, pose, *beta), *posture).ok()
+            problem.robot.inverse(&problem.base_from_flange(point, placement, *beta), *posture).ok()
         };
         let Some(wrapped) = span.clone().zip(betas).map(solve).collect::<Option<Vec<[f64; 6]>>>() else { continue };
         let steps = &steps[span.clone()];
@@ -183,21 +184,15 @@ pub(super) fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
 
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
-    problem
-        .robot
-        .joints()
-        .iter()
-        .zip(joints)
-        .all(|(joint, q)| *q >= joint.min - ANGLE_ROUNDING && *q <= joint.max + ANGLE_ROUNDING)
+    on_joints(problem, joints).iter().all(Measured::holds)
 }
 
 /// Whether every joint's step is within its limit. rad
 pub(super) fn inside_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
-    (0..6).all(|j| (to[j] - from[j]).abs() <= limits[j] + STEP_ROUNDING)
+    on_joint_steps(from, to, limits).iter().all(Measured::holds)
 }
 
 /// Whether a state satisfies everything but joint limits and steps.
-pub(super) fn is_allowed(problem: &Problem, state: &reference::State<f64>) -> bool {
-    state.inverse_condition >= problem.constraints.min_inverse_condition
-        && problem.constraints.max_deflection.is_none_or(|limit| state.score() <= limit)
+pub(super) fn is_allowed(problem: &Problem, state: &State<f64>) -> bool {
+    on_state(problem, state).all(|measured| measured.holds())
 }

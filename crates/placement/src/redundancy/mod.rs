@@ -21,8 +21,9 @@ mod reference_dp;
 mod segment;
 pub mod transition;
 
+use super::candidate::Objective;
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use super::problem::{Problem, Redundancy};
+use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, turns::Range};
@@ -41,30 +42,6 @@ pub struct SegmentPlan {
     pub joints: Vec<[f64; 6]>,
     /// Sum of the scores. m
     pub cost: f64,
-}
-
-/// The objective value of a placement: the mean score under its best (or worst) plan on the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Objective {
-    /// The mean score under the plan asked for. m
-    Feasible(f64),
-    /// Nothing to plan: number of path points that no posture allows, and of segments that no one posture gets through.
-    Infeasible {
-        /// Path points without an allowed state.
-        points: usize,
-        /// Segments without a plan; not counted when there are such points.
-        segments: usize,
-    },
-}
-
-impl Objective {
-    /// The mean score, where there is one. m
-    pub fn mean(self) -> Option<f64> {
-        match self {
-            Objective::Feasible(mean) => Some(mean),
-            Objective::Infeasible { .. } => None,
-        }
-    }
 }
 
 /// Why a placement has no plan.
@@ -104,9 +81,6 @@ pub struct Workspace {
     now: StateGrid,
     record: forward_pass::Record,
 }
-
-/// Joint steps are compared with their limits up to this (rad), beta steps up to this share of the grid step: rounding.
-const STEP_ROUNDING: f64 = 1e-9;
 
 impl<'a> Planner<'a> {
     /// Prepares the planning of a problem on its grid of beta: for the search.
@@ -172,11 +146,11 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// The mean score of the workpiece at `pose` (x, y, z in m, yaw in rad) under the best or worst plan on the grid, with
+    /// The mean score of the workpiece at a placement under the best or worst plan on the grid, with
     /// the posture scheme found exactly or given (one posture per segment).
     pub fn objective(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
@@ -185,8 +159,14 @@ impl<'a> Planner<'a> {
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let found =
-                self.segment(span.clone(), pose, sense, only, workspace, if points > 0 { None } else { Some(0.0) });
+            let found = self.segment(
+                span.clone(),
+                placement,
+                sense,
+                only,
+                workspace,
+                if points > 0 { None } else { Some(0.0) },
+            );
             points += found.blocked.len();
             if points > 0 {
                 continue;
@@ -211,12 +191,12 @@ impl<'a> Planner<'a> {
     /// [`NoFeasiblePlan`] when some point or segment has none.
     pub fn plan(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(pose, sense, scheme, workspace, 0.0)?;
+        let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
         Ok(joint_turns::select_joint_paths(
             self.problem,
             choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect(),
@@ -232,18 +212,18 @@ impl<'a> Planner<'a> {
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
     pub fn plan_fine(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(pose, sense, scheme, workspace, CLOSE)?;
+        let choices = self.choices(placement, sense, scheme, workspace, CLOSE)?;
         let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
                 let mut plan = joint_turns::select_joint_paths(self.problem, vec![choice]).pop()?;
-                off_grid::refine(self.problem, pose, sense, spacing, &mut plan);
+                off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
                 Some(plan)
             });
             let sign = sense.sign();
@@ -254,7 +234,8 @@ impl<'a> Planner<'a> {
                 None => self.alike(plan.posture),
             };
             let span = plan.points.clone();
-            let again = joint_turns::unwind(self.problem, &span, pose, &plan.betas, &postures, plan.cost, &self.steps);
+            let again =
+                joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
             Some(again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan)))
         });
         Ok(joint_turns::select_joint_paths(self.problem, refined.collect()))
@@ -264,7 +245,7 @@ impl<'a> Planner<'a> {
     /// cheapest, cheapest first.
     fn choices(
         &self,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
@@ -274,7 +255,7 @@ impl<'a> Planner<'a> {
         let mut all = Vec::new();
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
-            let found = self.segment(span.clone(), pose, sense, only, workspace, Some(margin));
+            let found = self.segment(span.clone(), placement, sense, only, workspace, Some(margin));
             if !found.choices.is_empty() {
                 all.push(found.choices);
             } else if found.blocked.is_empty() {

@@ -5,9 +5,10 @@
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
 use super::super::evaluate::reference;
-use super::super::problem::{Problem, Redundancy};
+use super::super::problem::{Placement, Problem, Redundancy};
 use super::joint_turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
+use crate::constraints::STEP_ROUNDING;
 use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
@@ -47,18 +48,18 @@ struct Node {
     from: usize,
 }
 
-/// Refines the plan of one segment for the workpiece at `pose` (x, y, z in m, yaw in rad). Returns whether it got better.
+/// Refines the plan of one segment for the workpiece at a placement. Returns whether it got better.
 ///
-/// The plan given need not be one for this pose exactly: with an infinite cost, the betas of `plan` are only where the grid
+/// The plan given need not be one for this placement exactly: with an infinite cost, the betas of `plan` are only where the grid
 /// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
-pub fn refine(problem: &Problem, pose: &[f64; 4], sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
+pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
     let mut better = false;
     let mut spacing = range.first;
     let mut layers = vec![Layer { states: [None; VALUES], is_fresh: false }; plan.points.len()];
     while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
-            lay(problem, pose, spacing, plan, &mut layers);
+            lay(problem, placement, spacing, plan, &mut layers);
             if !level(problem, sense, plan, &mut layers) {
                 break;
             }
@@ -77,18 +78,18 @@ struct Layer {
     is_fresh: bool,
 }
 
-/// The sum of scores and the real joint angles of fixed betas at `pose`, or `None` when they break a constraint there.
-pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<SegmentPlan> {
+/// The sum of scores and the real joint angles of fixed betas at `placement`, or `None` when they break a constraint there.
+pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> Option<SegmentPlan> {
     let mut replayed = plan.clone();
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
-        let node = node(problem, pose, point, plan, place, plan.betas[place])?;
+        let node = node(problem, placement, point, plan, place, plan.betas[place])?;
         replayed.joints[place] = node.joints;
         replayed.cost += node.score;
         if place > 0 {
             let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
             let steps = inside_steps(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
-            if turned > problem.beta_step_limit(point) + BETA_ROUNDING || !steps {
+            if turned > problem.beta_step_limit(point) + STEP_ROUNDING || !steps {
                 return None;
             }
         }
@@ -96,11 +97,15 @@ pub fn replay(problem: &Problem, pose: &[f64; 4], plan: &SegmentPlan) -> Option<
     Some(replayed)
 }
 
-/// Steps of beta are compared with their limit up to this. rad
-const BETA_ROUNDING: f64 = 1e-9;
-
-fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, place: usize, beta: f64) -> Option<Node> {
-    let state = reference::state(problem, point, pose, beta, plan.posture).ok()?;
+fn node(
+    problem: &Problem,
+    placement: &Placement,
+    point: usize,
+    plan: &SegmentPlan,
+    place: usize,
+    beta: f64,
+) -> Option<Node> {
+    let state = reference::state(problem, point, placement, beta, plan.posture).ok()?;
     let joints = nearest_turns(&state.joints, &plan.joints[place]);
     if !is_allowed(problem, &state) || !inside_limits(problem, &joints) {
         return None;
@@ -109,7 +114,7 @@ fn node(problem: &Problem, pose: &[f64; 4], point: usize, plan: &SegmentPlan, pl
 }
 
 /// Lays values of beta around the plan, where that moved since.
-fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
+fn lay(problem: &Problem, placement: &Placement, spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
     let middle = VALUES / 2;
     let first = plan.points.start;
     layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
@@ -123,7 +128,7 @@ fn lay(problem: &Problem, pose: &[f64; 4], spacing: f64, plan: &SegmentPlan, lay
         let known = known.copied();
         layer.states = std::array::from_fn(|k| {
             let beta = own + (k as f64 - middle as f64) * spacing;
-            known.filter(|_| k == middle).or_else(|| node(problem, pose, first + place, plan, place, beta))
+            known.filter(|_| k == middle).or_else(|| node(problem, placement, first + place, plan, place, beta))
         });
     });
 }
@@ -135,7 +140,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
         let (done, open) = layers.split_at_mut(place);
         let before = done.last().map(|layer| &layer.states);
         let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
-        let beta_limit = if place > 0 { problem.beta_step_limit(point) + BETA_ROUNDING } else { f64::INFINITY };
+        let beta_limit = if place > 0 { problem.beta_step_limit(point) + STEP_ROUNDING } else { f64::INFINITY };
         for node in open[0].states.iter_mut().flatten() {
             let best = match before {
                 None => Some((0.0, 0)),

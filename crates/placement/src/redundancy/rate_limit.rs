@@ -5,7 +5,7 @@
 //! smoothed afterwards, each step spread over the points that it was saved for, so that the rate is kept everywhere.
 
 use super::super::problem::{Problem, Redundancy};
-use super::STEP_ROUNDING;
+use crate::constraints::STEP_ROUNDING;
 use std::ops::Range as Span;
 use stead_model::robot::angles::wrap;
 

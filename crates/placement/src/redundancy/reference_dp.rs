@@ -7,6 +7,7 @@
 use super::super::evaluate::reference;
 use super::joint_turns::{JointPath, SegmentChoice, inside_steps, is_allowed};
 use super::{Planner, Sense, Workspace};
+use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 
@@ -25,14 +26,14 @@ struct Node {
 pub(super) fn plan(
     planner: &Planner<'_>,
     span: &Span<usize>,
-    pose: &[f64; 4],
+    placement: &Placement,
     sense: Sense,
     postures: &[Posture],
     workspace: &mut Workspace,
 ) -> Option<SegmentChoice> {
     let mut best: Option<SegmentChoice> = None;
     for posture in postures {
-        let Some(choice) = one_posture(planner, span, pose, sense, *posture, workspace) else { continue };
+        let Some(choice) = one_posture(planner, span, placement, sense, *posture, workspace) else { continue };
         let sign = sense.sign();
         match &mut best {
             Some(known) if known.cost == choice.cost && known.betas == choice.betas => {
@@ -52,7 +53,7 @@ const MAX_LAYERS: usize = 4096;
 pub(super) struct Search<'s> {
     pub planner: &'s Planner<'s>,
     pub span: &'s Span<usize>,
-    pub pose: &'s [f64; 4],
+    pub placement: &'s Placement,
     pub sense: Sense,
     pub posture: Posture,
 }
@@ -60,13 +61,13 @@ pub(super) struct Search<'s> {
 fn one_posture(
     planner: &Planner<'_>,
     span: &Span<usize>,
-    pose: &[f64; 4],
+    placement: &Placement,
     sense: Sense,
     posture: Posture,
     workspace: &mut Workspace,
 ) -> Option<SegmentChoice> {
     let block = if span.len() > MAX_LAYERS { span.len().isqrt() } else { span.len() };
-    Search { planner, span, pose, sense, posture }.plan(block, workspace)
+    Search { planner, span, placement, sense, posture }.plan(block, workspace)
 }
 
 impl Search<'_> {
@@ -114,7 +115,7 @@ impl Search<'_> {
 
     /// The layer of the first point, where it has states.
     fn first(&self, workspace: &mut Workspace) -> Option<Vec<Node>> {
-        let mut layer = nodes(self.planner, self.span.start, self.pose, self.posture, workspace);
+        let mut layer = nodes(self.planner, self.span.start, self.placement, self.posture, workspace);
         layer.iter_mut().for_each(|node| node.cost = node.score * self.sense.sign());
         Some(layer).filter(|layer| !layer.is_empty())
     }
@@ -123,7 +124,7 @@ impl Search<'_> {
     fn next(&self, before: &[Node], place: usize, workspace: &mut Workspace) -> Option<Vec<Node>> {
         let point = self.span.start + place;
         let planner = self.planner;
-        let mut layer = nodes(planner, point, self.pose, self.posture, workspace);
+        let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
         connect(before, &mut layer, planner.rate_limit.reach(point), planner.grid.beta_count, &planner.steps[point]);
         layer.retain(|node| node.cost.is_finite());
         layer.iter_mut().for_each(|node| node.cost += node.score * self.sense.sign());
@@ -132,20 +133,26 @@ impl Search<'_> {
 }
 
 /// Every real configuration of every allowed grid state of one point, in the order of beta.
-fn nodes(planner: &Planner<'_>, point: usize, pose: &[f64; 4], posture: Posture, space: &mut Workspace) -> Vec<Node> {
+fn nodes(
+    planner: &Planner<'_>,
+    point: usize,
+    placement: &Placement,
+    posture: Posture,
+    space: &mut Workspace,
+) -> Vec<Node> {
     let problem = planner.problem;
     // The evaluator says which grid values are worth a closer look.
     let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
         return Vec::new();
     };
-    evaluator.evaluate(point, pose, &mut space.now);
+    evaluator.evaluate(point, placement, &mut space.now);
     let class: PostureClass = posture.class();
     let mut nodes = Vec::new();
     for beta in 0..planner.grid.beta_count {
         if !space.now.inner_scores(class)[beta].is_finite() {
             continue;
         }
-        let Ok(state) = reference::state(problem, point, pose, planner.grid.beta(beta), posture) else {
+        let Ok(state) = reference::state(problem, point, placement, planner.grid.beta(beta), posture) else {
             continue;
         };
         if !is_allowed(problem, &state) {

@@ -3,6 +3,7 @@
 use super::super::evaluate::reference;
 use super::forward_pass::{ForwardPass, Pass};
 use super::{Planner, Workspace, joint_turns, reference_dp};
+use crate::problem::Placement;
 use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
@@ -23,7 +24,7 @@ impl Planner<'_> {
     pub(super) fn segment(
         &self,
         span: Span<usize>,
-        pose: &[f64; 4],
+        placement: &Placement,
         sense: Sense,
         only: Option<Posture>,
         workspace: &mut Workspace,
@@ -38,7 +39,7 @@ impl Planner<'_> {
                 |posture: &Posture| evaluator.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
             // With steps saved up first; where they cannot be spread, without.
             for is_accumulated in [true, false].into_iter().skip(usize::from(!is_spread)) {
-                let pass = Pass { evaluator, span: &span, pose, sense, is_accumulated };
+                let pass = Pass { evaluator, span: &span, placement, sense, is_accumulated };
                 let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
                 found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
                 let Some(margin) = margin else { break };
@@ -70,7 +71,7 @@ impl Planner<'_> {
         margin: f64,
         found: &mut Vec<joint_turns::SegmentChoice>,
     ) -> bool {
-        let Pass { span, pose, sense, is_accumulated, .. } = pass;
+        let Pass { span, placement, sense, is_accumulated, .. } = pass;
         let mut has_all = outcome.ends.iter().any(Option::is_some);
         // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
@@ -92,11 +93,12 @@ impl Planner<'_> {
             if is_accumulated {
                 self.rate_limit.smooth(self.problem, span, &mut path);
             }
-            let unwound = joint_turns::unwind(self.problem, span, pose, &path, &postures, cost * sign, &self.steps);
+            let unwound =
+                joint_turns::unwind(self.problem, span, placement, &path, &postures, cost * sign, &self.steps);
             let choice = if is_accumulated {
-                unwound.and_then(|choice| self.repriced(pose, choice))
+                unwound.and_then(|choice| self.repriced(placement, choice))
             } else {
-                unwound.or_else(|| reference_dp::plan(self, span, pose, sense, &postures, workspace))
+                unwound.or_else(|| reference_dp::plan(self, span, placement, sense, &postures, workspace))
             };
             has_all &= choice.is_some();
             found.extend(choice);
@@ -110,11 +112,15 @@ impl Planner<'_> {
     }
 
     /// A plan with its own cost, where all its states are allowed.
-    fn repriced(&self, pose: &[f64; 4], mut choice: joint_turns::SegmentChoice) -> Option<joint_turns::SegmentChoice> {
+    fn repriced(
+        &self,
+        placement: &Placement,
+        mut choice: joint_turns::SegmentChoice,
+    ) -> Option<joint_turns::SegmentChoice> {
         let posture = choice.joint_paths.first()?.posture;
         choice.cost = 0.0;
         for (point, beta) in choice.points.clone().zip(&choice.betas) {
-            let state = reference::state(self.problem, point, pose, *beta, posture).ok()?;
+            let state = reference::state(self.problem, point, placement, *beta, posture).ok()?;
             if !joint_turns::is_allowed(self.problem, &state) {
                 return None;
             }

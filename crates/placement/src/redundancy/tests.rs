@@ -8,8 +8,8 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 
-fn published_optimum() -> [f64; 4] {
-    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+fn published_optimum() -> Placement {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
 }
 
 /// Every joint may step by 10 deg in 10 mm, as in the prototype.
@@ -20,10 +20,10 @@ fn with_prototype_steps(mut problem: Problem) -> Problem {
     problem
 }
 
-fn objective(problem: &Problem, pose: &[f64; 4], sense: Sense) -> Objective {
+fn objective(problem: &Problem, placement: &Placement, sense: Sense) -> Objective {
     let planner = Planner::new(problem);
     let mut workspace = planner.workspace();
-    planner.objective(pose, sense, None, &mut workspace)
+    planner.objective(placement, sense, None, &mut workspace)
 }
 
 #[test]
@@ -37,12 +37,12 @@ fn agrees_with_the_prototype_at_the_published_optimum() {
 }
 
 /// Holds a plan against every rule, through the ordinary evaluator.
-fn assert_sound(problem: &Problem, pose: &[f64; 4], plans: &[SegmentPlan]) {
+fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) {
     assert_eq!(plans.len(), problem.task.segments().len());
     for plan in plans {
         let mut sum = 0.0;
         for (place, point) in plan.points.clone().enumerate() {
-            let found = state(problem, point, pose, plan.betas[place], plan.posture).unwrap();
+            let found = state(problem, point, placement, plan.betas[place], plan.posture).unwrap();
             sum += found.score();
             assert!(found.inverse_condition >= problem.constraints.min_inverse_condition);
             for (j, joint) in problem.robot.joints().iter().enumerate() {
@@ -106,27 +106,36 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         let mut workspace = planner.workspace();
         for k in 0..8 {
             let f = f64::from(k);
-            let pose = [-0.3 + 0.07 * f, -1.64 - 0.05 * f, -0.6 + 0.04 * f, -3.0 + 0.8 * f + 0.2 * index as f64];
+            let placement = Placement::from([
+                -0.3 + 0.07 * f,
+                -1.64 - 0.05 * f,
+                -0.6 + 0.04 * f,
+                -3.0 + 0.8 * f + 0.2 * index as f64,
+            ]);
             for sense in [Sense::Min, Sense::Max] {
                 for scheme in [None, Some([3, 4, 3, 1, 5].map(|n| Posture::from_number(n).unwrap()))] {
-                    let found = planner.plan(&pose, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace);
+                    let found = planner.plan(&placement, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace);
                     let mut expected = 0.0;
                     for (segment, span) in problem.task.segments().iter().enumerate() {
                         let only = scheme.map(|s| vec![s[segment]]);
                         let postures = only.unwrap_or(Posture::ALL.to_vec());
-                        let choice = reference_dp::plan(&planner, span, &pose, sense, &postures, &mut workspace);
+                        let choice = reference_dp::plan(&planner, span, &placement, sense, &postures, &mut workspace);
                         expected += choice.map_or(f64::INFINITY, |c| c.cost);
                     }
                     let cost = found.as_ref().map_or(f64::INFINITY, |plans| plans.iter().map(|p| p.cost).sum());
                     compared += 1;
-                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {pose:?} {sense:?} {scheme:?}");
-                    let worth = planner.objective(&pose, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
+                    assert_eq!(cost.is_finite(), expected.is_finite(), "{ranges:?} {placement:?} {sense:?} {scheme:?}");
+                    let worth =
+                        planner.objective(&placement, sense, scheme.as_ref().map(|s| &s[..]), &mut workspace).mean();
                     assert_eq!(worth.is_some(), cost.is_finite());
                     if let Ok(plans) = found {
                         feasible += 1;
-                        assert!((cost - expected).abs() < 1e-12 * expected, "{cost} {expected} {ranges:?} {pose:?}");
+                        assert!(
+                            (cost - expected).abs() < 1e-12 * expected,
+                            "{cost} {expected} {ranges:?} {placement:?}"
+                        );
                         assert!((worth.unwrap() * 105.0 - cost).abs() < 1e-12 * cost);
-                        assert_sound(&problem, &pose, &plans);
+                        assert_sound(&problem, &placement, &plans);
                     }
                 }
             }
@@ -148,17 +157,17 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
         let mut workspace = planner.workspace();
         for k in 0..6 {
             let f = f64::from(k);
-            let pose = [-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f];
+            let placement = Placement::from([-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f]);
             for span in problem.task.segments() {
                 let evaluator = &planner.evaluators[0];
-                let pass = Pass { evaluator, span, pose: &pose, sense: Sense::Min, is_accumulated: false };
+                let pass = Pass { evaluator, span, placement: &placement, sense: Sense::Min, is_accumulated: false };
                 let forward_pass = planner.forward_pass(pass, None, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
-                    let judge = reference_dp::plan(&planner, span, &pose, Sense::Min, &postures, &mut workspace);
+                    let judge = reference_dp::plan(&planner, span, &placement, Sense::Min, &postures, &mut workspace);
                     let (found, expected) =
                         (forward_pass.ends[class.index()].map(|end| end.0), judge.map(|choice| choice.cost));
-                    assert_eq!(found.is_some(), expected.is_some(), "{class:?} {span:?} {pose:?}");
+                    assert_eq!(found.is_some(), expected.is_some(), "{class:?} {span:?} {placement:?}");
                     if let (Some(found), Some(expected)) = (found, expected) {
                         compared += 1;
                         assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected} {class:?} {span:?}");
@@ -173,22 +182,22 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
 #[test]
 fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
     let problem = with_prototype_steps(five_segments());
-    let pose = published_optimum();
+    let placement = published_optimum();
     for sense in [Sense::Min, Sense::Max] {
         let planner = Planner::new(&problem);
-        let mut plans = planner.plan(&pose, sense, None, &mut planner.workspace()).unwrap();
+        let mut plans = planner.plan(&placement, sense, None, &mut planner.workspace()).unwrap();
         let before: f64 = plans.iter().map(|p| p.cost).sum();
         for plan in &mut plans {
-            off_grid::refine(&problem, &pose, sense, off_grid::Spacing::full(&problem.redundancy), plan);
-            let replayed = off_grid::replay(&problem, &pose, plan).unwrap();
+            off_grid::refine(&problem, &placement, sense, off_grid::Spacing::full(&problem.redundancy), plan);
+            let replayed = off_grid::replay(&problem, &placement, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }
-        assert_sound(&problem, &pose, &plans);
+        assert_sound(&problem, &placement, &plans);
         let after: f64 = plans.iter().map(|p| p.cost).sum();
         assert!(after * sense.sign() <= before * sense.sign());
         let mut fine_grid = problem.clone();
         fine_grid.redundancy.beta_count = 1440;
-        let grid = objective(&fine_grid, &pose, sense).mean().unwrap() * 105.0;
+        let grid = objective(&fine_grid, &placement, sense).mean().unwrap() * 105.0;
         assert!(after * sense.sign() < grid * sense.sign() + 2e-4 * grid, "{before} {after} {grid}");
     }
 }
@@ -197,7 +206,7 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
 fn says_which_points_and_segments_have_no_plan() {
     let problem = five_segments();
     let planner = Planner::new(&problem);
-    let far = [0.0, -4.0, -0.4, 0.0];
+    let far = Placement::from([0.0, -4.0, -0.4, 0.0]);
     let none = planner.plan(&far, Sense::Min, None, &mut planner.workspace()).unwrap_err();
     assert_eq!(none.blocked_points.len(), 105);
     assert_eq!(
@@ -220,11 +229,11 @@ fn plans_of_blocks_are_those_of_whole_segments() {
     problem.redundancy.beta_count = 60;
     problem.redundancy.max_beta_rate *= 3.0;
     let planner = Planner::new(&problem);
-    let (pose, sense) = (published_optimum(), Sense::Max);
+    let (placement, sense) = (published_optimum(), Sense::Max);
     let mut compared = 0;
     for evaluator in &planner.evaluators {
         for span in problem.task.segments() {
-            let pass = Pass { evaluator, span, pose: &pose, sense, is_accumulated: false };
+            let pass = Pass { evaluator, span, placement: &placement, sense, is_accumulated: false };
             let mut whole = planner.workspace();
             let forward_pass = planner.forward_pass(pass, None, &mut whole, false);
             // Blocks that end with the segment, that do not, and of the least length.
@@ -240,7 +249,7 @@ fn plans_of_blocks_are_those_of_whole_segments() {
                 }
             }
             let posture = Posture::ALL[2];
-            let search = reference_dp::Search { planner: &planner, span, pose: &pose, sense, posture };
+            let search = reference_dp::Search { planner: &planner, span, placement: &placement, sense, posture };
             let expected = search.plan(span.len(), &mut whole);
             assert!(expected.is_some());
             for block in [1, 4, 7, 20, 30] {
@@ -274,22 +283,22 @@ fn denser(problem: &Problem, times: usize) -> Problem {
 #[test]
 fn beta_keeps_its_pace_where_points_are_close() {
     // Near the best placement, where the rate of beta binds; steps of the path that are a third of a step of the grid.
-    let pose = [0.0, -1.64, -0.214, 1.378];
+    let placement = Placement::from([0.0, -1.64, -0.214, 1.378]);
     let dense = denser(&five_segments(), 10);
     let sense = Sense::Min;
     let planner = Planner::new(&dense);
     assert!(dense.task.segments().iter().all(|span| planner.rate_limit.is_spread(span)));
     let mut workspace = planner.workspace();
-    let plans = planner.plan(&pose, sense, None, &mut workspace).unwrap();
-    assert_sound(&dense, &pose, &plans);
+    let plans = planner.plan(&placement, sense, None, &mut workspace).unwrap();
+    assert_sound(&dense, &placement, &plans);
     let found = plans.iter().map(|plan| plan.cost).sum::<f64>() / dense.task.points().len() as f64;
-    let worth = planner.objective(&pose, sense, None, &mut workspace).mean().unwrap();
+    let worth = planner.objective(&placement, sense, None, &mut workspace).mean().unwrap();
     assert!((found - worth).abs() < 1e-12 * found, "{found} {worth}");
     // A grid so fine that nothing is saved up, and beta held still.
     let mean = |beta_count: usize, share: f64| {
         let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
         let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
-        super::tests::objective(&Problem { redundancy, ..dense.clone() }, &pose, sense).mean().unwrap()
+        super::tests::objective(&Problem { redundancy, ..dense.clone() }, &placement, sense).mean().unwrap()
     };
     let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
     // Spread steps leave the grid, so that they may come out a little below the finest.

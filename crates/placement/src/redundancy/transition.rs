@@ -5,7 +5,7 @@
 //! within every step, and then it is the cheapest of those that are.
 
 use super::super::evaluate::batch::StateGrid;
-use super::STEP_ROUNDING;
+use crate::constraints::STEP_ROUNDING;
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;

@@ -1,15 +1,16 @@
-//! Ascent to the worst placement: a maximum over the pose of the minimum over all plans.
+//! Ascent to the worst placement: a maximum over the placement of the minimum over all plans.
 //!
-//! The gradient of that minimum with respect to the pose is exact (envelope theorem): it is the multiplier of "the pose
+//! The gradient of that minimum with respect to the placement is exact (envelope theorem): it is the multiplier of "the placement
 //! stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model inside the cell
-//! and a trust region, again by clarabel, and leads to a pose where everything is planned anew.
+//! and a trust region, again by clarabel, and leads to a placement where everything is planned anew.
 
-use super::super::problem::Problem;
+use super::super::outcome::RefinementStatus;
+use super::super::problem::{Placement, Problem};
 use super::super::redundancy::{Planner, Workspace, off_grid};
 use super::linearise::{Curvature, UNITS, linearise};
 use super::solver::Run;
 use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
-use super::{Solution, inside, planned};
+use super::{Solution, planned};
 use nalgebra::{Matrix4, Vector4};
 use stead_model::robot::Posture;
 
@@ -28,26 +29,27 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
     let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = start.clone();
     let mut iterations = 0;
-    let ended = |solution, iterations, status: &str| Run { solution, iterations, status: status.to_owned() };
+    let ended = |solution, iterations, status| Run { solution, iterations, status };
     let Some(mut gradient) = pose_gradient(problem, &best) else {
-        return ended(best, iterations, "the subproblem could not be solved");
+        return ended(best, iterations, RefinementStatus::SubproblemFailed);
     };
     let mut trust = TRUST.0;
     let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
     while trust >= TRUST.2 {
         if iterations == MAX_ITERATIONS {
-            return ended(best, iterations, "stopped at the largest number of iterations");
+            return ended(best, iterations, RefinementStatus::MaxIterations);
         }
         iterations += 1;
-        let Some(step) = pose_step(problem, &best.pose, &gradient, &curvature, trust) else {
-            return ended(best, iterations, "the subproblem could not be solved");
+        let Some(step) = pose_step(problem, &best.placement, &gradient, &curvature, trust) else {
+            return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
         if promised < MIN_PROMISE * best.mean() {
-            return ended(best, iterations, "converged: no first-order gain");
+            return ended(best, iterations, RefinementStatus::NoFirstOrderGain);
         }
-        let pose = inside(problem, std::array::from_fn(|k| best.pose[k] + step[k] * UNITS[k]));
-        let candidate = planned(planner, &pose, scheme, spacing, workspace);
+        let placement = Placement::from(std::array::from_fn(|k| best.placement[k] + step[k] * UNITS[k]));
+        let placement = problem.cell.clamp(&placement);
+        let candidate = planned(planner, &placement, scheme, spacing, workspace);
         let Some(next) = candidate.filter(|next| next.mean() - best.mean() > ARMIJO * promised) else {
             trust = trust.min(step.amax()) / 3.0;
             continue;
@@ -57,12 +59,12 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
         }
         best = next;
         let Some(there) = pose_gradient(problem, &best) else {
-            return ended(best, iterations, "the subproblem could not be solved");
+            return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         learn(&mut curvature, &step, &(gradient - there));
         gradient = there;
     }
-    ended(best, iterations, "converged: no gain in the smallest trust region")
+    ended(best, iterations, RefinementStatus::SmallestTrustRegion)
 }
 
 /// Damped BFGS (Powell 1978): keeps the curvature positive definite whatever the change of gradient says.
@@ -78,7 +80,7 @@ fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64
     }
 }
 
-/// Gradient of the mean score of the best plan with respect to the pose, postures fixed. m per scaled unit
+/// Gradient of the mean score of the best plan with respect to the placement, postures fixed. m per scaled unit
 pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
     let locals = linearise(problem, solution, Curvature::Beta)?;
     let question = Question { trust: 1e-3, curved: true, pose_stays: true };
@@ -97,7 +99,7 @@ const SAMPLING: f64 = 2e-3;
 pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&[Posture]>) -> f64 {
     let problem = planner.problem();
     let mut workspace = planner.workspace();
-    let bounds = pose_bounds(problem, &solution.pose);
+    let bounds = pose_bounds(problem, &solution.placement);
     let mut gradients: Vec<Vector4<f64>> = pose_gradient(problem, solution).into_iter().collect();
     let mut normals = Vec::new();
     for k in 0..4 {
@@ -107,9 +109,9 @@ pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&
                 normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
                 continue;
             }
-            let mut pose = solution.pose;
-            pose[k] += side * SAMPLING * UNITS[k];
-            let near = planned(planner, &pose, scheme, off_grid::Spacing::full(planner.grid()), &mut workspace);
+            let mut placement = solution.placement;
+            placement[k] += side * SAMPLING * UNITS[k];
+            let near = planned(planner, &placement, scheme, off_grid::Spacing::full(planner.grid()), &mut workspace);
             gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
         }
     }

@@ -1,7 +1,7 @@
 //! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
 
 use super::super::evaluate::reference::{State, normal_part_by_parameters, state};
-use super::super::problem::Problem;
+use super::super::problem::{Placement, Problem};
 use super::{LENGTH_UNIT, Solution};
 use nalgebra::{Matrix5, SymmetricEigen};
 use stead_model::robot::Posture;
@@ -38,7 +38,7 @@ const CURVATURE_STEP: f64 = 1e-4;
 pub enum Curvature {
     /// None: it is left at zero.
     None,
-    /// Along beta, and between beta and the pose: all that matters while the pose stays.
+    /// Along beta, and between beta and the placement: all that matters while the placement stays.
     Beta,
     /// All of it.
     Full,
@@ -49,7 +49,13 @@ pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Op
     let mut locals = Vec::with_capacity(problem.task.points().len());
     for plan in &solution.plans {
         for (place, point) in plan.points.clone().enumerate() {
-            let at = [solution.pose[0], solution.pose[1], solution.pose[2], solution.pose[3], plan.betas[place]];
+            let at = [
+                solution.placement[0],
+                solution.placement[1],
+                solution.placement[2],
+                solution.placement[3],
+                plan.betas[place],
+            ];
             let centre = gradient(problem, point, at, plan.posture)?;
             let centre = (centre.0, if is_near_kink(&centre.1) { centre.1 } else { Vec::new() });
             let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
@@ -90,12 +96,12 @@ fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture)
         variable
     });
     let [x, y, z, yaw, beta] = variables;
-    let pose = [x, y, z, yaw];
-    let found = state(problem, point, &pose, beta, posture).ok()?;
+    let placement = Placement::from([x, y, z, yaw]);
+    let found = state(problem, point, &placement, beta, posture).ok()?;
     let confidence = problem.criterion.confidence;
     let changes = match problem.robot.uncertainty() {
         Some(known) if confidence > 0.0 => {
-            let slopes = normal_part_by_parameters(problem, point, &pose, &found.joints);
+            let slopes = normal_part_by_parameters(problem, point, &placement, &found.joints);
             known.changes(&slopes).map(|change| change.scale(confidence)).collect()
         }
         _ => Vec::new(),

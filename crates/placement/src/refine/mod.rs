@@ -1,4 +1,4 @@
-//! Gradient refinement of a placement: pose and all betas together.
+//! Gradient refinement of a placement: placement and all betas together.
 //!
 //! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
 //! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
@@ -6,8 +6,8 @@
 //! cell are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
 //! Derivatives are exact ([`linearise`]). Then postures, turns and betas are planned anew, and so on until neither changes.
 //!
-//! **Worst placement.** That is a maximum over the pose of a minimum over beta. Its gradient is the multiplier of the
-//! constraint "the pose stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
+//! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
+//! constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
 //!
 //! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
 //! or less feasible than the start.
@@ -23,7 +23,7 @@ pub mod solver;
 pub mod subproblem;
 
 use super::evaluator::{self, Evaluator};
-use super::outcome::{CANCELLATION, Refinement};
+use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
 use super::sense::Sense;
@@ -39,8 +39,8 @@ const GAIN: f64 = 1e-5;
 /// A placement with its best plan, beta off the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// x, y, z (m) and yaw (rad).
-    pub pose: [f64; 4],
+    /// The placement.
+    pub placement: Placement,
     /// One entry per segment.
     pub plans: Vec<SegmentPlan>,
 }
@@ -51,31 +51,25 @@ impl Solution {
         let points: usize = self.plans.iter().map(|plan| plan.points.len()).sum();
         self.plans.iter().map(|plan| plan.cost).sum::<f64>() / points as f64
     }
-
-    /// The placement.
-    pub fn placement(&self) -> Placement {
-        let [x, y, z, yaw] = self.pose;
-        Placement { x, y, z, yaw }
-    }
 }
 
-/// The best plan at a pose, beta refined off the grid; `None` when the pose has none.
+/// The best plan at a placement, beta refined off the grid; `None` when the placement has none.
 pub fn planned(
     planner: &Planner<'_>,
-    pose: &[f64; 4],
+    placement: &Placement,
     scheme: Option<&[Posture]>,
     spacing: off_grid::Spacing,
     workspace: &mut Workspace,
 ) -> Option<Solution> {
-    let plans = planner.plan_fine(pose, Sense::Min, scheme, spacing, workspace).ok()?;
-    Some(Solution { pose: *pose, plans })
+    let plans = planner.plan_fine(placement, Sense::Min, scheme, spacing, workspace).ok()?;
+    Some(Solution { placement: *placement, plans })
 }
 
-/// Refines from one pose, with the posture scheme found anew in every round or kept as given. `None` when the pose has no
+/// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the placement has no
 /// plan to start from.
 pub fn refine(
     evaluator: &Evaluator<'_>,
-    start: &[f64; 4],
+    start: &Placement,
     sense: Sense,
     scheme: Option<&[Posture]>,
 ) -> Option<(Solution, Refinement)> {
@@ -87,9 +81,9 @@ pub fn refine(
     let mut best = planned(planner, start, scheme, spacing, &mut workspace)?;
     let mut report = Refinement {
         sense,
-        start: best.placement(),
+        start: best.placement,
         start_mean: best.mean(),
-        end: best.placement(),
+        end: best.placement,
         end_mean: best.mean(),
         rounds: 0,
         iterations: 0,
@@ -98,7 +92,7 @@ pub fn refine(
     };
     let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLATION;
     if is_cancelled(&best) {
-        report.statuses.push("converged: the deflection is cancelled".to_owned());
+        report.statuses.push(RefinementStatus::Cancelled);
     }
     while report.rounds < ROUNDS && !is_cancelled(&best) {
         report.rounds += 1;
@@ -118,10 +112,10 @@ pub fn refine(
         };
         report.iterations += iterations;
         report.statuses.push(status);
-        // Plan anew at the new pose. For the best placement a better plan is welcome; for the worst one every plan is
-        // already the best at its pose.
+        // Plan anew at the new placement. For the best placement a better plan is welcome; for the worst one every plan is
+        // already the best at its placement.
         if sense == Sense::Min
-            && let Some(anew) = planned(planner, &best.pose, scheme, spacing, &mut workspace)
+            && let Some(anew) = planned(planner, &best.placement, scheme, spacing, &mut workspace)
             && anew.mean() < best.mean()
         {
             best = anew;
@@ -141,14 +135,14 @@ pub fn refine(
         Sense::Min => subproblem::kkt_residual(problem, &best),
         Sense::Max => ascent::kkt_residual(planner, &best, scheme),
     };
-    report.end = best.placement();
+    report.end = best.placement;
     report.end_mean = best.mean();
     Some((best, report))
 }
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-/// The best neighbour along the pose axes, if it is better by more than [`GAIN`].
+/// The best neighbour along the placement axes, if it is better by more than [`GAIN`].
 fn poll(
     evaluator: &Evaluator<'_>,
     centre: &Solution,
@@ -164,22 +158,23 @@ fn poll(
         Sense::Min => 1.0,
         Sense::Max => -1.0,
     };
-    let mut look = |pose: &[f64; 4]| evaluator.table().and_then(|_| evaluator.objective(pose, scheme, looks).mean());
-    let here = look(&centre.pose);
+    let mut look =
+        |placement: &Placement| evaluator.table().and_then(|_| evaluator.objective(placement, scheme, looks).mean());
+    let here = look(&centre.placement);
     let mut best: Option<Solution> = None;
     for distance in POLLS {
         for k in 0..4 {
             for side in [-1.0, 1.0] {
-                let mut pose = centre.pose;
-                pose[k] += side * distance * linearise::UNITS[k];
-                let pose = inside(problem, pose);
+                let mut placement = centre.placement;
+                placement[k] += side * distance * linearise::UNITS[k];
+                let placement = problem.cell.clamp(&placement);
                 // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
                 // next, sees to be no better.
                 let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
-                if pose == centre.pose || here.zip(look(&pose)).is_some_and(is_no_better) {
+                if placement == centre.placement || here.zip(look(&placement)).is_some_and(is_no_better) {
                     continue;
                 }
-                let Some(near) = planned(planner, &pose, scheme, spacing, workspace) else { continue };
+                let Some(near) = planned(planner, &placement, scheme, spacing, workspace) else { continue };
                 let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
                 if near.mean() * sign < known * sign {
                     best = Some(near);
@@ -193,35 +188,28 @@ fn poll(
     best
 }
 
-/// The pose, not outside the cell.
-fn inside(problem: &Problem, pose: [f64; 4]) -> [f64; 4] {
-    let [x, y, z, yaw] = pose;
-    let clamped = problem.cell.clamp(&Placement { x, y, z, yaw });
-    [clamped.x, clamped.y, clamped.z, clamped.yaw]
-}
-
 /// What must not change any more: posture and turns of every segment.
 fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
     let turns = |plan: &SegmentPlan| plan.joints.first().map_or([0; 6], |q| q.map(stead_model::robot::turns::turns));
     solution.plans.iter().map(|plan| (plan.posture, turns(plan))).collect()
 }
 
-/// A solution moved by a step of all variables (pose, then every beta), if there is an allowed one near there.
+/// A solution moved by a step of all variables (placement, then every beta), if there is an allowed one near there.
 ///
-/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new pose the betas settle in a
+/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new placement the betas settle in a
 /// narrow spacing around their step (a second-order correction).
-fn moved(problem: &Problem, solution: &Solution, pose: [f64; 4], betas: &[f64]) -> Option<Solution> {
+fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[f64]) -> Option<Solution> {
     let mut plans = Vec::with_capacity(solution.plans.len());
     for plan in &solution.plans {
         let betas = betas[plan.points.clone()].to_vec();
         let mut shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
-        off_grid::refine(problem, &pose, Sense::Min, SETTLING, &mut shifted);
+        off_grid::refine(problem, &placement, Sense::Min, SETTLING, &mut shifted);
         if !shifted.cost.is_finite() {
             return None;
         }
         plans.push(shifted);
     }
-    Some(Solution { pose, plans })
+    Some(Solution { placement, plans })
 }
 
 /// The spacing in which betas settle after a step. rad

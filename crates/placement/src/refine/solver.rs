@@ -1,20 +1,20 @@
 //! The sequential convex programme for the best placement, as an argmin solver.
 //!
-//! The parameter vector is x, y, z (m), yaw and every beta (rad). argmin's executor runs it, so its observers and its
-//! termination apply.
+//! The iterate is the [`Solution`] itself: a placement with its plan. It only gets better. argmin's executor runs the
+//! solver, so its observers and its termination apply.
 
-use super::linearise::{Curvature, linearise};
+use super::super::outcome::RefinementStatus;
+use super::linearise::{Curvature, Local, linearise};
 use super::subproblem::{Question, solve};
-use super::{Solution, inside, moved};
-use crate::problem::Problem;
+use super::{Solution, moved};
+use crate::problem::{Placement, Problem};
 use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
 };
 use argmin::kv;
-use std::sync::{Arc, Mutex};
 
 /// argmin's state of this solver.
-pub type Iterate = IterState<Vec<f64>, (), (), (), (), f64>;
+pub type Iterate = IterState<Solution, (), (), (), (), f64>;
 
 /// The trust region at the start, in scaled variables.
 const FIRST_TRUST: f64 = 0.1;
@@ -31,14 +31,13 @@ const MIN_GAIN: f64 = 1e-6;
 /// Iterations at the most.
 const MAX_ITERATIONS: u64 = 80;
 
-/// The solver: a solution that only gets better, and the trust region around it.
+/// The solver: the trust region around the iterate, and how it ended.
 #[derive(Debug, Clone)]
 pub struct SequentialConvex<'a> {
     problem: &'a Problem,
-    solution: Arc<Mutex<Solution>>,
     trust: f64,
     lazy: usize,
-    ending: Option<String>,
+    status: Option<RefinementStatus>,
 }
 
 /// What a run returns.
@@ -47,7 +46,7 @@ pub struct Run {
     /// Never worse than the start.
     pub solution: Solution,
     /// How it ended.
-    pub status: String,
+    pub status: RefinementStatus,
     /// Subproblems solved.
     pub iterations: usize,
 }
@@ -63,30 +62,18 @@ pub fn run_observed<'a>(
     start: &Solution,
     observe: impl FnOnce(Executor<(), SequentialConvex<'a>, Iterate>) -> Executor<(), SequentialConvex<'a>, Iterate>,
 ) -> Run {
-    let best = Arc::new(Mutex::new(start.clone()));
-    let solver = SequentialConvex { problem, solution: Arc::clone(&best), trust: FIRST_TRUST, lazy: 0, ending: None };
-    let executor = Executor::new((), solver)
-        .configure(|state| state.param(parameters(start)).max_iters(MAX_ITERATIONS))
-        .timer(false);
-    let outcome = observe(executor).run();
-    let (status, iterations) = match &outcome {
-        Ok(result) => {
-            let status = match result.state().get_termination_reason() {
-                Some(TerminationReason::SolverExit(reason)) => reason.clone(),
-                Some(reason) => reason.text().to_owned(),
-                None => "stopped".to_owned(),
-            };
-            (status, result.state().get_iter() as usize)
-        }
-        Err(error) => (format!("failed: {error}"), 0),
-    };
-    let solution = best.lock().map_or_else(|_| start.clone(), |known| known.clone());
-    Run { solution, status, iterations }
-}
-
-/// Pose and betas in one vector.
-fn parameters(solution: &Solution) -> Vec<f64> {
-    solution.pose.iter().chain(solution.plans.iter().flat_map(|plan| &plan.betas)).copied().collect()
+    let solver = SequentialConvex { problem, trust: FIRST_TRUST, lazy: 0, status: None };
+    let executor =
+        Executor::new((), solver).configure(|state| state.param(start.clone()).max_iters(MAX_ITERATIONS)).timer(false);
+    match observe(executor).run() {
+        Ok(mut result) => Run {
+            solution: result.state.take_param().unwrap_or_else(|| start.clone()),
+            status: result.solver.status.unwrap_or(RefinementStatus::MaxIterations),
+            iterations: result.state.get_iter() as usize,
+        },
+        // An observer failed.
+        Err(_) => Run { solution: start.clone(), status: RefinementStatus::SubproblemFailed, iterations: 0 },
+    }
 }
 
 impl Solver<(), Iterate> for SequentialConvex<'_> {
@@ -95,76 +82,67 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
     }
 
     fn init(&mut self, _: &mut ArgminProblem<()>, state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
-        let mean = self.known()?.mean();
+        let mean = state.get_param().map_or(f64::INFINITY, Solution::mean);
         Ok((state.cost(mean), None))
     }
 
-    fn next_iter(&mut self, _: &mut ArgminProblem<()>, state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
-        let known = self.known()?;
+    fn next_iter(&mut self, _: &mut ArgminProblem<()>, mut state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
+        let known = state.take_param().ok_or_else(|| Error::msg("the iterate is missing"))?;
         let mean = known.mean();
         let Some(locals) = linearise(self.problem, &known, Curvature::Full) else {
-            self.ending = Some("a point cannot be linearised".to_owned());
-            return Ok((state.param(parameters(&known)).cost(mean), None));
+            self.status = Some(RefinementStatus::NotLinearised);
+            return Ok((state.param(known).cost(mean), None));
         };
-        let mut accepted = None;
-        // Until a step is good or the trust region is gone; the linearisation stays.
-        while accepted.is_none() && self.trust >= LAST_TRUST {
-            let question = Question { trust: self.trust, curved: true, pose_stays: false };
-            match solve(self.problem, &known, &locals, question) {
-                Err(reason) => {
-                    self.ending = Some(reason);
-                    self.trust /= 4.0;
-                }
-                Ok(answer) if answer.promised < MIN_PROMISE * mean => {
-                    self.ending = Some("converged: no first-order gain".to_owned());
-                    break;
-                }
-                Ok(answer) => {
-                    self.ending = None;
-                    let pose = std::array::from_fn(|k| known.pose[k] + answer.pose[k]);
-                    let pose = inside(self.problem, pose);
-                    let betas: Vec<f64> = known
-                        .plans
-                        .iter()
-                        .flat_map(|plan| &plan.betas)
-                        .zip(&answer.betas)
-                        .map(|(b, d)| b + d)
-                        .collect();
-                    match moved(self.problem, &known, pose, &betas) {
-                        Some(candidate) if mean - candidate.mean() > 0.1 * answer.promised => {
-                            if mean - candidate.mean() > 0.7 * answer.promised {
-                                self.trust = (2.0 * self.trust).min(MAX_TRUST);
-                            }
-                            accepted = Some(candidate);
-                        }
-                        _ => self.trust /= 3.0,
-                    }
-                }
-            }
-        }
-        let next = accepted.unwrap_or(known);
+        let next = self.step(&known, mean, &locals).unwrap_or(known);
         self.lazy = if mean - next.mean() < MIN_GAIN * mean { self.lazy + 1 } else { 0 };
-        if self.lazy >= LAZY_STEPS && self.ending.is_none() {
-            self.ending = Some("converged: no more gain".to_owned());
+        if self.lazy >= LAZY_STEPS && self.status.is_none() {
+            self.status = Some(RefinementStatus::NoMoreGain);
         }
-        if self.trust < LAST_TRUST && self.ending.is_none() {
-            self.ending = Some("converged: no gain in the smallest trust region".to_owned());
+        if self.trust < LAST_TRUST && self.status.is_none() {
+            self.status = Some(RefinementStatus::SmallestTrustRegion);
         }
-        let (parameters, mean) = (parameters(&next), next.mean());
-        *self.solution.lock().map_err(|_| Error::msg("poisoned"))? = next;
-        Ok((state.param(parameters).cost(mean), Some(kv!("trust" => self.trust;))))
+        let mean = next.mean();
+        Ok((state.param(next).cost(mean), Some(kv!("trust" => self.trust;))))
     }
 
     fn terminate(&mut self, _: &Iterate) -> TerminationStatus {
-        match self.ending.take() {
-            Some(reason) => TerminationStatus::Terminated(TerminationReason::SolverExit(reason)),
+        match self.status {
+            Some(status) => TerminationStatus::Terminated(TerminationReason::SolverExit(status.to_string())),
             None => TerminationStatus::NotTerminated,
         }
     }
 }
 
 impl SequentialConvex<'_> {
-    fn known(&self) -> Result<Solution, Error> {
-        Ok(self.solution.lock().map_err(|_| Error::msg("poisoned"))?.clone())
+    /// A better solution inside the trust region, which shrinks until there is one or it is gone; the linearisation stays.
+    fn step(&mut self, known: &Solution, mean: f64, locals: &[Local]) -> Option<Solution> {
+        while self.trust >= LAST_TRUST {
+            let question = Question { trust: self.trust, curved: true, pose_stays: false };
+            let Ok(answer) = solve(self.problem, known, locals, question) else {
+                self.status = Some(RefinementStatus::SubproblemFailed);
+                self.trust /= 4.0;
+                continue;
+            };
+            if answer.promised < MIN_PROMISE * mean {
+                self.status = Some(RefinementStatus::NoFirstOrderGain);
+                return None;
+            }
+            self.status = None;
+            let placement = Placement::from(std::array::from_fn(|k| known.placement[k] + answer.placement[k]));
+            let placement = self.problem.cell.clamp(&placement);
+            let betas = known.plans.iter().flat_map(|plan| &plan.betas).zip(&answer.betas);
+            let betas: Vec<f64> = betas.map(|(beta, step)| beta + step).collect();
+            let gained = |candidate: &Solution| mean - candidate.mean();
+            match moved(self.problem, known, placement, &betas) {
+                Some(candidate) if gained(&candidate) > 0.1 * answer.promised => {
+                    if gained(&candidate) > 0.7 * answer.promised {
+                        self.trust = (2.0 * self.trust).min(MAX_TRUST);
+                    }
+                    return Some(candidate);
+                }
+                _ => self.trust /= 3.0,
+            }
+        }
+        None
     }
 }

@@ -7,7 +7,7 @@
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
 
-use super::super::problem::{Interval, Problem};
+use super::super::problem::{Interval, Placement, Problem};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::{LENGTH_UNIT, Solution};
 use clarabel::algebra::CscMatrix;
@@ -33,8 +33,8 @@ pub struct Question {
 /// What it answers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Pose step: m, m, m, rad.
-    pub pose: [f64; 4],
+    /// Step of x, y, z (m) and yaw (rad).
+    pub placement: [f64; 4],
     /// Steps of all betas. rad
     pub betas: Vec<f64>,
     /// Decrease of the mean score that the model promises, not negative. m
@@ -42,6 +42,11 @@ pub struct Answer {
     /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
     pub pose_gradient: [f64; 4],
 }
+
+/// clarabel refused a subproblem or found no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the subproblem could not be solved")]
+pub struct Unsolved;
 
 /// Coefficients of one inequality `row . x <= bound`.
 struct Rows {
@@ -76,8 +81,8 @@ impl Rows {
 /// Solves the subproblem at a solution with its linearisation.
 ///
 /// # Errors
-/// The status of clarabel, in words, when it found no solution.
-pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, String> {
+/// [`Unsolved`] when clarabel refused it or found no solution.
+pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
     let n = locals.len();
     let (beta, epigraph, margins) = (4, 4 + n, 4 + 2 * n);
     let kinked: Vec<usize> = (0..n).filter(|i| !locals[*i].changes.is_empty()).collect();
@@ -132,7 +137,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
             }
         }
     }
-    for (k, bounds) in pose_bounds(problem, &solution.pose).into_iter().enumerate() {
+    for (k, bounds) in pose_bounds(problem, &solution.placement).into_iter().enumerate() {
         let trust = question.trust;
         rows.add([(k, 1.0)], bounds.max.min(trust));
         rows.add([(k, -1.0)], (-bounds.min).min(trust));
@@ -169,7 +174,7 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
         }
     }
     Ok(Answer {
-        pose,
+        placement: pose,
         betas: found.x[beta..beta + n].to_vec(),
         promised: ((1.0 - found.obj_val) * unit).max(0.0),
         pose_gradient,
@@ -183,14 +188,13 @@ fn programme(
     matrix: &CscMatrix<f64>,
     bound: &[f64],
     cones: &[SupportedConeT<f64>],
-) -> Result<DefaultSolution<f64>, String> {
+) -> Result<DefaultSolution<f64>, Unsolved> {
     let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings)
-        .map_err(|e| format!("clarabel refused the subproblem: {e}"))?;
+    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings).map_err(|_| Unsolved)?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
-        status => Err(format!("clarabel: {status:?}")),
+        _ => Err(Unsolved),
     }
 }
 
@@ -198,7 +202,7 @@ fn programme(
 /// clarabel found none.
 pub fn pose_step(
     problem: &Problem,
-    pose: &[f64; 4],
+    placement: &Placement,
     gradient: &Vector4<f64>,
     curvature: &Matrix4<f64>,
     trust: f64,
@@ -211,7 +215,7 @@ pub fn pose_step(
     let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
     let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
     let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
-    let bounds = pose_bounds(problem, pose);
+    let bounds = pose_bounds(problem, placement);
     for (k, bound) in bounds.iter().enumerate() {
         rows.add([(k, 1.0)], bound.max.min(trust));
         rows.add([(k, -1.0)], (-bound.min).min(trust));
@@ -253,17 +257,17 @@ pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
 }
 
 /// How far each pose variable may move inside the cell, in scaled variables.
-pub fn pose_bounds(problem: &Problem, pose: &[f64; 4]) -> [Interval; 4] {
+pub fn pose_bounds(problem: &Problem, placement: &Placement) -> [Interval; 4] {
     let cell = &problem.cell;
     std::array::from_fn(|k| {
         if k < 3 {
             let Interval { min, max } = cell.position[k];
-            Interval { min: (min - pose[k]) / LENGTH_UNIT, max: (max - pose[k]) / LENGTH_UNIT }
+            Interval { min: (min - placement[k]) / LENGTH_UNIT, max: (max - placement[k]) / LENGTH_UNIT }
         } else if cell.is_yaw_free() {
             Interval { min: f64::NEG_INFINITY, max: f64::INFINITY }
         } else {
             let middle = (cell.yaw.min + cell.yaw.max) / 2.0;
-            let yaw = middle + wrap(pose[3] - middle);
+            let yaw = middle + wrap(placement.yaw - middle);
             Interval { min: cell.yaw.min - yaw, max: cell.yaw.max - yaw }
         }
     })

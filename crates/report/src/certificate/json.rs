@@ -1,23 +1,25 @@
 //! `certificate.json`.
 
-use super::{Certificate, Ended, Proof};
 use crate::document::{Document, placement};
 use crate::units::Unit;
 use serde_json::{Value, json};
+use stead_format::input::InputFile;
+use stead_placement::certify::{Certificate, NoProof, Proof};
 
 /// The content of `certificate.json`, and what `stead place --json` prints under `certificate`. `best` and `worst` are null
 /// where nothing is known, `best_reason` and `worst_reason` say why. Only `wall_s` differs from run to run, unless a time
 /// limit or the user ended it.
-pub fn certificate_json(certificate: &Certificate) -> Value {
+pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Value {
     let [best, worst] = [&certificate.best, &certificate.worst];
     let nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum();
-    Document::new(&certificate.inputs).with(json!({
+    let reason = |side: &Result<Proof, NoProof>| side.as_ref().err().map(NoProof::to_string);
+    Document::new(inputs).warnings(&certificate.warnings).with(json!({
         "gap_percent_asked": Unit::PLAIN.number(certificate.settings.gap * 100.0),
         "time_limit_s": certificate.settings.time_limit,
         "best": best.as_ref().map_or(Value::Null, side),
-        "best_reason": best.as_ref().err(),
+        "best_reason": reason(best),
         "worst": worst.as_ref().map_or(Value::Null, side),
-        "worst_reason": worst.as_ref().err(),
+        "worst_reason": reason(worst),
         "nodes": nodes,
         "wall_s": Unit::TIME_S.number(certificate.wall),
     }))
@@ -30,19 +32,9 @@ fn side(proof: &Proof) -> Value {
         "bound_mm": proof.bound_mm(),
         "gap_percent": proof.gap_percent(),
         "with_beta_rate": proof.bound.with_rate,
-        "limits_relaxed": proof.relaxed,
-        "status": status(proof.end),
+        "limits_relaxed": proof.relaxed_words(),
+        "status": proof.bound.status,
         "open_boxes": proof.bound.open.len(),
         "nodes": proof.bound.nodes,
     })
-}
-
-/// One word for how it ended.
-fn status(end: Ended) -> &'static str {
-    match end {
-        Ended::Reached => "reached",
-        Ended::Exhausted => "exhausted",
-        Ended::TimeLimit => "time_limit",
-        Ended::Interrupted => "interrupted",
-    }
 }

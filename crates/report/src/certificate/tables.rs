@@ -1,10 +1,10 @@
 //! `open-region.csv`.
 
-use super::{Certificate, OpenBox, open_boxes};
 use crate::csv_file::table;
 use crate::names;
 use crate::output::ReportError;
 use crate::units::{Unit, fixed};
+use stead_placement::certify::{Certificate, OpenBox};
 use stead_placement::problem::Problem;
 
 /// `open-region.csv`: the boxes of placements that may still hold one better (or worse) than the value found by more than the
@@ -26,7 +26,7 @@ pub fn open_region(problem: &Problem, certificate: &Certificate) -> Result<Vec<u
     ];
     let proofs = [&certificate.best, &certificate.worst].into_iter().flatten();
     let rows = proofs.flat_map(|proof| {
-        open_boxes(problem, proof).into_iter().map(|open| {
+        proof.open_boxes(problem).into_iter().map(|open| {
             let OpenBox { radius, z, turn, bound } = open;
             let mut row = vec![names::sense(proof.sense).to_owned()];
             row.extend([radius, z].into_iter().flatten().map(|value| Unit::PLACE_MM.text(value)));

@@ -1,24 +1,25 @@
 use super::super::testing::{outcome, problem};
 use super::*;
-use stead_numerics::monitor::Stop;
-use stead_placement::certify::End;
+use crate::units::Unit;
+use stead_placement::certify::{BOUND_DECIMALS, Bound, NoProof, Proof, Region, Status};
+use stead_placement::problem::Problem;
 use stead_placement::sense::Sense;
+use stead_placement::settings::CertificateSettings;
 
 /// Bounds about the best placement of the result, in mm.
 fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
     let (value, bound) = (value_mm / 1e3, bound_mm / 1e3);
-    let end = if open.is_empty() { End::Reached } else { End::Stopped(Stop::Asked) };
-    let bound = Bound { value, bound, with_rate: sense == Sense::Min, nodes: 7, end, open };
-    let end = if end == End::Reached { Ended::Reached } else { Ended::TimeLimit };
-    Proof::new(problem(), sense, outcome().cases.best.placement, bound, end)
+    let status = if open.is_empty() { Status::Reached } else { Status::TimeLimit };
+    let bound = Bound { value, bound, with_rate: sense == Sense::Min, nodes: 7, status, open };
+    Proof::new(problem(), sense, outcome().cases.best.placement, bound)
 }
 
 fn certificate(best: Proof) -> Certificate {
     Certificate {
         settings: CertificateSettings { gap: 0.005, time_limit: Some(20.0) },
         best: Ok(best),
-        worst: Err("for a reason".to_owned()),
-        inputs: Vec::new(),
+        worst: Err(NoProof::TimeLimit),
+        warnings: Vec::new(),
         wall: 1.5,
     }
 }
@@ -35,6 +36,7 @@ fn bounds_are_rounded_to_where_they_hold_and_gaps_upwards() {
     assert_eq!((best.bound_mm(), best.gap_percent()), (0.0995, 0.5));
     let worst = proof(Sense::Max, 1.0, 1.001_000_01, Vec::new());
     assert_eq!((worst.bound_mm(), worst.gap_percent()), (1.0010001, 0.1001));
+    assert_eq!(BOUND_DECIMALS, Unit::DEFLECTION_MM.decimals);
     // What is reached exactly is not stated as missed by the last bits.
     let gap = 0.005;
     let exact = proof(Sense::Min, 0.107_509_9, 0.107_509_9 * (1.0 - gap), Vec::new());
@@ -46,7 +48,7 @@ fn relaxed_limits_are_named() {
     let mut problem = problem().clone();
     let words = |problem: &Problem, sense| {
         let bound = proof(sense, 1.0, 1.0, Vec::new()).bound;
-        Proof::new(problem, sense, outcome().cases.best.placement, bound, Ended::Reached).relaxed.join(", ")
+        Proof::new(problem, sense, outcome().cases.best.placement, bound).relaxed_words().join(", ")
     };
     let common = "steps and turns of the joints between path points, limits of joints 1, 4 and 6";
     assert_eq!(words(&problem, Sense::Min), format!("{common}, max_deflection_mm"));
@@ -58,7 +60,7 @@ fn relaxed_limits_are_named() {
     let mut joints = problem.robot.joints().clone();
     joints[4].min = 0.1;
     problem.robot = stead_model::robot::Robot::new("bent", joints).unwrap();
-    assert!(words(&problem, Sense::Min).contains("joints 1, 4 and 6, limits of joint 5, "));
+    assert!(words(&problem, Sense::Min).contains("limits of joints 1, 4, 5 and 6, "));
 }
 
 #[test]
@@ -70,13 +72,16 @@ fn sentences_state_the_bound_and_what_falls_short() {
         joined.contains("below 0.1069723 mm; yours has 0.1075099 mm: none is better by more than 0.5 %."),
         "{text}"
     );
-    assert!(joined.contains("No certificate for the worst placement: for a reason. "), "{text}");
+    assert!(
+        joined.contains("No certificate for the worst placement: the time limit was over before it began. "),
+        "{text}"
+    );
     assert!(text.lines().all(|line| line.chars().count() <= 110), "{text}");
-    assert_eq!(ending(&reached, reached.best.as_ref().unwrap()), None);
+    assert_eq!(reached.best.as_ref().unwrap().shortfall(&reached.settings), None);
 
     let open = certificate(proof(Sense::Min, 0.1, 0.09, boxes()));
     let said = "the time limit of 20.0 s is over: a gap of 10 % is reached, 0.500 % was asked for; 2 boxes are open";
-    assert_eq!(ending(&open, open.best.as_ref().unwrap()).as_deref(), Some(said));
+    assert_eq!(open.best.as_ref().unwrap().shortfall(&open.settings).as_deref(), Some(said));
 
     // Dropping a limit makes the worst placement better, so each one dropped is no bound of what it is with it.
     let worst = Certificate { worst: Ok(proof(Sense::Max, 1.0, 1.001, Vec::new())), ..reached.clone() };
@@ -94,7 +99,7 @@ fn sentences_state_the_bound_and_what_falls_short() {
     let worst = Certificate { worst: Ok(proof(Sense::Max, 1.0, f64::INFINITY, boxes())), ..reached };
     let nothing = certificate_text(&worst);
     assert!(nothing.contains("nothing is known") && !nothing.contains("above"), "{nothing}");
-    assert_eq!(certificate_json(&worst)["worst"]["bound_mm"], serde_json::Value::Null);
+    assert_eq!(certificate_json(&worst, &[])["worst"]["bound_mm"], serde_json::Value::Null);
 }
 
 #[test]
@@ -111,7 +116,7 @@ fn open_boxes_are_in_the_base_frame_for_an_arm_that_hangs_too() {
     let expected = format!("best,1750.0000,1850.0000,{:.4},{:.4},-68.7549,-45.8366,0.0900000", z - 500.0, z - 300.0);
     assert_eq!(first, expected);
     assert_eq!(rows.count(), 1);
-    let up = OpenBox::new(problem(), &boxes()[0].0, 0.0);
+    let up = proof(Sense::Min, 0.1, 0.09, boxes()).open_boxes(problem())[0];
     assert!((up.turn[0] + 1.2).abs() < 1e-12 && (up.radius[1] - 1.85).abs() < 1e-12);
 }
 

@@ -1,7 +1,8 @@
 //! The certificate in sentences.
 
-use super::{Certificate, Ended, Proof};
-use crate::units::{Unit, figures, fixed};
+use crate::names;
+use crate::units::{Unit, fixed};
+use stead_placement::certify::{Certificate, Proof};
 use stead_placement::sense::Sense;
 
 /// Widest line.
@@ -24,12 +25,9 @@ pub fn certificate_text(certificate: &Certificate) -> String {
 fn stated(proof: &Proof) -> String {
     let bound = fixed(proof.bound_mm(), Unit::DEFLECTION_MM.decimals);
     let value = Unit::DEFLECTION_MM.text(proof.bound.value);
-    let gap = percent(proof);
+    let gap = proof.gap_words();
     if !proof.is_of_use() {
-        let name = match proof.sense {
-            Sense::Min => "best",
-            Sense::Max => "worst",
-        };
+        let name = names::sense(proof.sense);
         return format!("Certificate, {name} placement: it ended before there was any bound of use; nothing is known.");
     }
     let claim = match proof.sense {
@@ -43,31 +41,7 @@ fn stated(proof: &Proof) -> String {
              {gap} %. With these limits kept this is no bound: worse ones are possible then."
         ),
     };
-    format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed.join("; "))
-}
-
-/// The gap in per cent as sentences have it.
-fn percent(proof: &Proof) -> String {
-    let text = fixed(proof.gap_percent(), 4);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// Why a proof falls short of what was asked for, where it does.
-pub fn ending(certificate: &Certificate, proof: &Proof) -> Option<String> {
-    let asked = figures(certificate.settings.gap * 100.0);
-    let why = match proof.end {
-        Ended::Reached => return None,
-        Ended::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
-        Ended::Interrupted => "interrupted".to_owned(),
-        Ended::TimeLimit => {
-            let limit = certificate.settings.time_limit.map(figures).unwrap_or_default();
-            format!("the time limit of {limit} s is over")
-        }
-    };
-    let open = proof.bound.open.len();
-    let gap = if proof.is_of_use() { format!("a gap of {} %", percent(proof)) } else { "no gap".to_owned() };
-    let boxes = if open == 1 { "box is" } else { "boxes are" };
-    Some(format!("{why}: {gap} is reached, {asked} % was asked for; {open} {boxes} open"))
+    format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed_words().join("; "))
 }
 
 /// A paragraph in lines.

@@ -1,6 +1,5 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
-use super::text::notes;
 use super::{URAD, key, rounded};
 use crate::document::Document;
 use crate::units::Unit;
@@ -8,14 +7,14 @@ use serde_json::{Map, Value, json};
 use stead_calibration::identification::law::Quantity;
 use stead_calibration::identification::model::Parameter;
 use stead_calibration::identification::outcome::Estimate;
-use stead_calibration::identification::{Identified, RowResult};
+use stead_calibration::identification::{Held, Identified, RowResult};
 use stead_format::IdentifyRun;
 use stead_model::robot::Compliance;
 
 /// Significant digits of estimates.
 const DIGITS: usize = 12;
 
-/// The document: compliances as seen, compensator, arm with covariance, residuals, outliers, prediction error.
+/// The document: compliances, compensator, arm with covariance, residuals, outliers, prediction error.
 pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
     let sheet = &run.problem.sheet;
     let worst = found
@@ -24,7 +23,7 @@ pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
         .map(|(index, rms)| json!({ "configuration": sheet.configurations[index].name, "rms_mm": millimetres(rms) }));
     let unpredicted: Vec<&str> =
         found.prediction.unpredicted.iter().map(|index| sheet.configurations[*index].name.as_str()).collect();
-    Document::new(&run.inputs).notes(&run.notes).warnings(notes(run, found)).with(json!({
+    Document::new(&run.inputs).notes(&run.notes).warnings(&found.warnings).with(json!({
         "robot": found.robot.name(),
         "configurations": sheet.configurations.len(),
         "readings": sheet.readings.len(),
@@ -59,16 +58,9 @@ fn millimetres(length: f64) -> f64 {
     rounded(length * 1e3, DIGITS)
 }
 
-fn joint_of(found: &Identified, parameter: Parameter) -> usize {
-    match parameter {
-        Parameter::Joint(joint) => joint,
-        Parameter::Group(_) => found.varying.unwrap_or_default(),
-    }
-}
-
-/// The joints that keep the compliance of the robot file: not those of which one angle alone is not seen.
+/// The joints that keep the compliance of the robot file: not those of which one angle alone is unidentifiable.
 fn held(found: &Identified) -> Vec<usize> {
-    let joint = |parameter: &Parameter| match parameter {
+    let joint = |held: &Held| match held.parameter {
         Parameter::Joint(joint) => Some(joint + 1),
         Parameter::Group(_) => None,
     };
@@ -82,7 +74,7 @@ fn numbers<P>(estimate: &Estimate<P>, factor: f64, names: [&str; 4]) -> [(String
 }
 
 fn compliance(found: &Identified, estimate: &Estimate<Parameter>) -> Value {
-    let joint = joint_of(found, estimate.parameter);
+    let joint = found.joint(estimate.parameter);
     let mut map = Map::from_iter([("joint".to_owned(), json!(joint + 1))]);
     if let Some(angle) = estimate.angle {
         let angle = json!(Unit::ANGLE_DEG.number(angle));

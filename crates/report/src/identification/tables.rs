@@ -5,7 +5,6 @@ use super::{URAD, key, rounded, unit};
 use crate::csv_file::table;
 use crate::units::{Unit, fixed};
 use stead_calibration::identification::Identified;
-use stead_calibration::identification::model::Parameter;
 use stead_format::IdentifyRun;
 
 /// Significant digits of estimates.
@@ -15,15 +14,12 @@ fn number(value: f64) -> String {
     rounded(value, DIGITS).to_string()
 }
 
-/// `compliances.csv`: first every compliance as seen (one for each distinct angle of the joint beside a compensator), then the
-/// numbers of the robot file, each with its standard deviation and 95 % interval.
+/// `compliances.csv`: first every compliance (one for each distinct angle of the joint beside a compensator), then the
+/// parameters of the robot file, each with its standard deviation and 95 % interval.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
     let header = ["parameter", "unit", "angle_deg", "value", "std", "low", "high"];
     let seen = found.compliances.iter().map(|estimate| {
-        let joint = match estimate.parameter {
-            Parameter::Joint(joint) => joint,
-            Parameter::Group(_) => found.varying.unwrap_or_default(),
-        };
+        let joint = found.joint(estimate.parameter);
         let angle = estimate.angle.map_or_else(String::new, |angle| Unit::ANGLE_DEG.text(angle));
         let mut row = vec![format!("seen.joints[{}].compliance", joint + 1), "urad/(N m)".to_owned(), angle];
         row.extend(

@@ -56,6 +56,16 @@ fn a_robot_file_changes_in_its_compliances_alone_however_it_is_written() {
 }
 
 #[test]
+fn results_can_be_serialised_in_si_units() {
+    let (_, found) = example();
+    let value = serde_json::to_value(&found).unwrap();
+    assert_eq!((&value["robot"], &value["warnings"]), (&serde_json::json!("KUKA KR270-2"), &serde_json::json!([])));
+    assert_eq!(value["arm"][1]["parameter"], serde_json::json!({ "joint": 1, "quantity": "Compliance" }));
+    assert_eq!(value["arm"][1]["value"].as_f64(), Some(found.arm[1].value));
+    assert_eq!(value["covariance"][2][3].as_f64(), Some(found.covariance[(2, 3)]));
+}
+
+#[test]
 fn numbers_have_the_digits_asked_for() {
     assert_eq!([rounded(0.123_456_789, 3), rounded(-98_765.0, 2), rounded(0.0, 5)], [0.123, -99_000.0, 0.0]);
 }

@@ -1,7 +1,7 @@
 //! Colours.
 
 use std::fmt;
-use stead_placement::outcome::Blocked;
+use stead_placement::constraints::ConstraintKind;
 
 /// Red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,16 +76,16 @@ pub(super) fn contrast(Colour(red, green, blue): Colour) -> Colour {
 }
 
 /// The pale ground of states that are not allowed.
-pub(super) fn ground(blocked: Blocked) -> Colour {
+pub(super) fn ground(blocked: ConstraintKind) -> Colour {
     match blocked {
-        Blocked::Reach => WHITE,
-        Blocked::JointLimit(1) => Colour(240, 240, 215),
-        Blocked::JointLimit(2) => Colour(221, 230, 245),
-        Blocked::JointLimit(3) => Colour(246, 224, 222),
-        Blocked::JointLimit(4) => Colour(232, 224, 244),
-        Blocked::JointLimit(5) => Colour(222, 222, 222),
-        Blocked::JointLimit(_) => Colour(222, 240, 228),
-        Blocked::Conditioning | Blocked::Deflection => Colour(248, 248, 248),
+        ConstraintKind::Reach => WHITE,
+        ConstraintKind::JointLimit(1) => Colour(240, 240, 215),
+        ConstraintKind::JointLimit(2) => Colour(221, 230, 245),
+        ConstraintKind::JointLimit(3) => Colour(246, 224, 222),
+        ConstraintKind::JointLimit(4) => Colour(232, 224, 244),
+        ConstraintKind::JointLimit(5) => Colour(222, 222, 222),
+        ConstraintKind::JointLimit(_) => Colour(222, 240, 228),
+        _ => Colour(248, 248, 248),
     }
 }
 

@@ -8,7 +8,9 @@ use super::heat_map::{ColourBar, ColourRange, HeatMap};
 use crate::names;
 use crate::units::fixed;
 use std::collections::BTreeSet;
-use stead_placement::outcome::{Blocked, Case, DeflectionMap, MapCell, Plan};
+use stead_placement::constraints::ConstraintKind;
+use stead_placement::feasibility::{DeflectionMap, MapCell};
+use stead_placement::outcome::{Case, Plan};
 use stead_placement::problem::Problem;
 
 const SIZE: Pixel = (1120, 710);
@@ -45,7 +47,7 @@ struct Picture<'a> {
 #[derive(Clone, Copy, PartialEq)]
 enum Cell {
     Level(usize),
-    Blocked(Blocked),
+    Blocked(ConstraintKind),
 }
 
 impl<'a> Picture<'a> {
@@ -69,8 +71,8 @@ impl<'a> Picture<'a> {
             Cell::Level(level) => viridis(level),
             Cell::Blocked(blocked) => ground(blocked),
         });
-        self.hatching(canvas, Blocked::Conditioning, Slope::Up);
-        self.hatching(canvas, Blocked::Deflection, Slope::Down);
+        self.hatching(canvas, ConstraintKind::Conditioning, Slope::Up);
+        self.hatching(canvas, ConstraintKind::MaxDeflection, Slope::Down);
         self.segments(canvas);
         self.plan(canvas, &self.worst.plan, RED);
         self.plan(canvas, &self.best.plan, GREEN);
@@ -92,14 +94,14 @@ impl<'a> Picture<'a> {
         canvas.text(&subtitle, (LEFT, 47), TextStyle::new(12.0).coloured(INK))
     }
 
-    fn hatching(&self, canvas: &mut Canvas, blocked: Blocked, slope: Slope) {
+    fn hatching(&self, canvas: &mut Canvas, blocked: ConstraintKind, slope: Slope) {
         if self.reasons().contains(&blocked) {
             let area = ((LEFT, TOP), (RIGHT, BOTTOM));
             hatch(canvas, area, slope, GREY, |pixel| self.cells.at(pixel) == Some(Cell::Blocked(blocked)));
         }
     }
 
-    fn reasons(&self) -> BTreeSet<Blocked> {
+    fn reasons(&self) -> BTreeSet<ConstraintKind> {
         self.map.rows.iter().flatten().filter_map(|cell| cell.err()).collect()
     }
 
@@ -181,7 +183,7 @@ impl<'a> Picture<'a> {
         canvas.text("not allowed:", (LEFT, y), style);
         x = indent;
         for blocked in reasons {
-            let label = names::reason_in_legend(blocked);
+            let label = names::constraint_in_legend(blocked);
             let width = 33 + style.width(&label);
             if x + width > SIZE.0 {
                 (x, y) = (indent, y + 26);
@@ -189,9 +191,9 @@ impl<'a> Picture<'a> {
             let corners = ((x, y - 8), (x + 26, y + 8));
             canvas.fill(corners.0, corners.1, ground(blocked));
             match blocked {
-                Blocked::Conditioning => hatch(canvas, corners, Slope::Up, GREY, |_| true),
-                Blocked::Deflection => hatch(canvas, corners, Slope::Down, GREY, |_| true),
-                Blocked::Reach | Blocked::JointLimit(_) => {}
+                ConstraintKind::Conditioning => hatch(canvas, corners, Slope::Up, GREY, |_| true),
+                ConstraintKind::MaxDeflection => hatch(canvas, corners, Slope::Down, GREY, |_| true),
+                _ => {}
             }
             canvas.outline(corners.0, corners.1, GREY);
             canvas.text(&label, (x + 33, y), style);

@@ -60,13 +60,13 @@ fn legend(canvas: &mut Canvas, plan: &Design) {
 }
 
 fn draw_bars(canvas: &mut Canvas, plan: &Design) {
-    let most = plan.bars.iter().flat_map(percents).flatten().fold(0.0, f64::max);
+    let most = plan.compliances.iter().flat_map(percents).flatten().fold(0.0, f64::max);
     let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
-    let x = Scale::new(0.0, plan.bars.len().max(1) as f64, LEFT, RIGHT);
+    let x = Scale::new(0.0, plan.compliances.len().max(1) as f64, LEFT, RIGHT);
     let panel = Panel::new(x, y, [1, 7], ["compliance", "standard deviation (%)"]);
     let panel = Panel { x_ticks: Ticks::none(), ..panel };
     panel.draw_grid(canvas);
-    for (index, bar) in plan.bars.iter().enumerate() {
+    for (index, bar) in plan.compliances.iter().enumerate() {
         let (from, to) = (panel.x.pixel(index as f64 + 0.12), panel.x.pixel(index as f64 + 0.88));
         let width = (to - from) / 3;
         for (k, percent) in percents(bar).into_iter().enumerate() {

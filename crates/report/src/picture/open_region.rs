@@ -5,11 +5,12 @@ use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, RED, viridis};
 use super::heat_map::HeatMap;
-use crate::certificate::{OpenBox, Proof, open_boxes};
 use crate::units::fixed;
 use stead_model::robot::angles::wrap;
+use stead_placement::certify::{OpenBox, Proof};
 use stead_placement::problem::Problem;
 use stead_placement::sense::Sense;
+use stead_placement::symmetry::about_axis_1;
 
 /// Pixels between panels, and the side of a panel.
 const LEFT: [i32; 2] = [85, 635];
@@ -24,7 +25,7 @@ const LEAST: f64 = 10.0;
 /// less the azimuth, each place in the colour of the most promising box there. The dot is the placement found.
 pub fn open_region(problem: &Problem, proof: &Proof) -> String {
     picture((1110, 690), |canvas| {
-        let boxes = open_boxes(problem, proof);
+        let boxes = proof.open_boxes(problem);
         let colours = Colours::new(proof, &boxes);
         heading(canvas, proof, boxes.len());
         from_above(canvas, problem, proof, &boxes, &colours);
@@ -95,9 +96,8 @@ fn from_above(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[Op
 /// Distance from axis 1 over the yaw less the azimuth.
 fn turned(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[OpenBox], colours: &Colours) {
     let root = problem.robot.geometry().root_in_base;
-    let (dx, dy) = (proof.placement.x - root.x, proof.placement.y - root.y);
-    let own = libm::hypot(dx, dy) * 1e3;
-    let turn = wrap(proof.placement.yaw - libm::atan2(dy, dx)).to_degrees();
+    let [own, _, turn] = about_axis_1(problem, &proof.placement);
+    let (own, turn) = (own * 1e3, wrap(turn).to_degrees());
     let [x, y, _] = problem.cell.position;
     let distance = |x: f64, y: f64| libm::hypot(x - root.x, y - root.y) * 1e3;
     let far = [(x.min, y.min), (x.min, y.max), (x.max, y.min), (x.max, y.max)].map(|(x, y)| distance(x, y));

@@ -4,9 +4,9 @@ use super::axes::{Panel, Scale};
 use super::canvas::picture;
 use super::colour::{GREEN, INK, PALE, RED};
 use super::line_chart::{LineChart, Mark, Sign, legend};
-use crate::stability::PathStability;
 use crate::units::fixed;
 use stead_placement::outcome::Plan;
+use stead_study::PathStability;
 
 const LEFT: i32 = 95;
 const RIGHT: i32 = 970;

@@ -34,7 +34,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
         "worst": plan(&score.worst),
     });
     if let Some(stability) = &context.stability {
-        entries["stability"] = stability.document(true);
+        entries["stability"] = crate::stability::path::document(stability, true);
     }
     context.document().with(entries)
 }
@@ -72,7 +72,10 @@ pub fn score_text(score: &Score, context: &Context) -> String {
     let last = header.len() - 1;
     let header = header.into_iter().map(str::to_owned).collect();
     let rows = [header, row("best", &score.best), row("worst", &score.worst)];
-    let stability = context.stability.as_ref().map(|found| format!("\n{}", found.text(["best plan", "worst plan"])));
+    let stability = context
+        .stability
+        .as_ref()
+        .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
     format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
 }
 

@@ -8,10 +8,11 @@ use crate::document::{Timing, placement, put_deviation};
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
-use stead_placement::lookup::{Axis, Unsuited};
+use stead_placement::lookup::Axis;
 use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
 use stead_placement::problem::{Interval, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
+use stead_placement::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
 pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
@@ -57,7 +58,12 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
-    document.extend(context.stability.as_ref().map(|found| ("stability".to_owned(), found.document(with_points))));
+    document.extend(
+        context
+            .stability
+            .as_ref()
+            .map(|found| ("stability".to_owned(), crate::stability::path::document(found, with_points))),
+    );
     document
 }
 
@@ -65,7 +71,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
 const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
 
 /// The lookup table that the search used, or why there is none.
-fn tabled(tabled: &Result<Tabled, Unsuited>) -> Value {
+fn tabled(tabled: &Result<Tabled, Unsupported>) -> Value {
     match tabled {
         Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),
         Ok(Tabled { shape, accuracy }) => {
@@ -147,7 +153,7 @@ fn refinement(refinement: &Refinement) -> Value {
         "rounds": refinement.rounds,
         "iterations": refinement.iterations,
         "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
-        "status": refinement.statuses.join("; "),
+        "status": names::statuses(&refinement.statuses),
     })
 }
 

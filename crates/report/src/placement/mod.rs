@@ -13,13 +13,14 @@ pub use text::placement_text;
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
 use crate::picture;
-use crate::stability::PathStability;
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::{InputFile, Reference};
+use stead_numerics::message::Warning;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
+use stead_study::PathStability;
 
 /// What the reports state besides the problem and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,8 @@ pub struct Context {
     pub inputs: Vec<InputFile>,
     /// What the result rests on: assumptions made and values left at their defaults.
     pub notes: Vec<String>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
     /// How hard the search was, and its seed.
     pub search: SearchSettings,
     /// The assumptions behind the times of the moves.
@@ -44,6 +47,7 @@ impl Context {
         Self {
             inputs: run.inputs.clone(),
             notes: run.notes.clone(),
+            warnings: Vec::new(),
             search,
             transfer: run.transfer,
             reference: run.reference.clone(),
@@ -53,7 +57,7 @@ impl Context {
 
     /// A JSON document on what was computed from the run file.
     pub fn document(&self) -> Document {
-        Document::new(&self.inputs).notes(&self.notes)
+        Document::new(&self.inputs).notes(&self.notes).warnings(&self.warnings)
     }
 }
 
@@ -93,7 +97,7 @@ pub fn write_placement(
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
     if let Some(stability) = &context.stability {
-        files.extend(stability.files([&best.plan, &worst.plan])?);
+        files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan])?);
     }
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

@@ -7,7 +7,8 @@ use crate::units::{Unit, fixed};
 use stead_format::input::Reference;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
-use stead_placement::outcome::{Cases, DeflectionMap, Generation, Plan, PlanPoint, Refinement};
+use stead_placement::feasibility::DeflectionMap;
+use stead_placement::outcome::{Cases, Generation, Plan, PlanPoint, Refinement};
 use stead_placement::problem::{Placement, Problem};
 
 const PLAN: [&str; 27] = [
@@ -142,7 +143,7 @@ pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>,
             let mut fields = vec![point.to_string(), segment(path, point), fixed(beta_deg, Unit::ANGLE_DEG.decimals)];
             fields.extend(match cell {
                 Ok(cell) => [Unit::DEFLECTION_MM.text(cell.score), cell.posture.to_string(), String::new()],
-                Err(blocked) => [String::new(), String::new(), names::reason(*blocked)],
+                Err(blocked) => [String::new(), String::new(), blocked.code()],
             });
             fields
         })
@@ -203,7 +204,7 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
         row.push(Unit::DEFLECTION_MM.text(refinement.end_mean));
         row.extend([refinement.rounds.to_string(), refinement.iterations.to_string()]);
         row.push(Unit::RESIDUAL_MM.text(refinement.kkt_residual));
-        row.push(refinement.statuses.join("; "));
+        row.push(names::statuses(&refinement.statuses));
         row
     });
     table("the table of refinements", &header, rows)

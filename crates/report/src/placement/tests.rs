@@ -125,7 +125,7 @@ fn the_other_tables_have_their_columns() {
     assert_eq!(table[0].join(","), "case,after_segment,duration_s,travel_deg");
     assert_eq!(table.len(), 1 + 4 * 4);
     let table = rows(&tables::refinements(&outcome().refinements).unwrap());
-    assert_eq!(column(&table, "status")[0], "converged; plan unchanged");
+    assert_eq!(column(&table, "status")[0], "converged: no more gain; converged: no first-order gain");
     assert_eq!(column(&table, "kkt_residual_mm")[0], "0.0000003200");
 }
 

@@ -5,9 +5,9 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_format::input::Reference;
-use stead_placement::lookup::Unsuited;
 use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
+use stead_placement::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
@@ -28,7 +28,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     if let Some(stability) = &context.stability {
         text.push('\n');
-        text.push_str(&stability.text(["best placement", "worst placement"]));
+        text.push_str(&crate::stability::path::text(stability, ["best placement", "worst placement"]));
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
@@ -43,8 +43,8 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
                 ),
             );
         }
-        Some(Err(unsuited @ Unsuited::Misleading)) => {
-            line(&mut text, &format!("searched again without a lookup table: {unsuited}"));
+        Some(Err(rejected @ Unsupported::Rejected)) => {
+            line(&mut text, &format!("searched again without a lookup table: {rejected}"));
         }
         Some(Err(unsuited)) => line(&mut text, &format!("none of them from a lookup table: {unsuited}")),
         None => {}

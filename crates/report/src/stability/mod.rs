@@ -2,14 +2,13 @@
 //! text for people.
 
 mod json;
-mod path;
+pub(crate) mod path;
 mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
 pub use json::stability_json;
-pub use path::PathStability;
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 

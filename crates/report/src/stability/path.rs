@@ -8,76 +8,66 @@ use crate::csv_file::table;
 use crate::units::fixed;
 use serde_json::{Value, json};
 use stead_placement::outcome::Plan;
-use stead_simulation::path_stability::{PathStabilityAnalysis, smallest};
+use stead_simulation::path_stability::smallest;
 use stead_simulation::stability_analysis::CutStability;
+use stead_study::PathStability;
 
-/// What may be cut along two plans.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PathStability {
-    /// What is to be cut.
-    pub analysis: PathStabilityAnalysis,
-    /// Along both plans, point by point.
-    pub plans: [Vec<CutStability>; 2],
+/// `stability-best.csv`, `stability-worst.csv` and `stability.svg` for the two plans.
+///
+/// # Errors
+/// [`ReportError::Format`] when a file cannot be made.
+pub fn files(stability: &PathStability, plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
+    Ok([
+        ("stability-best.csv", along(plans[0], &stability.plans[0])?),
+        ("stability-worst.csv", along(plans[1], &stability.plans[1])?),
+        ("stability.svg", picture::path_stability(stability, plans).into_bytes()),
+    ])
 }
 
-impl PathStability {
-    /// `stability-best.csv`, `stability-worst.csv` and `stability.svg` for the two plans.
-    ///
-    /// # Errors
-    /// [`ReportError::Format`] when a file cannot be made.
-    pub fn files(&self, plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
-        Ok([
-            ("stability-best.csv", along(plans[0], &self.plans[0])?),
-            ("stability-worst.csv", along(plans[1], &self.plans[1])?),
-            ("stability.svg", picture::path_stability(self, plans).into_bytes()),
-        ])
-    }
-
-    /// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
-    /// of them too.
-    pub fn document(&self, points: bool) -> Value {
-        let plan = |depths: &Vec<CutStability>| {
-            let least = smallest(depths);
-            let mut value = json!({
-                "smallest_critical_depth_mm": least.map(|(_, depth)| DEPTH_MM.number(depth)),
-                "at_point": least.map(|(point, _)| point),
-                "stable": depths.iter().all(|at| at.verdict.is_stable()),
-                "points_that_chatter": chattering(depths),
-            });
-            if points && let Some(object) = value.as_object_mut() {
-                object.insert("points".to_owned(), depths.iter().map(verdict).map(Value::Object).collect());
-            }
-            value
-        };
-        json!({
-            "variant": self.analysis.variant.word(),
-            "damping_scale": self.analysis.damping_scale,
-            "spindle_rpm": RPM.number(self.analysis.cut.spindle_speed),
-            "axial_depth_mm": DEPTH_MM.number(self.analysis.cut.section.axial_depth),
-            "max_depth_mm": DEPTH_MM.number(self.analysis.max_depth),
-            "best": plan(&self.plans[0]),
-            "worst": plan(&self.plans[1]),
-        })
-    }
-
-    /// A line for each of the two plans, by what they are called.
-    pub fn text(&self, names: [&str; 2]) -> String {
-        let mut text = String::new();
-        for (name, depths) in names.iter().zip(&self.plans) {
-            let max_depth = match smallest(depths) {
-                Some((point, depth)) => format!("down to {} mm (point {point})", fixed(depth * 1e3, 3)),
-                None => format!("beyond {} mm everywhere", fixed(self.analysis.max_depth * 1e3, 3)),
-            };
-            let (bad, count) = (chattering(depths), depths.len());
-            let verdict = match bad {
-                0 => "is stable at every point".to_owned(),
-                _ => format!("chatters at {bad} of {count} points"),
-            };
-            let depth = fixed(self.analysis.cut.section.axial_depth * 1e3, 3);
-            text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
+/// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
+/// of them too.
+pub fn document(stability: &PathStability, points: bool) -> Value {
+    let plan = |depths: &Vec<CutStability>| {
+        let least = smallest(depths);
+        let mut value = json!({
+            "smallest_critical_depth_mm": least.map(|(_, depth)| DEPTH_MM.number(depth)),
+            "at_point": least.map(|(point, _)| point),
+            "stable": depths.iter().all(|at| at.verdict.is_stable()),
+            "points_that_chatter": chattering(depths),
+        });
+        if points && let Some(object) = value.as_object_mut() {
+            object.insert("points".to_owned(), depths.iter().map(verdict).map(Value::Object).collect());
         }
-        text
+        value
+    };
+    json!({
+        "variant": stability.analysis.variant.word(),
+        "damping_scale": stability.analysis.damping_scale,
+        "spindle_rpm": RPM.number(stability.analysis.cut.spindle_speed),
+        "axial_depth_mm": DEPTH_MM.number(stability.analysis.cut.section.axial_depth),
+        "max_depth_mm": DEPTH_MM.number(stability.analysis.max_depth),
+        "best": plan(&stability.plans[0]),
+        "worst": plan(&stability.plans[1]),
+    })
+}
+
+/// A line for each of the two plans, by what they are called.
+pub fn text(stability: &PathStability, names: [&str; 2]) -> String {
+    let mut text = String::new();
+    for (name, depths) in names.iter().zip(&stability.plans) {
+        let max_depth = match smallest(depths) {
+            Some((point, depth)) => format!("down to {} mm (point {point})", fixed(depth * 1e3, 3)),
+            None => format!("beyond {} mm everywhere", fixed(stability.analysis.max_depth * 1e3, 3)),
+        };
+        let (bad, count) = (chattering(depths), depths.len());
+        let verdict = match bad {
+            0 => "is stable at every point".to_owned(),
+            _ => format!("chatters at {bad} of {count} points"),
+        };
+        let depth = fixed(stability.analysis.cut.section.axial_depth * 1e3, 3);
+        text.push_str(&format!("{name}: critical depth {max_depth}; the cut of {depth} mm {verdict}\n"));
     }
+    text
 }
 
 fn chattering(depths: &[CutStability]) -> usize {

@@ -2,10 +2,11 @@
 
 use super::super::model::Response;
 use super::super::sheet::LoadCase;
-use super::request::{Loads, Request, Volume};
+use super::request::{LoadDirections, Request, Volume};
 use nalgebra::{Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::robot::Frames;
 
@@ -21,7 +22,7 @@ pub struct Candidates {
 }
 
 /// Counts of configurations that are not allowed, by the first reason.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Rejected {
     /// Something would be outside the volume.
     pub volume: usize,
@@ -83,7 +84,7 @@ pub fn test_cases(request: &Request, count: usize) -> Vec<LoadCase> {
         }
         let mut random = stream(request.seed, Purpose::Tests, draw);
         let theta = angles(request, &mut random);
-        let force = direction(&Loads::Any, &mut random) * request.load;
+        let force = direction(&LoadDirections::Any, &mut random) * request.load;
         let test = LoadCase { theta, force, moment: Vector3::zeros() };
         if rejection(request, &test).is_none() {
             tests.push(test);
@@ -102,17 +103,17 @@ fn angles(request: &Request, random: &mut ChaCha8Rng) -> [f64; 6] {
 }
 
 /// A direction of the load.
-fn direction(loads: &Loads, random: &mut ChaCha8Rng) -> Vector3<f64> {
+fn direction(loads: &LoadDirections, random: &mut ChaCha8Rng) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos(random.random_range(0.0..TAU));
     match loads {
-        Loads::Any => {
+        LoadDirections::Any => {
             let z: f64 = random.random_range(-1.0..=1.0);
             let radius = libm::sqrt(1.0 - z * z);
             Vector3::new(radius * cosine, radius * sine, z)
         }
-        Loads::Horizontal => Vector3::new(cosine, sine, 0.0),
-        Loads::Vertical => -Vector3::z(),
-        Loads::Listed(list) => list[random.random_range(0..list.len())],
+        LoadDirections::Horizontal => Vector3::new(cosine, sine, 0.0),
+        LoadDirections::Vertical => -Vector3::z(),
+        LoadDirections::Listed(list) => list[random.random_range(0..list.len())],
     }
 }
 

@@ -1,4 +1,4 @@
-//! What an identification from a set will report: its standard deviations, foreseen by its own normal equations.
+//! The standard deviations that an identification from a set will report, predicted by its own normal equations.
 
 use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::model::{Layout, Noise, Parameter, observations};
@@ -10,10 +10,11 @@ use super::super::synthetic::{MeasuringCell, sheet};
 use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
 use super::request::Request;
 use nalgebra::{DMatrix, SVector, Vector6};
+use serde::Serialize;
 use stead_model::robot::{Compliance, Pose};
 
-/// A compliance and how well it will be known. rad/(N m)
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A compliance and its expected standard deviation. rad/(N m)
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedCompliance {
     /// The joint, from 0.
     pub joint: usize,
@@ -38,10 +39,10 @@ impl ExpectedCompliance {
     }
 }
 
-/// A number of the robot file beside which a compensator stands, and how well it will be known. SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A parameter of a compensator or of the joint beside it, and its expected standard deviation. SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedParameter {
-    /// Which number.
+    /// Which parameter.
     pub parameter: ArmParameter,
     /// As the starting robot has it.
     pub value: f64,
@@ -64,16 +65,20 @@ pub fn sheet_of(request: &Request, load_cases: &[LoadCase]) -> Sheet {
 pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) {
     let setup = Setup { tracker_from_base: Pose::identity(), points: request.points.clone(), residual_rms: 0.0 };
     let noise = Noise { position: request.noise, orientation: 1.0 };
-    let equations = observations(&request.robot, sheet, &setup, &request.load_point, &noise);
+    let equations = observations(&request.robot, sheet, &setup, &request.load_point, &noise, request.hold);
     let layout = Layout::new(sheet, request.varying.map(|(joint, _)| joint), request.angle_tolerance);
     let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     (layout, normal)
 }
 
-/// The compliances that `fit` will report from a sheet, each on its own, with their standard deviations; and what it will
-/// not see.
-pub fn seen(layout: &Layout, normal: &NormalEquations) -> (Vec<(Parameter, f64)>, Vec<Unidentifiable>) {
-    let (free, unidentifiable) = normal.identifiable();
+/// The compliances that an identification will report from a sheet, each by itself, with their standard deviations; and the
+/// unidentifiable combinations.
+pub fn seen(
+    layout: &Layout,
+    normal: &NormalEquations,
+    hold: [bool; 6],
+) -> (Vec<(Parameter, f64)>, Vec<Unidentifiable>) {
+    let (free, unidentifiable) = normal.identifiable(hold);
     let held = vec![0.0; layout.angles.len()];
     let Some(solution) = normal.solve(&free, (&Vector6::zeros(), &held)) else { return (vec![], unidentifiable) };
     let deviation = |parameter: Parameter| {
@@ -109,7 +114,7 @@ pub fn deviation(covariance: &InformationMatrix, derivatives: &SVector<f64, MAX_
 }
 
 /// The joints and, where one varies, its angles: every compliance that a plan has an error bar for.
-pub fn compliances(request: &Request, free: &[bool; MAX_PARAMETERS]) -> Vec<(usize, Option<f64>)> {
+pub fn identifiable_compliances(request: &Request, free: &[bool; MAX_PARAMETERS]) -> Vec<(usize, Option<f64>)> {
     let entry = |joint: usize| match request.varying {
         Some((varying, _)) if varying == joint => request.levels.iter().map(|angle| (joint, Some(*angle))).collect(),
         _ => vec![(joint, None)],
@@ -137,7 +142,7 @@ pub fn expected_compensator(request: &Request, covariance: &InformationMatrix) -
 }
 
 /// The covariances by which the compliance of a joint at an angle is judged.
-pub(super) fn bars(
+pub(super) fn expected_compliances(
     request: &Request,
     parameters: &Parameters<'_>,
     free: &[bool; MAX_PARAMETERS],
@@ -160,5 +165,5 @@ pub(super) fn bars(
             median_random: spread.get(spread.len() / 2).copied(),
         }
     };
-    compliances(request, free).into_iter().map(bar).collect()
+    identifiable_compliances(request, free).into_iter().map(bar).collect()
 }

@@ -1,7 +1,8 @@
-//! The set with the least `trace(Q M^-1)`: a greedy and several random starts, each improved by exchanging one configuration at a
-//! time for the best that is not in the set (Fedorov's exchange, in the order of Cook and Nachtsheim 1980), until none is better.
+//! The set with the smallest `trace(Q M^-1)`: a greedy and several random starts, each improved by exchanging one configuration
+//! at a time for the best that is not in the set (Fedorov's exchange, in the order of Cook and Nachtsheim 1980), until no exchange
+//! improves it.
 //!
-//! With eight numbers at most a criterion costs as much as an update of the last one would: everything is computed anew.
+//! With at most eight parameters a new value of the criterion costs as much as an update of the last one: no updates are used.
 
 use super::candidates::{Purpose, stream};
 use super::parameters::{InformationMatrix, MAX_PARAMETERS};
@@ -11,21 +12,21 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
 
-/// The free numbers only, each in a unit in which the sum over a set of mean configurations has a diagonal of one.
+/// A matrix over the free parameters only, each in a unit in which the sum over a set of mean configurations has a unit diagonal.
 type Packed = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
 
-/// `trace(Q M^-1)`, ready to be evaluated for many M.
+/// The criterion `trace(Q M^-1)` of an I-optimal design, prepared for many M.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IOptimality {
-    /// The free numbers.
+    /// The free parameters.
     free: Vec<usize>,
     /// Their units.
     unit: [f64; MAX_PARAMETERS],
-    /// Columns whose products sum up to Q.
+    /// Columns of a factor of Q.
     factor: Packed,
 }
 
-/// A set of candidates and what it is worth.
+/// A set of candidates and its value of the criterion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExactDesign {
     /// Places among the candidates, ascending.
@@ -34,17 +35,17 @@ pub struct ExactDesign {
     pub value: f64,
 }
 
-/// A pivot of less than this part of its diagonal element means that a number is not told, as in the fit.
+/// A pivot of less than this part of its diagonal element means that a parameter is unidentifiable, as in the fit.
 const SINGULAR: f64 = 1e-14;
-/// What is better by less than this is the same.
+/// A value is smaller than another only below this part of it.
 const BETTER: f64 = 1.0 - 1e-10;
 /// More rounds of exchanges than this have never been needed.
 const ROUNDS: usize = 200;
-/// Weight of the mean candidate that a greedy start begins with, so that its first steps are told apart.
+/// Weight of the mean candidate that a greedy start begins with, so that its first steps differ in value.
 const PRIOR: f64 = 1e-3;
 
 impl IOptimality {
-    /// For Q, the free numbers, and sets of so many of these candidates.
+    /// For Q, the free parameters, and sets of so many of these candidates.
     pub fn new(
         weighting: &InformationMatrix,
         free: &[bool; MAX_PARAMETERS],
@@ -82,7 +83,7 @@ impl IOptimality {
         packed
     }
 
-    /// `trace(Q M^-1)`, infinite where M does not tell every free number.
+    /// `trace(Q M^-1)`, infinite where not every free parameter is identifiable from M.
     pub fn value(&self, information: &InformationMatrix) -> f64 {
         self.packed_value(&self.packed(information))
     }
@@ -152,7 +153,7 @@ pub fn random_set(seed: u64, draw: usize, size: usize, of: usize) -> Vec<usize> 
     all
 }
 
-/// What sets are worth, in their order.
+/// Values of the criterion, in the order of the sets.
 pub fn values(criterion: &IOptimality, informations: &[InformationMatrix], sets: &[Vec<usize>]) -> Vec<f64> {
     let sum = |set: &Vec<usize>| set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + informations[*index]);
     sets.iter().map(|set| criterion.value(&sum(set))).collect()
@@ -189,7 +190,7 @@ pub fn exchange(
     best
 }
 
-/// Takes what helps most, one after the other, on top of a little of the mean of all.
+/// Adds the best candidate, one after the other, to a small multiple of the mean of all.
 fn greedy(criterion: &IOptimality, parts: &[Packed], size: usize) -> Vec<usize> {
     let mut sum = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
     let share = PRIOR / parts.len() as f64 * size as f64;
@@ -202,13 +203,13 @@ fn greedy(criterion: &IOptimality, parts: &[Packed], size: usize) -> Vec<usize> 
         is_in[best] = true;
         set.push(best);
     }
-    // Where nothing is told yet, anything will do.
+    // Where no addition gives a finite value, any will do.
     let others = (0..parts.len()).filter(|index| !is_in[*index]).take(size.min(parts.len()) - set.len());
     set.extend(others.collect::<Vec<_>>());
     set
 }
 
-/// The candidate outside a set that makes the sum worth least, if that is less than a bound.
+/// The candidate outside a set whose addition gives the smallest value, if that is below a bound.
 fn best_addition(
     criterion: &IOptimality,
     parts: &[Packed],
@@ -244,7 +245,7 @@ fn improve(criterion: &IOptimality, parts: &[Packed], mut set: Vec<usize>, monit
             let Some((index, _)) = best_addition(criterion, parts, &without, &is_in, value) else { continue };
             let mut trial = set.clone();
             trial[place] = index;
-            // Anew, without what was taken away and put back.
+            // From scratch, without the rounding of what was subtracted and added.
             let exact = criterion.packed_value(&sum_of(parts, &trial));
             if exact < value || (value.is_infinite() && exact.is_finite()) {
                 is_in[set[place]] = false;

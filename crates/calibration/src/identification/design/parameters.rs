@@ -1,4 +1,4 @@
-//! The numbers of the arm as a plan sees them, and what a configuration tells about them.
+//! The parameters of the arm in a design, and the information matrix of a configuration over them.
 //!
 //! There are at most eight: one compliance for each joint, or, for the joint beside a compensator, the stiffnesses K_theta,
 //! K_GC and s_0 K_GC, in which the joint's stiffness is linear (Klimchik et al. 2017, eq. 22). At an angle q with compliance c
@@ -13,15 +13,15 @@ use super::request::Request;
 use nalgebra::{SMatrix, SVector};
 use stead_model::robot::{Frames, Robot};
 
-/// Most numbers of an arm. The first six are those of the joints, K_theta in place of the compliance beside a compensator;
+/// Most parameters of an arm. The first six are those of the joints, K_theta in place of the compliance beside a compensator;
 /// then K_GC and s_0 K_GC.
 pub const MAX_PARAMETERS: usize = 8;
-/// Products of derivatives by the numbers of the arm.
+/// Information matrix: products of derivatives by the parameters of the arm.
 pub type InformationMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
-/// Derivatives of the six compliances, in rows, by the numbers of the arm.
+/// Derivatives of the six compliances, in rows, by the parameters of the arm.
 pub type Derivatives = SMatrix<f64, 6, MAX_PARAMETERS>;
 
-/// How the compliances of an arm hang on its numbers.
+/// The compliances of an arm as functions of its parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Parameters<'a> {
     robot: &'a Robot,
@@ -34,7 +34,7 @@ impl<'a> Parameters<'a> {
         Self { robot, varying }
     }
 
-    /// Which numbers there are and which of them are free where these compliances are.
+    /// Which parameters there are, and which of them are free where these compliances are.
     pub fn free(&self, free: &FreeParameters) -> [bool; MAX_PARAMETERS] {
         let is_spring = matches!(self.varying, Some((_, Law::Spring(_))));
         let group = free.groups.iter().any(|free| *free);
@@ -70,7 +70,7 @@ impl<'a> Parameters<'a> {
         all
     }
 
-    /// What a configuration tells: the normal matrix of its readings, for equations of unit variance.
+    /// Information matrix of a configuration: the normal matrix of its readings, for equations of unit variance.
     pub fn information(&self, request: &Request, LoadCase { theta, force, moment }: &LoadCase) -> InformationMatrix {
         let frames = Frames::new(self.robot, theta);
         let at = |place| frames.base_from_flange.point(place);
@@ -94,7 +94,7 @@ impl<'a> Parameters<'a> {
     }
 
     /// Q: mean over the tests of the products of the derivatives of the deflection. `trace(Q C)` is the mean square error of the
-    /// deflection where C is the covariance of the numbers. m^2
+    /// deflection where C is the covariance of the parameters. m^2
     pub fn weighting(&self, request: &Request, tests: &[LoadCase]) -> InformationMatrix {
         let sum = tests.iter().fold(InformationMatrix::zeros(), |sum, test| {
             let by_numbers = self.deflection(request, test);

@@ -1,11 +1,11 @@
-//! What is to be planned.
+//! Inputs of the choice of measurements.
 
 use super::super::law::Law;
 use super::super::sheet::LoadCase;
 use nalgebra::Vector3;
 use stead_model::robot::Robot;
 
-/// What a plan is made for. SI units, radians.
+/// Inputs of the choice of measurements. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The arm as far as it is known: geometry, limits, and compliances of about the right size.
@@ -18,6 +18,8 @@ pub struct Request {
     pub noise: f64,
     /// The joint (from 0) with one compliance for each distinct angle, and the law of those.
     pub varying: Option<(usize, Law)>,
+    /// Joints whose compliance the identification will hold at that of `robot`.
+    pub hold: [bool; 6],
     /// Angles of that joint that differ by no more than this count as one. rad
     pub angle_tolerance: f64,
     /// The joint (from 0) that is put to few angles only.
@@ -27,7 +29,7 @@ pub struct Request {
     /// Lowest and highest angle of each joint in a measurement, within its limits. rad
     pub limits: [[f64; 2]; 6],
     /// Directions of the load.
-    pub loads: Loads,
+    pub loads: LoadDirections,
     /// Size of the load. N
     pub load: f64,
     /// Where things may be.
@@ -48,13 +50,13 @@ pub struct Request {
     pub starts: usize,
     /// Random sets to compare with.
     pub random_sets: usize,
-    /// A compliance whose expected standard deviation is above this share of it is hardly seen.
+    /// A compliance whose expected standard deviation is above this share of it is weakly observed.
     pub max_relative_deviation: f64,
 }
 
 /// Directions of the load, in the base frame, whose z axis points up.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Loads {
+pub enum LoadDirections {
     /// Any, uniform over the sphere.
     Any,
     /// Any horizontal one, uniform over the circle.

@@ -39,11 +39,12 @@ fn request(seed: u64) -> Request {
         points: cell(3).points,
         noise: NOISE,
         varying: Some((1, Law::Spring(GEOMETRY))),
+        hold: [false; 6],
         angle_tolerance: 1e-4,
         level_joint: 1,
         levels: [0.2, 0.75, 1.3, 1.9, 2.5].to_vec(),
         limits,
-        loads: Loads::Any,
+        loads: LoadDirections::Any,
         load: 2700.0,
         volume: Volume::OPEN,
         max_deflection: 0.02,
@@ -149,7 +150,7 @@ fn requests() -> Vec<Request> {
     requests.push(Request {
         varying: Some((1, Law::Constant)),
         configurations: 8,
-        loads: Loads::Horizontal,
+        loads: LoadDirections::Horizontal,
         ..request(5)
     });
     requests.push(Request { points: cell(1).points, configurations: 6, ..request(6) });
@@ -193,8 +194,8 @@ fn fit_reports_what_the_plan_expects_and_many_sheets_spread_as_much() {
     let plan = planned(&request);
     let found: Vec<_> =
         (0..REPETITIONS).into_par_iter().map(|seed| identify(&measured(&plan, seed, NOISE)).unwrap()).collect();
-    assert_eq!(found[0].compliances.len(), plan.bars.iter().filter(|bar| bar.deviation.is_some()).count());
-    let expected = plan.bars.iter().filter_map(|bar| bar.deviation);
+    assert_eq!(found[0].compliances.len(), plan.compliances.iter().filter(|bar| bar.deviation.is_some()).count());
+    let expected = plan.compliances.iter().filter_map(|bar| bar.deviation);
     for (index, expected) in expected.enumerate() {
         let reported = found[0].compliances[index].deviation;
         assert!((reported / expected - 1.0).abs() < 0.02, "seen {index}: {reported} {expected}");
@@ -229,13 +230,13 @@ fn the_expected_errors_of_the_compensator_are_those_of_fit() {
     let request = Request { robot: arm(), ..request(3) };
     let plan = planned(&request);
     let found = identify(&Problem { robot: arm(), ..measured(&plan, 1, 0.0) }).unwrap();
-    assert_eq!(plan.spring.len(), 3);
-    for bar in &plan.spring {
+    assert_eq!(plan.compensator.len(), 3);
+    for bar in &plan.compensator {
         let fitted = found.arm.iter().find(|estimate| estimate.parameter == bar.parameter).unwrap();
         assert!((fitted.deviation / bar.deviation - 1.0).abs() < 1e-4, "{bar:?} {fitted:?}");
         assert!((fitted.value / bar.value - 1.0).abs() < 1e-6);
     }
-    let joint = |j: usize| plan.bars.iter().find(|bar| bar.joint == j).unwrap();
+    let joint = |j: usize| plan.compliances.iter().find(|bar| bar.joint == j).unwrap();
     for estimate in found.arm.iter().filter(|e| e.parameter.quantity == Quantity::Compliance && e.parameter.joint != 1)
     {
         assert!((estimate.deviation / joint(estimate.parameter.joint).by_law - 1.0).abs() < 1e-4);
@@ -250,9 +251,11 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         planned(&request)
     };
     let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0, b.reason)).collect::<Vec<_>>();
-    let vertical = small(|request| request.loads = Loads::Vertical);
+    let vertical = small(|request| request.loads = LoadDirections::Vertical);
     assert_eq!(reasons(&vertical), [(0, UnobservableReason::LoadsAlongAxis)]);
-    assert!(vertical.bars.iter().all(|bar| bar.joint != 0) && vertical.errors.planned < vertical.errors.best_random);
+    assert!(
+        vertical.compliances.iter().all(|bar| bar.joint != 0) && vertical.errors.planned < vertical.errors.best_random
+    );
     let on_axis = small(|request| request.load_point = Vector3::new(0.0, 0.0, 0.2));
     assert_eq!(reasons(&on_axis), [(5, UnobservableReason::LoadOnAxis)]);
     let one_point = small(|request| request.points = vec![Vector3::new(0.0, 0.0, 0.3)]);
@@ -260,7 +263,7 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
     let straight = small(|request| request.limits[4] = [0.0, 0.0]);
     assert_eq!(
         reasons(&straight).iter().map(|(_, reason)| *reason).collect::<Vec<_>>(),
-        [UnobservableReason::NotApart]
+        [UnobservableReason::Dependent]
     );
     let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(joint, _)| *joint).collect();
     assert!(pair == [3, 5] || pair == [5, 3], "{pair:?}");

@@ -1,14 +1,15 @@
-//! What a set of configurations and loads does not show, and why.
+//! Compliances that a set of configurations and loads leaves unobservable, and why.
 
 use super::super::model::{Layout, Parameter};
 use super::super::normal_equations::Unidentifiable;
 use super::super::sheet::LoadCase;
 use super::expected::ExpectedCompliance;
 use super::request::Request;
+use serde::Serialize;
 use stead_model::robot::Frames;
 
-/// A compliance, or a combination of several, that no reading shows.
-#[derive(Debug, Clone, PartialEq)]
+/// A compliance, or a combination of several, on which no reading depends.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unobservable {
     /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up comes first.
     pub compliances: Vec<(usize, Option<f64>)>,
@@ -28,8 +29,9 @@ impl Unobservable {
     }
 }
 
-/// Why a compliance is not seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Why a compliance is unobservable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum UnobservableReason {
     /// Every load is along the axis of the joint.
     LoadsAlongAxis,
@@ -39,12 +41,13 @@ pub enum UnobservableReason {
     NoTorque,
     /// The joint turns, but every reference point is on its axis.
     PointsOnAxis,
-    /// Several compliances change the readings in one way.
-    NotApart,
+    /// Several compliances change the readings in proportion.
+    #[serde(rename = "not-apart")]
+    Dependent,
 }
 
-/// A compliance that is seen, but hardly.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A compliance with a large expected standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WeaklyObserved {
     /// The joint, from 0.
     pub joint: usize,
@@ -59,7 +62,7 @@ pub struct WeaklyObserved {
 /// Lengths (m) and angles (rad) below this are rounding.
 const NOTHING: f64 = 1e-7;
 
-/// Names what is unseen by normal equations, with reasons from all the loads.
+/// The unidentifiable combinations of normal equations by joint and angle, with reasons from all the loads.
 pub fn unobservable(
     request: &Request,
     load_cases: &[LoadCase],
@@ -71,7 +74,7 @@ pub fn unobservable(
         let compliances: Vec<_> = unidentifiable.parameters.iter().map(name).collect();
         let reason = match compliances[..] {
             [(joint, _)] => reason(request, load_cases, joint),
-            _ => UnobservableReason::NotApart,
+            _ => UnobservableReason::Dependent,
         };
         Unobservable { compliances, reason }
     };
@@ -105,15 +108,19 @@ fn reason(request: &Request, load_cases: &[LoadCase], joint: usize) -> Unobserva
 }
 
 /// The compliances whose expected standard deviation is above a share of them.
-pub fn weakly_observed(request: &Request, load_cases: &[LoadCase], bars: &[ExpectedCompliance]) -> Vec<WeaklyObserved> {
-    let is_weak = |bar: &&ExpectedCompliance| bar.share() > request.max_relative_deviation;
-    let entry = |bar: &ExpectedCompliance| WeaklyObserved {
-        joint: bar.joint,
-        angle: bar.angle,
-        share: bar.share(),
-        lever: lever(request, load_cases, bar.joint),
+pub fn weakly_observed(
+    request: &Request,
+    load_cases: &[LoadCase],
+    compliances: &[ExpectedCompliance],
+) -> Vec<WeaklyObserved> {
+    let is_weak = |compliance: &&ExpectedCompliance| compliance.share() > request.max_relative_deviation;
+    let entry = |compliance: &ExpectedCompliance| WeaklyObserved {
+        joint: compliance.joint,
+        angle: compliance.angle,
+        share: compliance.share(),
+        lever: lever(request, load_cases, compliance.joint),
     };
-    bars.iter().filter(is_weak).map(entry).collect()
+    compliances.iter().filter(is_weak).map(entry).collect()
 }
 
 /// Root of the mean square of the load's lever about the axis of a joint. m

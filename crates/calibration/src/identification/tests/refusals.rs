@@ -12,6 +12,10 @@ fn unidentifiable(problem: &Problem) -> Vec<Unidentifiable> {
     }
 }
 
+fn unidentifiable_joint(joint: usize) -> Held {
+    Held { parameter: Parameter::Joint(joint), reason: HeldReason::Unidentifiable }
+}
+
 /// The standard problem without noise, its shots changed.
 fn changed(change: impl Fn(&mut LoadCase), cell: &MeasuringCell) -> Problem {
     let mut load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
@@ -35,7 +39,7 @@ fn what_cannot_be_seen_is_named_and_held_only_on_request() {
     assert_eq!(pair, [Parameter::Joint(3), Parameter::Joint(5)]);
 
     let found = identify(&Problem { reduce: true, ..no_first }).unwrap();
-    assert_eq!(found.held, [Parameter::Joint(0)]);
+    assert_eq!(found.held, [unidentifiable_joint(0)]);
     assert_eq!(found.robot.joints()[0].compliance, kr270().joints()[0].compliance);
     for estimate in &found.compliances {
         let truth = truth(estimate.parameter, estimate.angle);
@@ -55,7 +59,7 @@ fn a_varying_joint_that_is_seen_at_no_angle_keeps_its_law() {
         let problem = Problem { varying: Some((1, law)), ..changed(along, &cell(3)) };
         assert_eq!(unidentifiable(&problem).len(), 6);
         let found = identify(&Problem { reduce: true, ..problem }).unwrap();
-        assert_eq!(found.held, [Parameter::Joint(1), Parameter::Joint(2)]);
+        assert_eq!(found.held, [unidentifiable_joint(1), unidentifiable_joint(2)]);
         assert_eq!(found.robot.joints()[1].compliance, kr270().joints()[1].compliance);
         assert_eq!(found.arm.len(), 4);
         for estimate in &found.arm {

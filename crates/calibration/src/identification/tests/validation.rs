@@ -13,11 +13,11 @@ fn leaving_a_configuration_out_is_what_estimating_without_it_gives() {
     let setup =
         setup::Setup { tracker_from_base: cell.tracker_from_base, points: cell.points.clone(), residual_rms: 0.0 };
     let noise = model::Noise { position: NOISE, orientation: 1.0 };
-    let equations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise);
+    let equations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise, [false; 6]);
     let layout = model::Layout::new(&readings, None, 0.0);
     let solved = |weights: &[f64]| {
         let normal = normal_equations::NormalEquations::new(&readings, &layout, &equations, weights);
-        let solution = normal.solve(&normal.all_free(), (&nalgebra::Vector6::zeros(), &[])).unwrap();
+        let solution = normal.solve(&normal.free_unless([false; 6]), (&nalgebra::Vector6::zeros(), &[])).unwrap();
         (normal, solution)
     };
     let (normal, solution) = solved(&[1.0; 24]);
@@ -61,9 +61,10 @@ fn a_reading_that_is_left_out_is_judged_by_how_well_the_others_predict_it() {
     let setup =
         setup::Setup { tracker_from_base: cell.tracker_from_base, points: cell.points.clone(), residual_rms: 0.0 };
     let noise = model::Noise { position: NOISE, orientation: 1.0 };
-    let observations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise);
+    let observations = model::observations(&robot, &readings, &setup, &cell.load_point, &noise, [false; 6]);
     let layout = model::Layout::new(&readings, None, 0.0);
-    let free = normal_equations::NormalEquations::new(&readings, &layout, &observations, &[1.0; 9]).all_free();
+    let free =
+        normal_equations::NormalEquations::new(&readings, &layout, &observations, &[1.0; 9]).free_unless([false; 6]);
     let held = (&nalgebra::Vector6::zeros(), &[][..]);
     let search = outliers::OutlierSearch {
         sheet: &readings,

@@ -1,5 +1,6 @@
 //! The closed form, its constraints, and the nodes of the table.
 
+use super::super::arm::Margins;
 use super::super::compliance_table::{AffineModel, Node, nodes_over};
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::number::{Number, Slope};
@@ -12,7 +13,9 @@ fn closed_form(setting: &Setting, r: f64, z: f64, heading: f64, class: PostureCl
     let (r, z) = (Slope::variable(Lanes::splat(r), 0), Slope::variable(Lanes::splat(z), 1));
     let y = setting.model.arm.evaluate(r, z, sine, cosine, class)?;
     let values = [y.m, y.d1, y.d2, y.vertical[0], y.vertical[1]].map(|f| f.value.0[0]);
-    (!y.lost.lane(0)).then_some((values, y.constraints.map(|c| c.value.0[0])))
+    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = y.margins;
+    let margins = [elbow, second[0], second[1], third[0], third[1], joint5, wrist, conditioning];
+    (!y.violated.lane(0)).then_some((values, margins.map(|margin| margin.value.0[0])))
 }
 
 #[test]

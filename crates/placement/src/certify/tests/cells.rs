@@ -4,10 +4,10 @@ use super::*;
 use stead_model::robot::angles::wrap;
 
 /// Radius, height and turn of a pose: the inverse of [`Setting::pose`].
-fn coordinates(setting: &Setting, pose: &[f64; 4]) -> [f64; 3] {
+fn coordinates(setting: &Setting, placement: &Placement) -> [f64; 3] {
     let (side, root) = (setting.side(), setting.problem.robot.geometry().root_in_base);
-    let (x, y) = (pose[0] - root.x, side * (pose[1] - root.y));
-    [libm::hypot(x, y), side * (pose[2] - root.z), wrap(side * pose[3] - libm::atan2(y, x))]
+    let (x, y) = (placement.x - root.x, side * (placement.y - root.y));
+    [libm::hypot(x, y), side * (placement.z - root.z), wrap(side * placement.yaw - libm::atan2(y, x))]
 }
 
 fn holds(region: &Region, at: &[f64; 3]) -> bool {
@@ -16,9 +16,9 @@ fn holds(region: &Region, at: &[f64; 3]) -> bool {
 }
 
 /// A pose in the cell, often at its ends.
-fn pose_in(problem: &Problem, random: &mut ChaCha8Rng) -> [f64; 4] {
+fn pose_in(problem: &Problem, random: &mut ChaCha8Rng) -> Placement {
     let [x, y, z] = problem.cell.position;
-    [x, y, z, problem.cell.yaw].map(|i| i.min + i.width() * 0.5 * (1.0 + share(random)))
+    [x, y, z, problem.cell.yaw].map(|i| i.min + i.width() * 0.5 * (1.0 + share(random))).into()
 }
 
 /// A cell within the cell, with few yaws.

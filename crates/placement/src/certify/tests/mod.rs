@@ -8,14 +8,15 @@ mod arms;
 mod boxes;
 mod cell;
 mod cells;
+mod certificate;
 mod minorants;
 mod planner;
 
-use super::lower_bound::Model;
-use super::model::prepared;
+use super::cell::whole;
+use super::model::Model;
 use super::region::{Point, Region};
 use crate::feasibility::explain;
-use crate::problem::{Interval, Problem};
+use crate::problem::{Interval, Placement, Problem};
 use crate::testing::{five_segments, hanging, slanted};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -47,9 +48,8 @@ pub struct Truth {
 
 impl Setting {
     pub fn new(problem: Problem) -> Self {
-        let compliances = problem.robot.constant_compliances().unwrap();
-        let (model, whole) = prepared(&problem, &compliances, true);
-        let turned = |beta: f64| problem.base_from_flange(0, &[0.0; 4], beta).rotation;
+        let (model, whole) = (Model::new(&problem, true), whole(&problem));
+        let turned = |beta: f64| problem.base_from_flange(0, &Placement::from([0.0; 4]), beta).rotation;
         let turn = turned(0.1) * turned(0.0).transpose();
         let side = problem.robot.geometry().base_from_root[(2, 2)].signum();
         let sense = (libm::atan2(turn[(1, 0)], turn[(0, 0)]) * side).signum();
@@ -74,18 +74,18 @@ impl Setting {
     }
 
     /// Pose (x, y, z, yaw) that has the workpiece origin at an azimuth, and its radius, height and turn from the certificate.
-    pub fn pose(&self, placement: [f64; 3], azimuth: f64) -> [f64; 4] {
+    pub fn pose(&self, placement: [f64; 3], azimuth: f64) -> Placement {
         let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
         let (sine, cosine) = libm::sincos(azimuth);
         let [radius, height, turn] = placement;
         let position = [radius * cosine + root.x, side * radius * sine + root.y, side * height + root.z];
-        [position[0], position[1], position[2], side * (turn + azimuth)]
+        Placement { x: position[0], y: position[1], z: position[2], yaw: side * (turn + azimuth) }
     }
 
     /// Radius, height and direction of the feed of a point at a placement, by the task's own transforms.
     pub fn place(&self, placement: [f64; 3], point: usize) -> [f64; 3] {
         let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
-        let workpiece = crate::problem::base_from_workpiece(&self.pose(placement, 0.0));
+        let workpiece = self.pose(placement, 0.0).base_from_workpiece();
         let p = &self.problem.task.points()[point];
         let (at, feed) = (workpiece.point(&p.position) - root, workpiece.rotation * p.feed);
         let direction = libm::atan2(side * feed.y, feed.x);
@@ -93,15 +93,15 @@ impl Setting {
     }
 
     /// A pose that has a point at a radius and height, with its feed in a direction against its azimuth.
-    fn pose_at(&self, point: usize, [r, z, chi]: [f64; 3], azimuth: f64) -> [f64; 4] {
+    fn pose_at(&self, point: usize, [r, z, chi]: [f64; 3], azimuth: f64) -> Placement {
         let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
         let p = &self.problem.task.points()[point];
         let yaw = side * (chi + azimuth) - libm::atan2(p.feed.y, p.feed.x);
-        let turned = crate::problem::base_from_workpiece(&[0.0, 0.0, 0.0, yaw]).point(&p.position);
+        let turned = Placement { x: 0.0, y: 0.0, z: 0.0, yaw }.base_from_workpiece().point(&p.position);
         let (sine, cosine) = libm::sincos(azimuth);
         let tip = Vector3::new(r * cosine, side * r * sine, side * z) + root;
         let origin = tip - turned;
-        [origin.x, origin.y, origin.z, yaw]
+        Placement { x: origin.x, y: origin.y, z: origin.z, yaw }
     }
 
     /// Beta at a heading. rad
@@ -203,7 +203,7 @@ fn placements_are_seen_along_axis_1() {
         for _ in 0..200 {
             let (point, at) = anywhere(&setting, &mut random);
             let pose = setting.pose_at(point, at, 0.7);
-            let workpiece = crate::problem::base_from_workpiece(&pose);
+            let workpiece = pose.base_from_workpiece();
             let root = setting.problem.robot.geometry().root_in_base;
             let tip = workpiece.point(&setting.problem.task.points()[point].position) - root;
             assert!((libm::hypot(tip.x, tip.y) - at[0]).abs() < 1e-12, "{name}");

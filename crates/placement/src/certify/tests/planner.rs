@@ -2,7 +2,7 @@
 
 use super::super::active_cells::ActiveCells;
 use super::super::cost::{CORNERS, PointCost};
-use super::super::sliding_min::{NOTHING, SlidingMin};
+use super::super::sliding_min::{INFINITE, SlidingMin};
 use super::minorants::local;
 use super::*;
 use crate::certify::compliance_table::Steps;
@@ -15,12 +15,12 @@ fn windows_hold_the_least_of_their_neighbours() {
     for _ in 0..300 {
         let count = 64;
         let values: Vec<[f64; CORNERS]> = (0..count)
-            .map(|_| if random.random_range(0..3) == 0 { NOTHING } else { std::array::from_fn(|_| random.random()) })
+            .map(|_| if random.random_range(0..3) == 0 { INFINITE } else { std::array::from_fn(|_| random.random()) })
             .collect();
         let low = random.random_range(-90..90_i32) as isize;
         let high = low + random.random_range(-1..70_i32) as isize;
         let mut sliding = SlidingMin::new(count);
-        sliding.least(&values, low, high);
+        sliding.compute(&values, low, high);
         for k in 0..count as isize {
             for corner in 0..CORNERS {
                 let all = (low..=high).map(|d| values[(k + d).rem_euclid(count as isize) as usize][corner]);

@@ -1,6 +1,6 @@
 //! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
 
-use super::super::branch_and_bound::End;
+use super::super::branch_and_bound::Status;
 use super::*;
 use crate::certify::compliance_table::{AffineModel, Node};
 use crate::certify::cost::CORNERS;
@@ -14,13 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::PostureClass;
-use stead_numerics::monitor::{Stop, StopHandle};
-
-fn model(problem: &Problem) -> Model {
-    let (model, _) = prepared(problem, &problem.robot.constant_compliances().unwrap(), false);
-    let (extent, _) = model.table.grid();
-    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
-}
+use stead_numerics::monitor::StopHandle;
 
 /// A placement of a region; the azimuth is that of the middle of the paper's cell.
 fn placed(problem: &Problem, [radius, height, turn]: [f64; 3]) -> Placement {
@@ -46,7 +40,7 @@ fn corner(region: &Region, k: usize) -> [f64; 3] {
 /// more; what is known of the cell may be tampered with.
 fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
     let problem = five_segments();
-    let model = model(&problem);
+    let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let (mut looked, mut wrong) = (0, 0);
     while looked < 300 {
@@ -70,11 +64,10 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
         for k in 0..CORNERS {
             let place = corner(&region, k);
             let p = placed(&problem, place);
-            let pose = [p.x, p.y, p.z, p.yaw];
             let chi = model.points[point].over(&Region { middle: place, half: [0.0; 3] }).unwrap().chi;
             let costs: Vec<f64> = (0..=40)
                 .map(|k| heading + half_cell * (f64::from(k) / 20.0 - 1.0) - chi)
-                .map(|beta| score(&problem, &pose, point, class, beta))
+                .map(|beta| score(&problem, &p, point, class, beta))
                 .collect();
             let (least, most) = costs.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(*c), b.max(*c)));
             // A zero between two of the headings is not met: what neighbours differ by.
@@ -99,7 +92,7 @@ fn tampered_cells_are_noticed() {
 #[test]
 fn boxes_are_worth_no_more_than_is_said() {
     let problem = five_segments();
-    let model = model(&problem);
+    let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let (mut tight, mut nothing) = (0, 0);
     for k in 0..9 {
@@ -127,9 +120,8 @@ fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     let planner = Planner::new(&problem);
     for yaw in [-2.6, 1.4] {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
-        let pose = [placement.x, placement.y, placement.z, placement.yaw];
         let relaxed = relaxed_value(&problem, &placement);
-        let plan = planner.objective(&pose, Sense::Min, None, &mut planner.workspace()).mean();
+        let plan = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean();
         match (relaxed, plan) {
             (Some(relaxed), Some(plan)) => assert!(relaxed <= plan && plan < 1.05 * relaxed, "{relaxed} {plan}"),
             (relaxed, plan) => assert!(plan.is_none(), "{relaxed:?} {plan:?}"),
@@ -167,7 +159,7 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
         pool.install(|| worst(&problem, value, 5e-3, &Monitor::silent()).unwrap())
     };
     let one = run(1);
-    assert_eq!(one.end, End::Reached, "{} {}", one.bound, one.nodes);
+    assert_eq!(one.status, Status::Reached, "{} {}", one.bound, one.nodes);
     assert!(one.bound >= value && one.gap() <= 5e-3 && one.open.is_empty());
     assert_eq!(one, run(3));
 }
@@ -177,7 +169,7 @@ fn what_is_ended_early_is_a_bound_all_the_same() {
     let (problem, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
     let found = worst(&problem, 0.5 * value, 1e-3, &stopped_at(12)).unwrap();
-    assert_eq!(found.end, End::Stopped(Stop::Asked));
+    assert_eq!(found.status, Status::Interrupted);
     assert!(found.bound >= value && !found.open.is_empty());
 }
 
@@ -188,6 +180,6 @@ fn the_worst_of_the_papers_cell_is_certified() {
     let (_, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
     let found = worst(&problem, value, 1e-3, &Monitor::silent()).unwrap();
-    assert_eq!(found.end, End::Reached);
+    assert_eq!(found.status, Status::Reached);
     assert!(found.bound >= value && found.gap() <= 1e-3);
 }

@@ -20,7 +20,7 @@ mod wrist;
 
 pub use states::StateGrid;
 
-use crate::problem::{Problem, Redundancy, base_from_workpiece};
+use crate::problem::{Placement, Problem, Redundancy};
 use laws::Laws;
 use limit::Limit;
 use nalgebra::Vector3;
@@ -138,28 +138,28 @@ impl<'a> BatchEvaluator<'a> {
         Self { instructions, ..self }
     }
 
-    /// Evaluates path point `point` with the workpiece at `pose` (x, y, z in m, yaw in rad) into `states`.
+    /// Evaluates path point `point` with the workpiece at a placement into `states`.
     ///
     /// Allowed states get their score (m) and the sines and cosines of their joint angles (theta_5 not negative), all others
     /// an infinite score. A state is allowed when one of the postures asked for is inside the limits of every joint by
     /// itself; turns, and limits that tell two postures apart, are for the planner to look at.
-    pub fn evaluate(&self, point: usize, pose: &[f64; 4], states: &mut StateGrid) {
-        self.evaluate_classes(point, pose, [true; 4], states);
+    pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
+        self.evaluate_classes(point, placement, [true; 4], states);
     }
 
     /// The same with states of some posture classes only, by their [`PostureClass::index`].
-    pub fn evaluate_classes(&self, point: usize, pose: &[f64; 4], classes: [bool; 4], states: &mut StateGrid) {
-        let geometry = self.point_geometry(point, pose);
+    pub fn evaluate_classes(&self, point: usize, placement: &Placement, classes: [bool; 4], states: &mut StateGrid) {
+        let geometry = self.point_geometry(point, placement);
         for class in PostureClass::ALL {
             states.clear(class);
         }
         self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
     }
 
-    fn point_geometry(&self, point: usize, pose: &[f64; 4]) -> PointGeometry {
+    fn point_geometry(&self, point: usize, placement: &Placement) -> PointGeometry {
         let g = self.problem.robot.geometry();
         let root_from_base = g.base_from_root.transpose();
-        let workpiece = base_from_workpiece(pose);
+        let workpiece = placement.base_from_workpiece();
         let path_point = &self.problem.task.points()[point];
         let wrench = &self.problem.task.wrenches()[point];
         let rotation = root_from_base * workpiece.rotation;

@@ -9,20 +9,20 @@ use stead_model::robot::testing::odd_arms;
 use stead_model::robot::{Compensator, Compliance, Posture, Robot};
 
 /// Holds every state of some points against [`state`]; returns how many were allowed.
-fn compare(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize> + Clone) -> usize {
-    Flips::of(&problem.robot).iter().map(|flips| compare_flips(problem, pose, points.clone(), *flips)).sum()
+fn compare(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize> + Clone) -> usize {
+    Flips::of(&problem.robot).iter().map(|flips| compare_flips(problem, placement, points.clone(), *flips)).sum()
 }
 
-fn compare_flips(problem: &Problem, pose: &[f64; 4], points: impl Iterator<Item = usize>, flips: Flips) -> usize {
+fn compare_flips(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize>, flips: Flips) -> usize {
     let evaluator = BatchEvaluator::new(problem, &problem.redundancy, flips);
     let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
     let mut allowed = 0;
     for point in points {
-        evaluator.evaluate(point, pose, &mut states);
+        evaluator.evaluate(point, placement, &mut states);
         for class in PostureClass::ALL {
             for k in 0..problem.redundancy.beta_count {
                 let found = states.scores(class)[3 + k];
-                let expected = class.postures().map(|p| reference(problem, pose, point, k, p));
+                let expected = class.postures().map(|p| reference(problem, placement, point, k, p));
                 let asked = class.postures().map(|p| flips.contains(p));
                 let margins = expected.iter().zip(asked).filter(|(_, asked)| *asked).map(|(e, _)| e.margin);
                 let margin = margins.fold(f64::MIN, f64::max);
@@ -54,8 +54,8 @@ struct Expected {
     joints: [f64; 6],
 }
 
-fn reference(problem: &Problem, pose: &[f64; 4], point: usize, k: usize, posture: Posture) -> Expected {
-    let Ok(s) = state(problem, point, pose, problem.redundancy.beta(k), posture) else {
+fn reference(problem: &Problem, placement: &Placement, point: usize, k: usize, posture: Posture) -> Expected {
+    let Ok(s) = state(problem, point, placement, problem.redundancy.beta(k), posture) else {
         return Expected { margin: -1.0, score: 0.0, joints: [0.0; 6] };
     };
     let mut margin = s.inverse_condition - problem.constraints.min_inverse_condition;
@@ -80,10 +80,10 @@ fn agrees_with_the_ordinary_evaluator_over_the_cell() {
     let mut allowed = 0;
     for k in 0..12 {
         let f = f64::from(k);
-        let pose = [-0.3 + 0.05 * f, -1.64 - 0.05 * f, -0.6 + 0.03 * f, -3.0 + 0.5 * f];
-        allowed += compare(&problem, &pose, (0..105).step_by(4));
+        let placement = Placement::from([-0.3 + 0.05 * f, -1.64 - 0.05 * f, -0.6 + 0.03 * f, -3.0 + 0.5 * f]);
+        allowed += compare(&problem, &placement, (0..105).step_by(4));
     }
-    let optimum = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
+    let optimum = Placement::from([2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]);
     allowed += compare(&problem, &optimum, 0..105);
     assert!(allowed > 10_000, "{allowed}");
 }
@@ -105,8 +105,8 @@ fn agrees_with_uncertainty_moments_a_limit_and_a_narrow_wrist() {
     (joints[4].min, joints[4].max) = (-0.4, 2.0);
     (joints[5].min, joints[5].max) = (-2.5, 1.5);
     problem.robot = stead_model::robot::Robot::new("narrow", joints).unwrap();
-    let pose = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)];
-    let allowed = compare(&problem, &pose, (0..105).step_by(2));
+    let placement = Placement::from([2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]);
+    let allowed = compare(&problem, &placement, (0..105).step_by(2));
     assert!(allowed > 1000, "{allowed}");
 }
 
@@ -131,10 +131,12 @@ fn agrees_with_compliances_that_change_with_the_joint_angle() {
         problem.criterion.force_uncertainty = 0.1;
         problem.constraints.max_deflection = Some(1.5e-3);
         let mut allowed = 0;
-        for pose in [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]] {
-            allowed += compare(&problem, &pose, (0..105).step_by(3));
+        for placement in [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]].map(Placement::from)
+        {
+            allowed += compare(&problem, &placement, (0..105).step_by(3));
             // The laws are seen, at a thousand times the tolerance.
-            let scores = [&problem, &constant].map(|p| state(p, 30, &pose, 0.7, Posture::ALL[2]).unwrap().normal_part);
+            let scores =
+                [&problem, &constant].map(|p| state(p, 30, &placement, 0.7, Posture::ALL[2]).unwrap().normal_part);
             assert!((scores[0] - scores[1]).abs() > 1e-9, "{scores:?} {laws:?}");
         }
         assert!(allowed > 1000, "{allowed} {laws:?}");
@@ -161,10 +163,12 @@ fn agrees_with_uncertain_compliances() {
             problem.criterion = Criterion { force_uncertainty, confidence: 2.0 };
             problem.constraints.max_deflection = Some(1.5e-3);
             let mut allowed = 0;
-            for pose in [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]] {
-                allowed += compare(&problem, &pose, (0..105).step_by(3));
+            for placement in
+                [[2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)], [0.2, -1.9, -0.3, -1.0]].map(Placement::from)
+            {
+                allowed += compare(&problem, &placement, (0..105).step_by(3));
                 // The uncertainty is seen, at a million times the tolerance.
-                let scores = [&problem, &sure].map(|p| state(p, 30, &pose, 0.7, Posture::ALL[2]).unwrap().score());
+                let scores = [&problem, &sure].map(|p| state(p, 30, &placement, 0.7, Posture::ALL[2]).unwrap().score());
                 assert!(scores[0] - scores[1] > 1e-6, "{scores:?} {laws:?}");
             }
             assert!(allowed > 1000, "{allowed} {laws:?}");
@@ -188,22 +192,22 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
         problem.redundancy.beta_count = 30;
         problem.constraints.min_inverse_condition = 0.05;
         let mut allowed = 0;
-        for pose in [[0.9, 0.5, 0.4, 0.3], [0.3, -1.3, 0.1, 2.0], [-0.5, 0.9, -0.3, -1.0]] {
-            allowed += compare(&problem, &pose, (0..105).step_by(15));
+        for placement in [[0.9, 0.5, 0.4, 0.3], [0.3, -1.3, 0.1, 2.0], [-0.5, 0.9, -0.3, -1.0]].map(Placement::from) {
+            allowed += compare(&problem, &placement, (0..105).step_by(15));
         }
         assert!(allowed > 100, "{allowed}");
     }
 }
 
 /// Every bit of the scores, and of the joint angles of allowed states, for some points.
-fn bits(problem: &Problem, instructions: Instructions, poses: &[[f64; 4]]) -> Vec<u64> {
+fn bits(problem: &Problem, instructions: Instructions, poses: &[Placement]) -> Vec<u64> {
     let mut bits = Vec::new();
     for flips in Flips::of(&problem.robot) {
         let evaluator = BatchEvaluator::new(problem, &problem.redundancy, *flips).with_instructions(instructions);
         let mut states = StateGrid::new(problem.redundancy.beta_count, 2);
-        for pose in poses {
+        for placement in poses {
             for point in (0..problem.task.points().len()).step_by(7) {
-                evaluator.evaluate(point, pose, &mut states);
+                evaluator.evaluate(point, placement, &mut states);
                 for class in PostureClass::ALL {
                     bits.push(u64::from(states.is_alive(class)));
                     states.wrap_around(class);
@@ -232,10 +236,14 @@ fn every_processor_gives_the_same_bits() {
     let mut sprung = with_uncertainty(with_laws(plain.clone(), &[(1, compensated(0.2, 3e-7))]), 0.1);
     sprung.criterion.confidence = 2.0;
     // All over the cell, and out of reach, above axis 1, stretched: whatever comes out NaN or infinite on the way.
-    let mut poses: Vec<[f64; 4]> = (0..8)
+    let mut poses: Vec<Placement> = (0..8)
         .map(|k| [-0.3 + 0.08 * f64::from(k), -1.64 - 0.07 * f64::from(k), -0.6 + 0.05 * f64::from(k), f64::from(k)])
+        .map(Placement::from)
         .collect();
-    poses.extend([[0.0, 0.0, 0.5, 0.0], [0.0, -4.0, -0.4, 0.0], [0.0, -2.55, 0.2, 1.0], [1e-9, 1e-9, 2.0, -3.0]]);
+    poses.extend(
+        [[0.0, 0.0, 0.5, 0.0], [0.0, -4.0, -0.4, 0.0], [0.0, -2.55, 0.2, 1.0], [1e-9, 1e-9, 2.0, -3.0]]
+            .map(Placement::from),
+    );
     for problem in [plain, narrow, sprung] {
         // Counts that fill the last lanes and that do not; fewer values than lanes.
         for count in [120, 121, 37, 5, 3] {
@@ -255,7 +263,7 @@ fn continues_rows_cyclically() {
     let problem = five_segments();
     let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
     let mut states = StateGrid::new(120, 5);
-    evaluator.evaluate(0, &[0.0, -1.7, -0.4, 0.3], &mut states);
+    evaluator.evaluate(0, &Placement::from([0.0, -1.7, -0.4, 0.3]), &mut states);
     for class in PostureClass::ALL {
         states.wrap_around(class);
         let row = states.scores(class);

@@ -1,7 +1,7 @@
 //! Standard deviations of the normal part: against drawn compliances, the matrix product and differences.
 
 use super::*;
-use crate::problem::Criterion;
+use crate::problem::{Criterion, Placement};
 use crate::testing::{five_segments, five_segments_compensated, with_uncertainty};
 use nalgebra::Vector6;
 use proptest::prelude::*;
@@ -12,8 +12,8 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_model::stiffness::displacement;
 use stead_numerics::scalar::Dual;
 
-fn published_optimum() -> [f64; 4] {
-    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)]
+fn published_optimum() -> Placement {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
 }
 
 /// The problem with other values of its six constant compliances, each moved by its share of some directions.
@@ -32,9 +32,9 @@ fn moved(problem: &Problem, steps: &[f64]) -> Problem {
 fn drawn_compliances_scatter_the_normal_part_as_much_as_its_deviation_says() {
     const DRAWS: usize = 4000;
     let problem = with_uncertainty(five_segments(), 0.1);
-    let (pose, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
+    let (placement, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
     let points = [3, 30, 60, 77, 104];
-    let at = |problem: &Problem| points.map(|point| state(problem, point, &pose, beta, posture).unwrap());
+    let at = |problem: &Problem| points.map(|point| state(problem, point, &placement, beta, posture).unwrap());
     let nominal = at(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut normal = || {
@@ -49,7 +49,7 @@ fn drawn_compliances_scatter_the_normal_part_as_much_as_its_deviation_says() {
             let change = drawn[k].normal_part - nominal[k].normal_part;
             *square += change * change;
             // Nothing is lost by linearising: the normal part is linear in the compliances.
-            let gradient = normal_part_by_parameters(&problem, points[k], &pose, &nominal[k].joints);
+            let gradient = normal_part_by_parameters(&problem, points[k], &placement, &nominal[k].joints);
             let directions = problem.robot.uncertainty().unwrap().directions();
             let shift =
                 |k: usize| steps.iter().zip(directions).map(|(step, direction)| step * direction[k]).sum::<f64>();
@@ -88,11 +88,11 @@ proptest! {
     ) {
         let problem = if is_compensated { five_segments_compensated() } else { five_segments() };
         let problem = with_uncertainty(problem, 0.1);
-        let pose = published_optimum();
-        let Ok(found) = state(&problem, point, &pose, beta, Posture::ALL[2]) else { return Ok(()) };
+        let placement = published_optimum();
+        let Ok(found) = state(&problem, point, &placement, beta, Posture::ALL[2]) else { return Ok(()) };
         // What each joint adds per compliance, from the displacement when it alone yields.
         let frames = Frames::new(&problem.robot, &found.joints);
-        let workpiece = base_from_workpiece(&pose);
+        let workpiece = placement.base_from_workpiece();
         let tip = workpiece.point(&problem.task.points()[point].position);
         let force = workpiece.rotation * problem.task.wrenches()[point].force;
         let moment = workpiece.rotation * problem.task.wrenches()[point].moment;
@@ -112,15 +112,15 @@ proptest! {
         let problem = if is_compensated { five_segments_compensated() } else { five_segments() };
         let mut problem = with_uncertainty(problem, 0.1);
         problem.criterion.confidence = 2.0;
-        let pose = published_optimum();
-        let variables = std::array::from_fn(|k| Dual::<5>::variable(pose[k], k));
+        let placement = published_optimum();
+        let variables = Placement::from(std::array::from_fn(|k| Dual::<5>::variable(placement[k], k)));
         let Ok(exact) = state(&problem, point, &variables, Dual::variable(beta, 4), Posture::ALL[2]) else { return Ok(()) };
         prop_assume!(exact.inverse_condition.value > 0.05);
         let sign = if exact.normal_part.value < 0.0 { -1.0 } else { 1.0 };
         for k in 0..5 {
             let h = 1e-6;
             let at = |h: f64| {
-                let shifted = std::array::from_fn(|j| pose[j] + if j == k { h } else { 0.0 });
+                let shifted = Placement::from(std::array::from_fn(|j| placement[j] + if j == k { h } else { 0.0 }));
                 state(&problem, point, &shifted, beta + if k == 4 { h } else { 0.0 }, Posture::ALL[2])
             };
             let (Ok(up), Ok(down)) = (at(h), at(-h)) else { continue };

@@ -1,13 +1,12 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
 use super::super::{URAD, key, rounded};
-use super::warnings;
 use crate::document::Document;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::design::expected::ExpectedCompliance;
-use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason};
+use stead_calibration::identification::design::unobservable::Unobservable;
 use stead_format::PlanRun;
 
 /// Significant digits of expected errors.
@@ -24,7 +23,7 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
             "force_n": force,
         })
     });
-    let spring = plan.spring.iter().map(|bar| {
+    let spring = plan.compensator.iter().map(|bar| {
         let (name, factor) = key(&bar.parameter);
         json!({ "parameter": name, "value": digits(bar.value * factor), "std": digits(bar.deviation * factor) })
     });
@@ -34,14 +33,14 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
         value.insert("lever_mm".to_owned(), json!(Unit::PLACE_MM.number(hardly.lever)));
         Value::Object(value)
     });
-    Document::new(&run.inputs).notes(&run.notes).warnings(warnings(run, plan)).with(json!({
+    Document::new(&run.inputs).notes(run.notes.iter().chain(&plan.notes)).warnings(&plan.warnings).with(json!({
         "robot": request.robot.name(),
         "seed": request.seed,
         "load_n": Unit::FORCE_N.number(request.load),
         "noise_mm": request.noise * 1e3,
         "points": request.points.len(),
         "configurations": configurations.collect::<Vec<_>>(),
-        "compliances": plan.bars.iter().map(bar).collect::<Vec<_>>(),
+        "compliances": plan.compliances.iter().map(bar).collect::<Vec<_>>(),
         "compensator": spring.collect::<Vec<_>>(),
         "deflection": {
             "tests": plan.tests.len(),
@@ -60,7 +59,7 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
             "deflected_too_far": rejected.deflection,
         },
         "travel_deg": Unit::ANGLE_DEG.number(plan.travel),
-        "unseen": plan.unobservable.iter().map(unidentifiable).collect::<Vec<_>>(),
+        "unseen": plan.unobservable.iter().map(unobservable).collect::<Vec<_>>(),
         "hardly_seen": hardly.collect::<Vec<_>>(),
     }))
 }
@@ -97,15 +96,8 @@ fn bar(bar: &ExpectedCompliance) -> Value {
     Value::Object(map)
 }
 
-fn unidentifiable(unobservable: &Unobservable) -> Value {
-    let reason = match unobservable.reason {
-        UnobservableReason::LoadsAlongAxis => "loads-along-axis",
-        UnobservableReason::LoadOnAxis => "load-on-axis",
-        UnobservableReason::NoTorque => "no-torque",
-        UnobservableReason::PointsOnAxis => "points-on-axis",
-        UnobservableReason::NotApart => "not-apart",
-    };
+fn unobservable(unobservable: &Unobservable) -> Value {
     let compliances: Vec<Value> =
         unobservable.compliances.iter().map(|(joint, angle)| Value::Object(compliance(*joint, *angle))).collect();
-    json!({ "compliances": compliances, "reason": reason })
+    json!({ "compliances": compliances, "reason": unobservable.reason })
 }

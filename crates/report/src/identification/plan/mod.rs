@@ -10,13 +10,11 @@ pub use text::plan_text;
 use super::super::document as documents;
 use super::super::output::{Folder, ReportError};
 use super::super::picture;
-use crate::names::compliance_name;
-use crate::units::{figures, fixed};
-use std::path::PathBuf;
-use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason};
-use stead_calibration::identification::design::{Design, Loads};
+use std::path::{Path, PathBuf};
+use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
 use stead_format::PlanRun;
+use stead_format::input::InputError;
 
 /// The name of the sheet among the files of a plan.
 pub const SHEET: &str = "sheet.csv";
@@ -35,8 +33,8 @@ pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Design) -> Result<Vec<P
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }
 
-/// Whether a file is a sheet into which nothing has been filled in yet, so that nothing is lost with it.
-pub fn is_form(bytes: &[u8]) -> bool {
+/// Whether a file is a sheet into which no reading has been filled yet, so that nothing is lost with it.
+fn is_form(bytes: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(bytes) else { return false };
     let mut lines = text.lines();
     // The places that are read are the last six columns.
@@ -44,53 +42,17 @@ pub fn is_form(bytes: &[u8]) -> bool {
     lines.next() == Some(COLUMNS) && lines.all(is_open)
 }
 
-/// What the plan does not show or hardly shows, in sentences without a full stop.
-pub fn warnings(run: &PlanRun, plan: &Design) -> Vec<String> {
-    let mut warnings: Vec<String> =
-        plan.unobservable.iter().map(|unobservable| unidentifiable(run, unobservable)).collect();
-    for hardly in &plan.weakly_observed {
-        let axis = hardly.joint + 1;
-        warnings.push(format!(
-            "{} is hardly seen: its expected standard deviation is {} % of it; the load's lever about axis {axis} is {} mm \
-             (rms): a longer one or a larger load would help",
-            compliance_name(hardly.joint, hardly.angle),
-            figures(hardly.share * 100.0),
-            fixed(hardly.lever * 1e3, 1)
-        ));
-    }
-    warnings
-}
-
-/// Where the plan has no configuration, though it may, in a sentence.
-fn left_out(plan: &Design) -> Option<String> {
-    let unused: Vec<String> = plan
-        .bars
-        .iter()
-        .filter(|bar| bar.deviation.is_none())
-        .map(|bar| compliance_name(bar.joint, bar.angle))
-        .collect();
-    (!unused.is_empty()).then(|| {
-        let names = unused.join(", ");
-        format!(
-            "the plan has no configuration for {names}: what the other angles tell about the joint is worth more here"
-        )
-    })
-}
-
-fn unidentifiable(run: &PlanRun, unobservable: &Unobservable) -> String {
-    let names: Vec<String> =
-        unobservable.compliances.iter().map(|(joint, angle)| compliance_name(*joint, *angle)).collect();
-    let first = names.first().map_or("", String::as_str);
-    let axis = unobservable.compliances.first().map_or(0, |(joint, _)| joint + 1);
-    let told = match unobservable.reason {
-        UnobservableReason::LoadsAlongAxis if run.request.loads == Loads::Vertical => {
-            format!("{first} is not seen: every load is vertical, along axis {axis}")
+/// Refuses to overwrite a sheet into which readings have been filled.
+///
+/// # Errors
+/// [`InputError`] that names the sheet.
+pub fn keep_readings(folder: &Path) -> Result<(), InputError> {
+    let sheet = folder.join(SHEET);
+    match std::fs::read(&sheet) {
+        Ok(bytes) if !is_form(&bytes) => {
+            Err(InputError::new(&sheet, "is a sheet with readings in it, which a new plan would overwrite")
+                .allowed("another folder (--out), or no sheet.csv but an empty one there"))
         }
-        UnobservableReason::LoadsAlongAxis => format!("{first} is not seen: every load is along axis {axis}"),
-        UnobservableReason::LoadOnAxis => format!("{first} is not seen: the load acts on axis {axis}"),
-        UnobservableReason::NoTorque => format!("{first} is not seen: no load turns joint {axis}"),
-        UnobservableReason::PointsOnAxis => format!("{first} is not seen: every reference point is on axis {axis}"),
-        UnobservableReason::NotApart => format!("{} cannot be told apart, and {first} is given up", names.join(", ")),
-    };
-    format!("{told}; the plan is for the others, and a fit needs fit.reduce = true to keep the value of the robot file")
+        _ => Ok(()),
+    }
 }

@@ -27,7 +27,7 @@ pub(super) fn expected(plan: &Design) -> Result<Vec<u8>, ReportError> {
         "std_by_law_median_random",
     ];
     let text = |value: Option<f64>| value.map_or_else(String::new, |value| number(value * URAD));
-    let bars = plan.bars.iter().map(|bar| {
+    let bars = plan.compliances.iter().map(|bar| {
         vec![
             format!("joints[{}].compliance", bar.joint + 1),
             "urad/(N m)".to_owned(),
@@ -39,7 +39,7 @@ pub(super) fn expected(plan: &Design) -> Result<Vec<u8>, ReportError> {
             text(bar.median_random),
         ]
     });
-    let spring = plan.spring.iter().map(|bar| {
+    let spring = plan.compensator.iter().map(|bar| {
         let (name, factor) = key(&bar.parameter);
         let unit = unit(bar.parameter.quantity).to_owned();
         let (value, deviation) = (number(bar.value * factor), number(bar.deviation * factor));

@@ -1,7 +1,6 @@
 //! The table for people.
 
 use super::super::{URAD, key};
-use super::{left_out, warnings};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_calibration::identification::design::{Design, TestCases};
@@ -21,13 +20,17 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         request.noise * 1e3
     );
     text += &aligned(&bar_rows(plan), &[0]);
-    if !plan.spring.is_empty() {
+    if !plan.compensator.is_empty() {
         text += "\n";
         text += &aligned(&spring_rows(plan), &[0]);
     }
     let errors = &plan.errors;
     let millimetres = |value: f64| {
-        if value.is_finite() { format!("{} mm", figures(value * 1e3)) } else { "does not tell everything".to_owned() }
+        if value.is_finite() {
+            format!("{} mm", figures(value * 1e3))
+        } else {
+            "not every compliance is identifiable".to_owned()
+        }
     };
     let tests = match &request.tests {
         TestCases::Given(tests) => format!("the {} tests", tests.len()),
@@ -44,10 +47,10 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         millimetres(errors.median_random)
     );
     if errors.unidentifiable_sets > 0 {
-        text += &format!("; sets that do not tell everything: {}", errors.unidentifiable_sets);
+        text += &format!("; sets from which not every compliance is identifiable: {}", errors.unidentifiable_sets);
     }
     if !plan.unobservable.is_empty() {
-        text += "\nall errors are without that of the compliances that are not seen (see below)";
+        text += "\nall errors leave out unobservable compliances (see below)";
     }
     let rejected = &plan.rejected;
     text += &format!(
@@ -59,25 +62,25 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         figures(request.max_deflection * 1e3)
     );
     text += &format!(
-        "the way through them, in turns of the joint that turns furthest: {} deg\n",
+        "total motion through them, by the joint that moves furthest in each move: {} deg\n",
         fixed(plan.travel.to_degrees(), 0)
     );
-    if let Some(note) = left_out(plan) {
+    for note in &plan.notes {
         text += &format!("note: {note}\n");
     }
-    for warning in warnings(run, plan) {
+    for warning in &plan.warnings {
         text += &format!("warning: {warning}\n");
     }
     text
 }
 
 fn bar_rows(plan: &Design) -> Vec<Vec<String>> {
-    let has_law = plan.bars.iter().any(|bar| bar.angle.is_some());
+    let has_law = plan.compliances.iter().any(|bar| bar.angle.is_some());
     let mut header = vec!["joint", "at deg", "urad/(N m)", "std", "%"];
     header.extend(has_law.then_some("% by law"));
     header.extend(["% best random", "% median random"]);
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for bar in &plan.bars {
+    for bar in &plan.compliances {
         let percent = |deviation: Option<f64>| {
             deviation.map_or_else(|| "-".to_owned(), |deviation| fixed(100.0 * deviation / bar.value, 2))
         };
@@ -95,7 +98,7 @@ fn bar_rows(plan: &Design) -> Vec<Vec<String>> {
 fn spring_rows(plan: &Design) -> Vec<Vec<String>> {
     let header = ["in the robot file", "value", "std", "%"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for bar in &plan.spring {
+    for bar in &plan.compensator {
         let (name, factor) = key(&bar.parameter);
         let percent = fixed(100.0 * (bar.deviation / bar.value).abs(), 2);
         rows.push(vec![name, figures(bar.value * factor), figures(bar.deviation * factor), percent]);

@@ -5,7 +5,7 @@ use super::interval_simd::Lanes;
 /// Upper arm and forearm, as [`Number::elbow`] needs them.
 ///
 /// No allowed state has its elbow nearer to stretched or folded than the two limits say. Beyond them the sine of the elbow
-/// angle is continued along its tangent: then it has model second derivatives everywhere, so that a Taylor model may be
+/// angle is continued along its tangent: then it has bounded second derivatives everywhere, so that a Taylor model may be
 /// made about any state, and is true for all that are allowed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Links {

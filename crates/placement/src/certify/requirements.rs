@@ -1,0 +1,32 @@
+//! What a certificate asks of a problem.
+
+use super::arm::needed_condition;
+use super::cell::{extent, points_of};
+use super::coarse_bounds::CoarseBounds;
+use super::compliance_table::ComplianceTable;
+use super::model::{LEVELS, STEPS};
+use crate::problem::Problem;
+use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+
+/// What tables may take, empty. bytes
+const MAX_BYTES: u64 = 400_000_000;
+
+/// Whether a problem can be certified, found without work.
+///
+/// # Errors
+/// The first reason why not.
+pub fn certifiable(problem: &Problem) -> Result<(), Unsupported> {
+    Upright::of(problem)?;
+    require_constant(problem, &[0, 1, 2, 3, 4, 5])?;
+    if problem.criterion.force_uncertainty != 0.0 {
+        return Err(Unsupported::UncertainForce);
+    }
+    require_certain_compliances(problem)?;
+    let extent = extent(problem);
+    if let Some(needed) = needed_condition(problem, extent.radius.0) {
+        return Err(Unsupported::Conditioning { needed });
+    }
+    let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
+    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS).saturating_add(coarse);
+    if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(()) }
+}

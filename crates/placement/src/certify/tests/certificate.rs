@@ -1,0 +1,58 @@
+//! The certificate as a whole: what it relaxes, and why there may be none.
+
+use super::super::branch_and_bound::{Bound, Status};
+use super::super::certificate::{Certificate, NoProof, Proof, certify};
+use super::*;
+use crate::constraints::ConstraintKind;
+use crate::problem::Placement;
+use crate::sense::Sense;
+use crate::settings::CertificateSettings;
+use crate::symmetry::Unsupported;
+use stead_numerics::monitor::Monitor;
+
+const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
+
+fn proof(problem: &Problem, with_rate: bool) -> Proof {
+    let bound = Bound { value: 1.0, bound: 1.0, with_rate, nodes: 1, status: Status::Reached, open: Vec::new() };
+    Proof::new(problem, Sense::Min, PLACEMENT, bound)
+}
+
+#[test]
+fn every_constraint_that_a_bound_does_not_evaluate_is_listed() {
+    let mut problem = five_segments();
+    let before = proof(&problem, true).relaxed;
+    let without_rate = proof(&problem, false).relaxed;
+    assert_eq!(without_rate.len(), before.len() + 1);
+    assert!(!before.contains(&ConstraintKind::BetaRate) && without_rate.contains(&ConstraintKind::BetaRate));
+    // A constraint more in the problem: it is listed, though nothing here knows of it.
+    problem.constraints.max_deflection = Some(1e-3);
+    let after = proof(&problem, true).relaxed;
+    let added: Vec<_> = after.iter().filter(|kind| !before.contains(kind)).collect();
+    assert_eq!(added, [&ConstraintKind::MaxDeflection]);
+    let words = "steps and turns of the joints between path points, limits of joints 1, 4 and 6, max_deflection_mm";
+    assert_eq!(proof(&problem, true).relaxed_words().join(", "), words);
+}
+
+#[test]
+fn why_there_is_no_bound_is_told() {
+    let problem = five_segments();
+    let settings = CertificateSettings { gap: 1e-3, time_limit: None };
+    let run = |problem: &Problem, mean: f64, settings: CertificateSettings, monitor: &Monitor| {
+        let certificate = certify(problem, (&PLACEMENT, mean), &PLACEMENT, settings, monitor);
+        let kinds: Vec<_> = certificate.warnings.iter().map(|warning| warning.kind).collect();
+        let Certificate { best, worst, .. } = certificate;
+        (best.unwrap_err(), worst.unwrap_err(), kinds)
+    };
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    let both = vec!["no-bound"; 2];
+    let interrupted = run(&problem, 1e-4, settings, &stopped);
+    assert_eq!(interrupted, (NoProof::Interrupted, NoProof::Interrupted, both.clone()));
+    let timed = CertificateSettings { time_limit: Some(0.0), ..settings };
+    let late = run(&problem, 0.0, timed, &Monitor::silent());
+    assert_eq!(late, (NoProof::TimeLimit, NoProof::TimeLimit, both));
+    let mut robust = problem;
+    robust.criterion.force_uncertainty = 0.1;
+    let reason = || NoProof::Unsupported(Unsupported::UncertainForce);
+    assert_eq!(run(&robust, 1e-4, settings, &Monitor::silent()), (reason(), reason(), vec!["no-certificate"]));
+}

@@ -1,0 +1,128 @@
+//! The constraints of a placement problem, by kind.
+//!
+//! Whatever evaluates states or plans by a shortcut declares which kinds it evaluates; what it relaxes are the constraints in
+//! force less these.
+
+mod measured;
+
+pub use measured::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+
+use super::problem::Problem;
+use serde::Serialize;
+
+/// A kind of constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstraintKind {
+    /// Steps of the joints from path point to path point, by their speeds.
+    JointStep,
+    /// The turns of the joints along a segment.
+    JointTurn,
+    /// The arm reaches the point.
+    Reach,
+    /// The limits of a joint, from 1.
+    JointLimit(u8),
+    /// The bound on 1/kappa_F.
+    Conditioning,
+    /// The rate of beta along the path.
+    BetaRate,
+    /// The largest score of a point.
+    MaxDeflection,
+    /// The bounds of the cell on x, y and z.
+    CellPosition,
+    /// The bounds of the cell on the yaw.
+    CellYaw,
+}
+
+impl ConstraintKind {
+    /// A short code, as tables state it.
+    pub fn code(self) -> String {
+        match self {
+            Self::JointStep => "joint_step".to_owned(),
+            Self::JointTurn => "joint_turn".to_owned(),
+            Self::Reach => "reach".to_owned(),
+            Self::JointLimit(joint) => format!("joint_{joint}"),
+            Self::Conditioning => "conditioning".to_owned(),
+            Self::BetaRate => "beta_rate".to_owned(),
+            Self::MaxDeflection => "deflection".to_owned(),
+            Self::CellPosition => "cell_position".to_owned(),
+            Self::CellYaw => "cell_yaw".to_owned(),
+        }
+    }
+}
+
+impl Problem {
+    /// The kinds of constraint that are in force.
+    pub fn constraint_kinds(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::*;
+        let mut kinds = vec![JointStep, JointTurn, Reach];
+        kinds.extend((1..=6).map(JointLimit));
+        kinds.extend([Conditioning, BetaRate]);
+        kinds.extend(self.constraints.max_deflection.map(|_| MaxDeflection));
+        kinds.push(CellPosition);
+        kinds.extend((!self.cell.is_yaw_free()).then_some(CellYaw));
+        kinds
+    }
+}
+
+/// What an evaluation of the kinds `evaluated` relaxes: the constraints in force less these.
+pub fn relaxed(problem: &Problem, evaluated: &[ConstraintKind]) -> Vec<ConstraintKind> {
+    problem.constraint_kinds().into_iter().filter(|kind| !evaluated.contains(kind)).collect()
+}
+
+/// Names kinds of constraint as files and sentences do, those of a sort together.
+pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
+    use ConstraintKind::*;
+    let mut words = Vec::new();
+    match [JointStep, JointTurn].map(|kind| kinds.contains(&kind)) {
+        [true, true] => words.push("steps and turns of the joints between path points".to_owned()),
+        [true, false] => words.push("steps of the joints between path points".to_owned()),
+        [false, true] => words.push("turns of the joints between path points".to_owned()),
+        [false, false] => {}
+    }
+    let limits: Vec<String> = kinds
+        .iter()
+        .filter_map(|kind| if let JointLimit(joint) = kind { Some(joint.to_string()) } else { None })
+        .collect();
+    match &limits[..] {
+        [] => {}
+        [joint] => words.push(format!("limits of joint {joint}")),
+        [first @ .., last] => words.push(format!("limits of joints {} and {last}", first.join(", "))),
+    }
+    words.extend(kinds.iter().filter_map(|kind| {
+        match kind {
+            JointStep | JointTurn | JointLimit(_) => None,
+            Reach => Some("reach"),
+            Conditioning => Some("conditioning"),
+            BetaRate => Some("rate of beta"),
+            MaxDeflection => Some("max_deflection_mm"),
+            CellPosition => Some("bounds of x, y and z"),
+            CellYaw => Some("which yaw goes with which x and y"),
+        }
+        .map(str::to_owned)
+    }));
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+
+    #[test]
+    fn what_is_not_evaluated_is_relaxed_and_named() {
+        let mut problem = five_segments();
+        assert_eq!(relaxed(&problem, &problem.constraint_kinds()), []);
+        let in_force = problem.constraint_kinds().len();
+        problem.constraints.max_deflection = Some(1e-3);
+        problem.cell.yaw.max = 1.0;
+        assert_eq!(problem.constraint_kinds().len(), in_force + 2);
+        let all = relaxed(&problem, &[]);
+        // The joints' limits are one name, and so are their steps and turns.
+        assert_eq!(describe(&all).len(), all.len() - 6);
+        let some = [ConstraintKind::JointTurn, ConstraintKind::JointLimit(4), ConstraintKind::CellYaw];
+        let words =
+            ["turns of the joints between path points", "limits of joint 4", "which yaw goes with which x and y"];
+        assert_eq!(describe(&some), words);
+    }
+}

@@ -1,0 +1,163 @@
+//! One constraint on one state or step, measured: by how much it holds or is broken.
+
+use super::ConstraintKind;
+use crate::evaluate::reference::State;
+use crate::problem::Problem;
+use std::fmt;
+use stead_model::robot::{Unreachable, angles::ANGLE_ROUNDING};
+
+/// Joint steps are compared with their limits up to this (rad), steps of beta up to this share of the grid's step: rounding.
+pub const STEP_ROUNDING: f64 = 1e-9;
+
+/// A constraint with what it is measured by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Measured {
+    /// The posture does not reach the point.
+    Reach(Unreachable),
+    /// A joint angle, held against the nearer of its limits.
+    JointLimit {
+        /// The joint, from 1.
+        joint: u8,
+        /// The joint angle. rad
+        angle: f64,
+        /// The nearer limit. rad
+        limit: f64,
+        /// The signed distance to it, positive inside. rad
+        margin: f64,
+    },
+    /// 1/kappa_F, held against its bound.
+    Conditioning {
+        /// What it is.
+        value: f64,
+        /// What it must be at least.
+        limit: f64,
+    },
+    /// The score of a point, held against c_max.
+    MaxDeflection {
+        /// What it is. m
+        value: f64,
+        /// What it may be. m
+        limit: f64,
+    },
+    /// The step of a joint from one path point to the next.
+    JointStep {
+        /// The joint, from 1.
+        joint: u8,
+        /// The size of the step. rad
+        step: f64,
+        /// Its limit. rad
+        limit: f64,
+    },
+    /// The step of beta from one path point to the next.
+    BetaRate {
+        /// The size of the step. rad
+        step: f64,
+        /// Its limit. rad
+        limit: f64,
+    },
+}
+
+impl Measured {
+    /// The kind of constraint.
+    pub fn kind(&self) -> ConstraintKind {
+        match *self {
+            Self::Reach(_) => ConstraintKind::Reach,
+            Self::JointLimit { joint, .. } => ConstraintKind::JointLimit(joint),
+            Self::Conditioning { .. } => ConstraintKind::Conditioning,
+            Self::MaxDeflection { .. } => ConstraintKind::MaxDeflection,
+            Self::JointStep { .. } => ConstraintKind::JointStep,
+            Self::BetaRate { .. } => ConstraintKind::BetaRate,
+        }
+    }
+
+    /// The signed margin, positive where the constraint holds: m of reach or score, rad, or a difference of 1/kappa_F.
+    pub fn margin(&self) -> f64 {
+        match *self {
+            Self::Reach(unreachable) => -unreachable.by(),
+            Self::JointLimit { margin, .. } => margin,
+            Self::Conditioning { value, limit } => value - limit,
+            Self::MaxDeflection { value, limit } => limit - value,
+            Self::JointStep { step, limit, .. } | Self::BetaRate { step, limit } => limit - step,
+        }
+    }
+
+    /// Whether the constraint holds, up to the rounding of angles and steps.
+    pub fn holds(&self) -> bool {
+        let rounding = match self {
+            Self::JointLimit { .. } => ANGLE_ROUNDING,
+            Self::JointStep { .. } | Self::BetaRate { .. } => STEP_ROUNDING,
+            Self::Reach(_) | Self::Conditioning { .. } | Self::MaxDeflection { .. } => 0.0,
+        };
+        self.margin() >= -rounding
+    }
+
+    /// How badly a constraint is broken, to tell which of several states comes nearest to being allowed: in tenths of a metre
+    /// or radian, or relative.
+    pub fn severity(&self) -> f64 {
+        match *self {
+            // A point out of reach has no joint angles, so it counts as farther off than any state that has them.
+            Self::Reach(_) => 100.0 - self.margin() * 10.0,
+            Self::JointLimit { .. } | Self::JointStep { .. } | Self::BetaRate { .. } => -self.margin() * 10.0,
+            Self::Conditioning { value, limit } => 1.0 - value / limit,
+            Self::MaxDeflection { value, limit } => value / limit - 1.0,
+        }
+    }
+}
+
+impl fmt::Display for Measured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Reach(Unreachable::InsideOffset { by }) => {
+                write!(f, "wrist centre {:.1} mm too near to axis 1 for the arm's lateral offset", by * 1e3)
+            }
+            Self::Reach(Unreachable::TooFar { by }) => {
+                write!(f, "wrist centre {:.1} mm beyond the stretched arm", by * 1e3)
+            }
+            Self::Reach(Unreachable::TooNear { by }) => {
+                write!(f, "wrist centre {:.1} mm nearer to the shoulder than the folded arm", by * 1e3)
+            }
+            Self::JointLimit { joint, angle, limit, .. } => {
+                let (side, by) = if angle > limit { ("above", angle - limit) } else { ("below", limit - angle) };
+                let (angle, limit, by) = (angle.to_degrees(), limit.to_degrees(), by.to_degrees());
+                write!(f, "joint {joint} at {angle:.2} deg is {by:.2} deg {side} its limit {limit:.2} deg")
+            }
+            Self::Conditioning { value, limit } => {
+                write!(f, "1/kappa {value:.4} is {:.4} below {limit}", limit - value)
+            }
+            Self::MaxDeflection { value, limit } => {
+                let (value, by, limit) = (value * 1e3, (value - limit) * 1e3, limit * 1e3);
+                write!(f, "deflection {value:.4} mm is {by:.4} mm above c_max = {limit} mm")
+            }
+            Self::JointStep { joint, step, limit } => {
+                write!(f, "joint {joint} steps {:.3} deg, limit {:.3} deg", step.to_degrees(), limit.to_degrees())
+            }
+            Self::BetaRate { step, limit } => {
+                write!(f, "beta steps {:.3} deg, limit {:.3} deg", step.to_degrees(), limit.to_degrees())
+            }
+        }
+    }
+}
+
+/// The constraints on real joint angles (rad): the limits of each.
+pub fn on_joints(problem: &Problem, joints: &[f64; 6]) -> [Measured; 6] {
+    std::array::from_fn(|j| {
+        let (angle, joint) = (joints[j], &problem.robot.joints()[j]);
+        let (below, above) = (angle - joint.min, joint.max - angle);
+        let (limit, margin) = if above < below { (joint.max, above) } else { (joint.min, below) };
+        Measured::JointLimit { joint: j as u8 + 1, angle, limit, margin }
+    })
+}
+
+/// The constraints on a single state beside joint limits: conditioning and the largest score.
+pub fn on_state(problem: &Problem, state: &State<f64>) -> impl Iterator<Item = Measured> + use<> {
+    let conditioning =
+        Measured::Conditioning { value: state.inverse_condition, limit: problem.constraints.min_inverse_condition };
+    let value = state.score();
+    let deflection = problem.constraints.max_deflection.map(|limit| Measured::MaxDeflection { value, limit });
+    [Some(conditioning), deflection].into_iter().flatten()
+}
+
+/// The constraints on the steps of the real joint angles (rad) between neighbouring path points.
+pub fn on_joint_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> [Measured; 6] {
+    std::array::from_fn(|j| Measured::JointStep { joint: j as u8 + 1, step: (to[j] - from[j]).abs(), limit: limits[j] })
+}

@@ -1,0 +1,93 @@
+//! Path points as the lookup table sees them: about axis 1.
+
+use super::LookupTable;
+use crate::problem::{Placement, Problem};
+use nalgebra::{Matrix3, Vector3};
+
+/// A path point in the workpiece frame.
+#[derive(Debug, Clone)]
+pub(super) struct WorkpiecePoint {
+    position: Vector3<f64>,
+    /// Across the tool axis.
+    feed: Vector3<f64>,
+    normal: Vector3<f64>,
+    force: Vector3<f64>,
+    /// What the score counts of |K^-1 n|. N
+    uncertainty: f64,
+}
+
+/// The path points of a problem.
+pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
+    let points = problem.task.points().iter().zip(problem.task.wrenches());
+    points
+        .map(|(point, wrench)| {
+            let axes = point.workpiece_from_point();
+            WorkpiecePoint {
+                position: point.position,
+                feed: axes.column(0).into_owned(),
+                normal: axes.column(1).into_owned(),
+                force: wrench.force,
+                uncertainty: problem.criterion.force_uncertainty * wrench.force.norm(),
+            }
+        })
+        .collect()
+}
+
+/// A placement, ready for its points: workpiece to root coordinates.
+pub(super) struct PlacedPath {
+    rotation: Matrix3<f64>,
+    translation: Vector3<f64>,
+}
+
+/// A path point at a placement.
+pub(super) struct PolarPoint {
+    /// The first of the four radii around it, and their weights.
+    pub radius: (usize, [f32; 4]),
+    /// In the root frame. m
+    pub height: f64,
+    /// Of the point about axis 1; zero where the table does not need it. rad
+    pub azimuth: f64,
+    /// Heading at beta zero against the azimuth, in the sense of beta. rad
+    pub heading: f64,
+    /// Tangential compliance by joint 1, r^2 k_1. m/N
+    pub first_compliance: f64,
+    /// Wall normal and force: radial, tangential, up. -, N
+    pub normal: Vector3<f64>,
+    pub force: Vector3<f64>,
+    /// What the score counts of |K^-1 n|. N
+    pub uncertainty: f64,
+}
+
+impl LookupTable<'_> {
+    pub(super) fn place(&self, placement: &Placement) -> PlacedPath {
+        let base_from_workpiece = placement.base_from_workpiece();
+        let root = self.problem.robot.geometry().root_in_base;
+        PlacedPath {
+            rotation: self.root_from_base * base_from_workpiece.rotation,
+            translation: self.root_from_base * (base_from_workpiece.translation - root),
+        }
+    }
+
+    /// Where a path point is at a placement; `None` beyond the table, where the arm does not get.
+    pub(super) fn polar_point(&self, placed: &PlacedPath, point: usize) -> Option<PolarPoint> {
+        let point = &self.points[point];
+        let tip = placed.rotation * point.position + placed.translation;
+        let radius = libm::hypot(tip.x, tip.y);
+        let (cosine, sine) = if radius > 0.0 { (tip.x / radius, tip.y / radius) } else { (1.0, 0.0) };
+        let polar = |v: &Vector3<f64>| {
+            let v = placed.rotation * v;
+            Vector3::new(v.x * cosine + v.y * sine, v.y * cosine - v.x * sine, v.z)
+        };
+        let feed = polar(&point.feed);
+        Some(PolarPoint {
+            radius: self.shape.radius.stencil(radius)?,
+            height: tip.z,
+            azimuth: if self.shape.has_first_joint { libm::atan2(sine, cosine) } else { 0.0 },
+            heading: self.sense * libm::atan2(feed.y, feed.x),
+            first_compliance: radius * radius * self.first_compliance,
+            normal: polar(&point.normal),
+            force: polar(&point.force),
+            uncertainty: point.uncertainty,
+        })
+    }
+}

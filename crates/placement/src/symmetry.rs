@@ -1,0 +1,131 @@
+//! The symmetry of upright tools: with axis 1 vertical and the tool along it, turning workpiece and joint 1 together about
+//! axis 1 changes nothing but theta_1.
+//!
+//! So a placement is three numbers (radius and height of the workpiece origin, yaw less its azimuth), and a state four: radius and height
+//! of the tool centre point, heading of the spindle against its azimuth, and posture class. The lookup table
+//! ([`super::lookup`]) and the certificate ([`super::certify`]) rest on this.
+
+use super::problem::{Placement, Problem};
+use nalgebra::Vector3;
+use stead_model::robot::Compliance;
+
+/// Why a problem cannot be treated by means of the symmetry.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unsupported {
+    /// Axis 1 is not vertical, so that states depend on the azimuth.
+    #[error("axis 1 of the robot leans {:.3} deg from the vertical", angle.to_degrees())]
+    BaseNotVertical {
+        /// Angle between axis 1 and the vertical of the base frame. rad
+        angle: f64,
+    },
+    /// A tool axis that is not vertical, or that is upside down against the first one.
+    #[error(
+        "the tool is not upright in the same sense at every point: at point {point} it is not as at the first, vertical one"
+    )]
+    TiltedTool {
+        /// The first such path point, from 0.
+        point: usize,
+    },
+    /// A moment acts on the tool.
+    #[error("a moment acts on the tool at point {point}")]
+    Moment {
+        /// The first such path point, from 0.
+        point: usize,
+    },
+    /// A compliance that must be constant changes with its joint angle.
+    #[error("the compliance of joint {joint} changes with its angle")]
+    VaryingCompliance {
+        /// The joint, from 1.
+        joint: usize,
+    },
+    /// Scores cover errors of the force.
+    #[error("scores cover errors of the force (criterion.force_uncertainty)")]
+    UncertainForce,
+    /// Scores cover errors of the compliances.
+    #[error("scores cover errors of the compliances (criterion.confidence)")]
+    UncertainCompliances,
+    /// The bound on conditioning lets the arm come so near to its singularities that nothing can be bounded.
+    #[error(
+        "constraints.min_inverse_condition must be at least {needed:.3}: nearer to a singularity nothing can be bounded"
+    )]
+    Conditioning {
+        /// The smallest bound on 1/kappa_F that will do.
+        needed: f64,
+    },
+    /// The cell is so large that tables do not fit in memory.
+    #[error(
+        "the cell is so large that tables would take {:.1} GB, and at most {:.1} GB are allowed",
+        *bytes as f64 / 1e9, *max as f64 / 1e9
+    )]
+    TooLarge {
+        /// What they would take.
+        bytes: u64,
+        /// What they may take.
+        max: u64,
+    },
+    /// The exact planner does not find what the lookup table promises: found out only after a search through it.
+    #[error("what it promised was not to be had within the steps and turns of the joints")]
+    Rejected,
+}
+
+/// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
+const VERTICAL: f64 = 1e-9;
+
+/// Which way up arm and tool are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Upright {
+    /// +1 where axis 1 points up in the base frame, -1 where the arm hangs.
+    pub side: f64,
+    /// +1 where the tool axis (from the workpiece to the robot) is along axis 1, so that a growing beta turns the spindle counter-clockwise
+    /// about it; -1 where it is against it.
+    pub sense: f64,
+}
+
+impl Upright {
+    /// That of a problem with an upright tool on which only forces act.
+    ///
+    /// # Errors
+    /// [`Unsupported`], with the reason, for any other problem.
+    pub fn of(problem: &Problem) -> Result<Self, Unsupported> {
+        let up = problem.robot.geometry().base_from_root * Vector3::z();
+        let is_vertical = |v: &Vector3<f64>| libm::hypot(v.x, v.y) < VERTICAL;
+        if !is_vertical(&up) {
+            return Err(Unsupported::BaseNotVertical { angle: libm::acos(up.z.abs().min(1.0)) });
+        }
+        let points = problem.task.points();
+        let first = points.first().map_or(1.0, |point| point.axis.z.signum());
+        if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis) || p.axis.z.signum() != first) {
+            return Err(Unsupported::TiltedTool { point });
+        }
+        if let Some(point) = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0) {
+            return Err(Unsupported::Moment { point });
+        }
+        Ok(Self { side: up.z.signum(), sense: first * up.z.signum() })
+    }
+}
+
+/// Requires the compliances of some joints (from 0) to be constant.
+///
+/// # Errors
+/// [`Unsupported::VaryingCompliance`] for the first that is not.
+pub(super) fn require_constant(problem: &Problem, joints: &[usize]) -> Result<(), Unsupported> {
+    let is_law = |j: &&usize| !matches!(problem.robot.joints()[**j].compliance, Compliance::Constant(_));
+    joints.iter().find(is_law).map_or(Ok(()), |joint| Err(Unsupported::VaryingCompliance { joint: joint + 1 }))
+}
+
+/// Requires scores to leave out the uncertainty of the compliances.
+///
+/// # Errors
+/// [`Unsupported::UncertainCompliances`] where they cover it.
+pub(super) fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
+    let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
+    if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+}
+
+/// A placement about axis 1: distance of the workpiece origin (m), its z in the base frame (m), and the yaw less its
+/// azimuth (rad, not wrapped).
+pub fn about_axis_1(problem: &Problem, placement: &Placement) -> [f64; 3] {
+    let root = problem.robot.geometry().root_in_base;
+    let (x, y) = (placement.x - root.x, placement.y - root.y);
+    [libm::hypot(x, y), placement.z, placement.yaw - libm::atan2(y, x)]
+}

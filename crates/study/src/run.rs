@@ -1,0 +1,91 @@
+//! One run: a search or a given placement, and the stability of the cut along its plans.
+
+use super::PathStability;
+use stead_format::Run;
+use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
+use stead_placement::outcome::{CANCELLATION, Cases, Outcome, Plan};
+use stead_placement::place::{self, Infeasible, Score};
+use stead_placement::problem::{Criterion, Placement};
+use stead_simulation::stability_analysis::StabilityError;
+
+/// Why a run ends without a result.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// No placement, or not the given one, satisfies the constraints.
+    #[error(transparent)]
+    Infeasible(#[from] Infeasible),
+    /// The stability of the cut cannot be computed.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
+}
+
+/// The best and the worst placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// The four cases, and how they were found.
+    pub outcome: Outcome,
+    /// Critical depths along cases 1 and 3, where the run file asks for them.
+    pub stability: Option<PathStability>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// A given placement of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scored {
+    /// Its best and its worst plan.
+    pub score: Score,
+    /// Critical depths along both plans, where the run file asks for them.
+    pub stability: Option<PathStability>,
+    /// What the user should know about the placement though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// Searches for the best and the worst placement. A stop that the monitor asks for leaves the best found so far.
+///
+/// # Errors
+/// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
+pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
+    let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
+    let Cases { best, worst, .. } = &outcome.cases;
+    let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
+    let mut warnings: Vec<Warning> = cancellation(run, best.plan.mean).into_iter().collect();
+    if outcome.interrupted {
+        let message = "interrupted: the results are the best found so far, not the end of the search";
+        warnings.push(Warning::new("interrupted", message));
+    }
+    Ok(Placed { outcome, stability, warnings })
+}
+
+/// Plans a given placement, best and worst.
+///
+/// # Errors
+/// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
+pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
+    let score = place::score(&run.problem, placement)?;
+    let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
+    let notes = outside_cell(run, placement).into_iter().collect();
+    let warnings = cancellation(run, score.best.mean).into_iter().collect();
+    Ok(Scored { score, stability, notes, warnings })
+}
+
+/// A placement outside the cell is evaluated all the same, but not silently.
+pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
+    let is_outside = !run.problem.cell.contains(placement);
+    is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
+}
+
+/// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
+fn cancellation(run: &Run, mean: f64) -> Option<Warning> {
+    let message = "the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
+                   makes the score the worst case over force errors";
+    let is_cancelled = mean <= CANCELLATION && run.problem.criterion == Criterion::default();
+    is_cancelled.then(|| Warning::new("cancellation", message))
+}
+
+fn stability(run: &Run, plans: [(&Placement, &Plan); 2]) -> Result<Option<PathStability>, StabilityError> {
+    run.path_stability.as_ref().map(|analysis| PathStability::along(&run.problem, analysis, plans)).transpose()
+}

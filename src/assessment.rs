@@ -1,0 +1,118 @@
+//! How good robots are for machining.
+
+use crate::result::{Report, result};
+use crate::{Error, Monitor, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use stead_assessment::comparison::{self, Assessment};
+use stead_format as format;
+use stead_report::Folder;
+use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
+use stead_report::document::Timing;
+
+/// An assessment file with the robots that it names, read and checked.
+#[derive(Debug, Clone)]
+pub struct AssessmentRun {
+    run: Arc<format::AssessRun>,
+}
+
+impl AssessmentRun {
+    /// Reads an assessment file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_assessment(file.as_ref())?) })
+    }
+
+    /// The same run, to rank robots by the accuracy (m) and the cutting force (N) wanted; either left out is the file's.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] when only one of the two is known.
+    pub fn selecting(mut self, accuracy: Option<f64>, force: Option<f64>) -> Result<Self, Error> {
+        let selection = &mut Arc::make_mut(&mut self.run).comparison.selection;
+        selection.accuracies = accuracy.map_or_else(|| std::mem::take(&mut selection.accuracies), |a| vec![a]);
+        selection.forces = force.map_or_else(|| std::mem::take(&mut selection.forces), |f| vec![f]);
+        if selection.accuracies.is_empty() != selection.forces.is_empty() {
+            return Err(Error::Argument(
+                "only one of the two is known; allowed: both, or a table [selection]".to_owned(),
+            ));
+        }
+        Ok(self)
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    /// Maps the circularity of a milled circle over the plane for every robot, and ranks the robots.
+    ///
+    /// # Errors
+    /// [`Error::Assessment`] when no robot can mill the circle anywhere, or the monitor asks to stop.
+    pub fn assess(&self, monitor: &Monitor) -> Result<RobotAssessment, Error> {
+        let started = Instant::now();
+        let assessment = comparison::assess(&self.run.comparison, monitor)?;
+        let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
+        let run = &self.run;
+        let published = run.published.clone().map(|published| {
+            let agreement = published.agreement(&assessment);
+            (published, agreement)
+        });
+        let context = AssessmentContext {
+            inputs: run.inputs.clone(),
+            notes: run.notes.clone(),
+            range_share: run.range_share,
+            published,
+            force_history: run.force_history.clone(),
+        };
+        Ok(RobotAssessment { run: Arc::clone(run), assessment, context, timing })
+    }
+}
+
+/// Circularity maps, zones and rankings of robots.
+#[derive(Debug, Clone)]
+pub struct RobotAssessment {
+    run: Arc<format::AssessRun>,
+    assessment: Assessment,
+    context: AssessmentContext,
+    timing: Timing,
+}
+
+impl RobotAssessment {
+    /// Robot by robot: maps and zones.
+    pub fn assessment(&self) -> &Assessment {
+        &self.assessment
+    }
+
+    /// How long it took.
+    pub fn timing(&self) -> Timing {
+        self.timing
+    }
+}
+
+impl Report for RobotAssessment {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)?)
+    }
+
+    fn document(&self) -> Value {
+        assess_json(&self.assessment, &self.context, &self.timing)
+    }
+
+    fn table(&self) -> String {
+        assessment_text(&self.assessment, &self.context)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
+}
+
+result!(RobotAssessment);

@@ -1,0 +1,76 @@
+//! Roundness of measured points.
+
+use crate::result::{Report, result};
+use crate::{Error, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stead_assessment::roundness::{Roundness, Sector, assess};
+use stead_format::{PointFile, read_points};
+use stead_report::Folder;
+use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
+
+/// Measured points of a circular profile.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    file: Arc<PointFile>,
+}
+
+impl Profile {
+    /// Reads measured points: a CSV file with `x_mm,y_mm` or `x_mm,y_mm,z_mm`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, column, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { file: Arc::new(read_points(file.as_ref())?) })
+    }
+
+    /// The four reference circles of ISO 12181 and the circularity about each, without the points of some sectors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for points on a line, or too few.
+    pub fn circularity(&self, excluded: &[Sector]) -> Result<Circularity, Error> {
+        let roundness = assess(&self.file.measured, excluded).map_err(|error| self.file.locate(error))?;
+        let warnings = roundness.warnings();
+        Ok(Circularity { file: Arc::clone(&self.file), roundness, warnings })
+    }
+}
+
+/// The four reference circles of a profile.
+#[derive(Debug, Clone)]
+pub struct Circularity {
+    file: Arc<PointFile>,
+    roundness: Roundness,
+    warnings: Vec<Warning>,
+}
+
+impl Circularity {
+    /// The circles and every point's deviation from them, in mm as the file has them.
+    pub fn roundness(&self) -> &Roundness {
+        &self.roundness
+    }
+}
+
+impl Report for Circularity {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_circularity(folder, &self.file, &self.roundness)?)
+    }
+
+    fn document(&self) -> Value {
+        circularity_json(&self.file, &self.roundness)
+    }
+
+    fn table(&self) -> String {
+        circularity_text(&self.file, &self.roundness)
+    }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+}
+
+result!(Circularity);

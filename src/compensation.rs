@@ -1,0 +1,92 @@
+//! Paths corrected so that the loaded tool follows the path that is wanted.
+
+use crate::result::{Report, result};
+use crate::{Error, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
+use stead_format as format;
+use stead_report::Folder;
+use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
+
+/// A compensation file with the run and the plan that it names, read and checked.
+#[derive(Debug, Clone)]
+pub struct CompensationRun {
+    run: Arc<format::CompensateRun>,
+}
+
+impl CompensationRun {
+    /// Reads a compensation file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(file, None)
+    }
+
+    /// As [`CompensationRun::read`], with another robot file on which the corrected path is played.
+    ///
+    /// # Errors
+    /// As [`CompensationRun::read`].
+    pub fn read_with(file: impl AsRef<Path>, reality: Option<&Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_compensation(file.as_ref(), reality)?) })
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    /// The JSON document in place of a result where some points cannot be compensated: which, and why.
+    pub fn not_compensated_json(&self, failure: &NotCompensated) -> Value {
+        not_compensated_json(&self.run, failure)
+    }
+
+    /// Finds for every point the pose to command.
+    ///
+    /// # Errors
+    /// [`Error::NotCompensated`] with the points that cannot be compensated, and why.
+    pub fn compensate(&self) -> Result<CompensatedPath, Error> {
+        let outcome = compensation::compensate(&self.run.job)?;
+        Ok(CompensatedPath { run: Arc::clone(&self.run), outcome })
+    }
+}
+
+/// A corrected path, with what remains of the deflection.
+#[derive(Debug, Clone)]
+pub struct CompensatedPath {
+    run: Arc<format::CompensateRun>,
+    outcome: Outcome,
+}
+
+impl CompensatedPath {
+    /// Point by point, in SI units.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+}
+
+impl Report for CompensatedPath {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_compensation(folder, &self.run, &self.outcome)?)
+    }
+
+    fn document(&self) -> Value {
+        compensation_json(&self.run, &self.outcome)
+    }
+
+    fn table(&self) -> String {
+        compensation_text(&self.run, &self.outcome)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
+}
+
+result!(CompensatedPath);

@@ -1,0 +1,64 @@
+//! The one error of the facade.
+
+use stead_assessment::comparison::AssessError;
+use stead_calibration::compensation::NotCompensated;
+use stead_format::input::InputError;
+use stead_placement::place::Infeasible;
+use stead_report::ReportError;
+
+/// Why a file could not be read, a job gave no result, or a result could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Something in a file is wrong: file, line, field, value found and what is allowed.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// An argument of a call is out of range.
+    #[error("{0}")]
+    Argument(String),
+    /// A result could not be written.
+    #[error(transparent)]
+    Output(#[from] ReportError),
+    /// No placement, or not the given one, satisfies the constraints.
+    #[error(transparent)]
+    Infeasible(Box<Infeasible>),
+    /// No robot can mill the benchmark, or the assessment was stopped.
+    #[error(transparent)]
+    Assessment(#[from] AssessError),
+    /// Some points of a path cannot be compensated.
+    #[error(transparent)]
+    NotCompensated(#[from] NotCompensated),
+    /// The job itself failed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl Error {
+    /// Whether the input or an argument is at fault, and not the job.
+    pub fn is_bad_input(&self) -> bool {
+        matches!(self, Self::Input(_) | Self::Argument(_))
+    }
+
+    /// A job that failed, in its own words.
+    pub(crate) fn failed(error: impl std::fmt::Display) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+impl From<stead_format::LocatedError> for Error {
+    fn from(error: stead_format::LocatedError) -> Self {
+        match error {
+            stead_format::LocatedError::Input(error) => Self::Input(error),
+            stead_format::LocatedError::Job(error) => Self::Failed(error),
+        }
+    }
+}
+
+impl From<stead_study::RunError> for Error {
+    fn from(error: stead_study::RunError) -> Self {
+        match error {
+            stead_study::RunError::Infeasible(nothing) => Self::Infeasible(Box::new(nothing)),
+            stead_study::RunError::Stability(error) => Self::failed(error),
+        }
+    }
+}

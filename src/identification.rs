@@ -1,0 +1,164 @@
+//! Joint compliances from measurements, and which measurements to take.
+
+use crate::result::{Report, result};
+use crate::{Error, Monitor, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stead_calibration::identification::design::{Design, design_experiment};
+use stead_calibration::identification::{Identified, identify};
+use stead_format as format;
+use stead_report::Folder;
+use stead_report::identification::plan::{keep_readings, plan_json, plan_text, write_plan};
+use stead_report::identification::{identify_json, identify_text, write_identified};
+
+/// An identification file with the robot and the filled measurement sheet that it names, read and checked.
+#[derive(Debug, Clone)]
+pub struct FitRun {
+    run: Arc<format::IdentifyRun>,
+}
+
+/// An identification file with a table `[plan]` and the robot that it names, read and checked.
+#[derive(Debug, Clone)]
+pub struct DesignRun {
+    run: Arc<format::PlanRun>,
+}
+
+impl FitRun {
+    /// Reads an identification file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_identification(file.as_ref())?) })
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    /// Fits compliances, gravity compensator and their covariance to the sheet.
+    ///
+    /// # Errors
+    /// [`Error::Input`] at the line of the sheet that is at fault; [`Error::Failed`] where a sound sheet gives no robot.
+    pub fn fit(&self) -> Result<IdentifiedRobot, Error> {
+        let identified = identify(&self.run.problem).map_err(|error| self.run.locate(error))?;
+        Ok(IdentifiedRobot { run: Arc::clone(&self.run), identified })
+    }
+}
+
+impl DesignRun {
+    /// Reads an identification file and the robot that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(file, None)
+    }
+
+    /// As [`DesignRun::read`], with another seed of the random numbers.
+    ///
+    /// # Errors
+    /// As [`DesignRun::read`].
+    pub fn read_with(file: impl AsRef<Path>, seed: Option<u64>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_plan(file.as_ref(), seed)?) })
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    /// Refuses a folder whose measurement sheet has readings in it, which [`MeasurementPlan::write`] would not write over either.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the sheet.
+    pub fn check_folder(&self, folder: impl AsRef<Path>) -> Result<(), Error> {
+        Ok(keep_readings(folder.as_ref())?)
+    }
+
+    /// Chooses the configurations and loads to measure.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where too little was asked for; [`Error::Failed`] where nothing was found.
+    pub fn plan(&self, monitor: &Monitor) -> Result<MeasurementPlan, Error> {
+        let design = design_experiment(&self.run.request, monitor).map_err(|error| self.run.locate(error))?;
+        Ok(MeasurementPlan { run: Arc::clone(&self.run), design })
+    }
+}
+
+/// Joint compliances with their covariance, and the robot file that states them.
+#[derive(Debug, Clone)]
+pub struct IdentifiedRobot {
+    run: Arc<format::IdentifyRun>,
+    identified: Identified,
+}
+
+/// Configurations and loads to measure, and what they will tell.
+#[derive(Debug, Clone)]
+pub struct MeasurementPlan {
+    run: Arc<format::PlanRun>,
+    design: Design,
+}
+
+impl IdentifiedRobot {
+    /// Estimates, residuals and outliers, in SI units.
+    pub fn identified(&self) -> &Identified {
+        &self.identified
+    }
+}
+
+impl MeasurementPlan {
+    /// The configurations and their expected errors, in SI units.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+}
+
+impl Report for IdentifiedRobot {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_identified(folder, &self.run, &self.identified)?)
+    }
+
+    fn document(&self) -> Value {
+        identify_json(&self.run, &self.identified)
+    }
+
+    fn table(&self) -> String {
+        identify_text(&self.run, &self.identified)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.identified.warnings
+    }
+}
+
+impl Report for MeasurementPlan {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        keep_readings(folder.path())?;
+        Ok(write_plan(folder, &self.run, &self.design)?)
+    }
+
+    fn document(&self) -> Value {
+        plan_json(&self.run, &self.design)
+    }
+
+    fn table(&self) -> String {
+        plan_text(&self.run, &self.design)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.design.warnings
+    }
+}
+
+result!(IdentifiedRobot, MeasurementPlan);

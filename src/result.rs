@@ -1,0 +1,72 @@
+//! What all results have in common: files, one JSON document, and a text.
+
+use crate::Error;
+use serde_json::Value;
+use std::path::PathBuf;
+use stead_numerics::message::Warning;
+use stead_report::Folder;
+
+/// A result as files, as a document and as a text; [`result!`] makes the public methods of it.
+pub(crate) trait Report {
+    /// Writes the files that the command of the same name leaves.
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error>;
+    /// What the command prints with `--json`.
+    fn document(&self) -> Value;
+    /// What the command prints.
+    fn table(&self) -> String;
+    /// What the result rests on.
+    fn notes(&self) -> &[String];
+    /// Why the result may not be what was wanted.
+    fn warnings(&self) -> &[Warning];
+}
+
+/// The public face of a [`Report`].
+macro_rules! result {
+    ($($name:ident),+) => { $(
+        impl $name {
+            /// Writes the files that the command of the same name leaves, byte for byte, into a folder that is made where it is
+            /// missing. Returns their paths.
+            ///
+            /// # Errors
+            /// [`Error::Output`](crate::Error::Output): the folder or a file cannot be written; no file is left half written.
+            pub fn write(
+                &self,
+                folder: impl AsRef<std::path::Path>,
+            ) -> Result<Vec<std::path::PathBuf>, crate::Error> {
+                let folder = stead_report::Folder::create(folder.as_ref())?;
+                crate::result::Report::files(self, &folder)
+            }
+
+            /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
+            pub fn to_json(&self) -> serde_json::Value {
+                crate::result::Report::document(self)
+            }
+
+            /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at their
+            /// defaults.
+            pub fn notes(&self) -> &[String] {
+                crate::result::Report::notes(self)
+            }
+
+            /// Why the result may not be what was wanted.
+            pub fn warnings(&self) -> &[crate::Warning] {
+                crate::result::Report::warnings(self)
+            }
+        }
+
+        impl serde::Serialize for $name {
+            /// As [`to_json`](Self::to_json).
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                self.to_json().serialize(serializer)
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            /// The text that the command prints.
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(&crate::result::Report::table(self))
+            }
+        }
+    )+ };
+}
+pub(crate) use result;

@@ -1,0 +1,303 @@
+//! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
+
+use crate::result::{Report, result};
+use crate::{Error, Monitor, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use stead_format as format;
+use stead_placement::certify::{self, Certificate};
+use stead_placement::feasibility::{self, Explanation};
+use stead_placement::outcome::{Cases, Outcome};
+use stead_placement::place::{Infeasible, Score};
+use stead_placement::problem::{Placement, Problem};
+use stead_report::Folder;
+use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
+use stead_report::document::Timing;
+use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
+use stead_study::{self as study, Placed, Scored};
+
+/// A run file with the robot and the task that it names, read and checked.
+///
+/// ```
+/// let run = stead::Run::read("configs/caro-2013.toml")?;
+/// assert_eq!(run.problem().robot.name(), "KUKA KR270-2");
+/// assert_eq!(run.problem().task.points().len(), 105);
+/// # Ok::<(), stead::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Run {
+    run: Arc<format::Run>,
+}
+
+impl Run {
+    /// Reads a run file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_run(file.as_ref())?) })
+    }
+
+    /// Reads a run file to be placed with a certificate of this gap (relative), whatever the file says of one.
+    ///
+    /// # Errors
+    /// As [`Run::read`], and for a cell too large for a certificate.
+    pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_run_to_certify(file.as_ref(), Some(gap))?) })
+    }
+
+    /// The same run with another seed of the random numbers.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        Arc::make_mut(&mut self.run).search.seed = seed;
+        self
+    }
+
+    /// What is to be solved.
+    pub fn problem(&self) -> &Problem {
+        &self.run.problem
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+}
+
+impl Run {
+    /// Searches for the best and the worst placement, each with its best and its worst redundancy plan; with the certificate, where
+    /// the run file asks for one. A stop that the monitor asks for leaves the best found so far.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] when no placement met satisfies the constraints.
+    pub fn place(&self, monitor: &Monitor) -> Result<Placements, Error> {
+        let mut placements = self.search(monitor)?;
+        if self.run.certificate.is_some() {
+            placements.certify(monitor);
+        }
+        Ok(placements)
+    }
+
+    /// As [`Run::place`], without a certificate.
+    ///
+    /// # Errors
+    /// As [`Run::place`].
+    pub fn search(&self, monitor: &Monitor) -> Result<Placements, Error> {
+        let started = Instant::now();
+        let Placed { outcome, stability, warnings } = study::place(&self.run, monitor)?;
+        let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
+        let context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
+    }
+
+    /// Why the run cannot be certified, where it asks for a certificate and that is so: to be said before a long search.
+    pub fn certificate_warning(&self) -> Option<Warning> {
+        self.run.certificate?;
+        certify::certifiable(self.problem()).err().map(|reason| certify::no_certificate(&reason))
+    }
+
+    /// A note on a placement outside the cell, which is evaluated all the same.
+    pub fn outside_cell(&self, placement: &Placement) -> Option<String> {
+        study::outside_cell(&self.run, placement)
+    }
+
+    /// The JSON document in place of a result where no placement satisfies the constraints: which constraint fails at which
+    /// points.
+    pub fn infeasible_json(&self, nothing: &Infeasible) -> Value {
+        evaluation::infeasible_json(nothing, &Context::new(&self.run, self.run.search))
+    }
+
+    /// Plans a given placement, best and worst.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] with the constraint that fails at which points.
+    pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
+        let Scored { score, stability, notes, warnings } = study::score(&self.run, placement)?;
+        let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        context.notes.extend(notes);
+        Ok(PlacementScore { score, context })
+    }
+
+    /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a point that the path does not have.
+    pub fn explain(&self, placement: &Placement, point: usize, beta: f64) -> Result<Explanations, Error> {
+        let last = self.problem().task.points().len() - 1;
+        if point > last {
+            return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
+        }
+        let postures = feasibility::explain(self.problem(), placement, point, beta);
+        let mut context = Context::new(&self.run, self.run.search);
+        context.notes.extend(study::outside_cell(&self.run, placement));
+        Ok(Explanations { placement: *placement, point, beta, postures, context })
+    }
+}
+
+/// The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
+#[derive(Debug, Clone)]
+pub struct Placements {
+    run: Arc<format::Run>,
+    outcome: Outcome,
+    context: Context,
+    timing: Timing,
+    certificate: Option<Certificate>,
+}
+
+impl Placements {
+    /// How the search went and what it found, in SI units.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// The four cases: best placement with best and worst plan, worst placement with best and worst plan.
+    pub fn cases(&self) -> &Cases {
+        &self.outcome.cases
+    }
+
+    /// How long it took.
+    pub fn timing(&self) -> Timing {
+        self.timing
+    }
+
+    /// Bounds how far these placements are from the best and the worst possible, as the run file asks, or within the gap given when
+    /// it was read; does nothing where neither asks for it. What falls short is among the certificate's warnings.
+    pub fn certify(&mut self, monitor: &Monitor) -> Option<&Certificate> {
+        let settings = self.run.certificate?;
+        let Cases { best, worst, .. } = &self.outcome.cases;
+        let found = (&best.placement, best.plan.mean);
+        self.certificate = Some(certify::certify(&self.run.problem, found, &worst.placement, settings, monitor));
+        self.certificate.as_ref()
+    }
+
+    /// What the command prints of the certificate, if there is one.
+    pub fn certificate_text(&self) -> Option<String> {
+        self.certificate.as_ref().map(certificate_text)
+    }
+
+    /// Writes the files of the certificate alone, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Output`]: the folder or a file cannot be written.
+    pub fn write_certificate(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        self.certificate_files(&Folder::create(folder.as_ref())?)
+    }
+
+    fn certificate_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        let Some(certificate) = &self.certificate else { return Ok(Vec::new()) };
+        Ok(write_certificate(folder, &self.run.problem, certificate, &self.run.inputs)?)
+    }
+
+    /// How far from the best and the worst possible these placements are, where that was asked for.
+    pub fn certificate(&self) -> Option<&Certificate> {
+        self.certificate.as_ref()
+    }
+}
+
+/// A given placement with its best and its worst plan.
+#[derive(Debug, Clone)]
+pub struct PlacementScore {
+    score: Score,
+    context: Context,
+}
+
+/// What each of the eight postures gives at one path point and one free angle.
+#[derive(Debug, Clone)]
+pub struct Explanations {
+    placement: Placement,
+    point: usize,
+    beta: f64,
+    postures: [Explanation; 8],
+    context: Context,
+}
+
+impl Report for Placements {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
+        files.extend(self.certificate_files(folder)?);
+        Ok(files)
+    }
+
+    fn document(&self) -> Value {
+        let mut document = place_json(&self.outcome, &self.context, &self.timing);
+        if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
+            entries.insert("certificate".to_owned(), certificate_json(certificate, &self.run.inputs));
+        }
+        document
+    }
+
+    fn table(&self) -> String {
+        let table = placement_text(&self.run.problem, &self.outcome, &self.context);
+        self.certificate_text().map_or_else(|| table.clone(), |certificate| format!("{table}\n{certificate}"))
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
+}
+
+impl PlacementScore {
+    /// Both plans, in SI units.
+    pub fn score(&self) -> &Score {
+        &self.score
+    }
+}
+
+impl Explanations {
+    /// What each posture gives, in the order of their numbers.
+    pub fn postures(&self) -> &[Explanation; 8] {
+        &self.postures
+    }
+}
+
+impl Report for PlacementScore {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(Vec::new())
+    }
+
+    fn document(&self) -> Value {
+        evaluation::score_json(&self.score, &self.context)
+    }
+
+    fn table(&self) -> String {
+        evaluation::score_text(&self.score, &self.context)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
+}
+
+impl Report for Explanations {
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(Vec::new())
+    }
+
+    fn document(&self) -> Value {
+        evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
+    }
+
+    fn table(&self) -> String {
+        evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
+}
+
+result!(Placements, PlacementScore, Explanations);

@@ -1,0 +1,179 @@
+//! One milling pass of an arm that yields: simulated in time, and whether small motions die out.
+
+use crate::result::{Report, result};
+use crate::{Error, Warning};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use stead_format as format;
+use stead_format::Overrides;
+use stead_report::Folder;
+use stead_report::simulation::{Making, simulation_text, timed_json, write_simulation};
+use stead_report::stability::{stability_json, stability_text, write_stability};
+use stead_simulation::coupled::Job;
+use stead_simulation::outcome::Simulation;
+use stead_simulation::stability_analysis::{self, StabilityAnalysis as Analysis};
+
+/// A simulation file with its robot, read and checked for a simulation in time.
+#[derive(Debug, Clone)]
+pub struct SimulationRun {
+    run: Arc<format::SimulationRun>,
+}
+
+/// A simulation file with its robot, read and checked for an analysis of stability, which takes no time steps.
+#[derive(Debug, Clone)]
+pub struct StabilityRun {
+    run: Arc<format::SimulationRun>,
+}
+
+impl SimulationRun {
+    /// Reads a simulation file and the robot file that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(file, &Overrides::default())
+    }
+
+    /// As [`SimulationRun::read`], with some values in place of the file's.
+    ///
+    /// # Errors
+    /// As [`SimulationRun::read`].
+    pub fn read_with(file: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_simulation(file.as_ref(), overrides)?) })
+    }
+
+    /// Simulates the pass with the whole kinematic chain.
+    ///
+    /// # Errors
+    /// [`Error::Failed`] for a pass too short to be judged.
+    pub fn simulate(&self) -> Result<SimulatedPass, Error> {
+        self.run_with(false)
+    }
+
+    /// Simulates the pass with the condensed model: mass matrix and Jacobian frozen every few millimetres.
+    ///
+    /// # Errors
+    /// As [`SimulationRun::simulate`].
+    pub fn simulate_condensed(&self) -> Result<SimulatedPass, Error> {
+        self.run_with(true)
+    }
+
+    fn run_with(&self, is_fast: bool) -> Result<SimulatedPass, Error> {
+        let run = &self.run;
+        let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
+        let start = Instant::now();
+        let pass = if is_fast { job.run_fast() } else { job.run() };
+        let making = Making { is_fast, wall: start.elapsed().as_secs_f64() };
+        let simulation = pass
+            .map_err(Into::into)
+            .and_then(|pass| Simulation::of(&job, &run.evaluation, pass))
+            .map_err(Error::failed)?;
+        Ok(SimulatedPass { run: Arc::clone(run), simulation, making })
+    }
+}
+
+impl StabilityRun {
+    /// Reads a simulation file and the robot file that it names; its time steps may be as coarse as they like.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(file, &Overrides::default())
+    }
+
+    /// As [`StabilityRun::read`], with some values in place of the file's.
+    ///
+    /// # Errors
+    /// As [`StabilityRun::read`].
+    pub fn read_with(file: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_stability(file.as_ref(), overrides)?) })
+    }
+
+    /// Modes of the arm, frequency response at the tip, critical depth and stability lobes.
+    ///
+    /// # Errors
+    /// [`Error::Failed`] for an arm that says too little, or a cut without width.
+    pub fn analyse(&self) -> Result<StabilityAnalysis, Error> {
+        let run = &self.run;
+        let analysis =
+            stability_analysis::analyse(&run.setup, &run.cutter, &run.cut, &run.analysis).map_err(Error::failed)?;
+        Ok(StabilityAnalysis { run: Arc::clone(run), analysis })
+    }
+}
+
+/// A simulated pass: forces, the wall that is left, and whether the cut stayed calm.
+#[derive(Debug, Clone)]
+pub struct SimulatedPass {
+    run: Arc<format::SimulationRun>,
+    simulation: Simulation,
+    making: Making,
+}
+
+/// Whether a cut chatters.
+#[derive(Debug, Clone)]
+pub struct StabilityAnalysis {
+    run: Arc<format::SimulationRun>,
+    analysis: Analysis,
+}
+
+impl SimulatedPass {
+    /// What the simulation gave, in SI units.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+}
+
+impl StabilityAnalysis {
+    /// Modes, responses, depths and lobes, in SI units.
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
+    }
+}
+
+impl Report for SimulatedPass {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_simulation(folder, &self.run, &self.simulation, &self.making)?)
+    }
+
+    fn document(&self) -> Value {
+        timed_json(&self.run, &self.simulation, &self.making)
+    }
+
+    fn table(&self) -> String {
+        simulation_text(&self.run, &self.simulation, &self.making)
+    }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
+}
+
+impl Report for StabilityAnalysis {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_stability(folder, &self.run, &self.analysis)?)
+    }
+
+    fn document(&self) -> Value {
+        stability_json(&self.run, &self.analysis)
+    }
+
+    fn table(&self) -> String {
+        stability_text(&self.run, &self.analysis)
+    }
+
+    fn notes(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
+}
+
+result!(SimulatedPass, StabilityAnalysis);
