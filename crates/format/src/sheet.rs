@@ -1,7 +1,7 @@
 //! Measurement sheets from CSV.
 
 use crate::input::InputError;
-use crate::input::table::{Row, Table};
+use crate::input::csv_table::{CsvTable, Row};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,7 +35,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(file: &Path, table: &Table<'_>) -> Result<Self, InputError> {
+    fn new(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
         let fail = |name: &str, problem: &str| InputError::new(file, problem).at_line(1).in_field(name).allowed(HEADER);
         let one = |name: &str| {
             if table.is_doubled(name) {
@@ -79,7 +79,7 @@ struct Entry {
 /// rows differ in joint angles or wrench, a point that is there twice in a configuration, joint angles outside the limits,
 /// no load, or a loaded place equal to the unloaded one.
 pub(super) fn sheet_from(file: &Path, bytes: &[u8], robot: &Robot) -> Result<Sheet, InputError> {
-    let mut table = Table::new(file, bytes)?;
+    let mut table = CsvTable::new(file, bytes)?;
     let columns = Columns::new(file, &table)?;
     let mut points: Vec<String> = Vec::new();
     let mut point_of: BTreeMap<String, usize> = BTreeMap::new();
