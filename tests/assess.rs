@@ -127,7 +127,7 @@ fn computed_forces_and_another_plane() {
     bench.replace(STUDY, "x = [1.0, 0.0, 0.0]\ny = [0.0, 0.0, 1.0]", "x = [1.0, 0.0, 0.0]\ny = [0.0, 1.0, 0.0]");
     bench.replace(STUDY, "origin_mm = [0.0, 0.0, 0.0]", "origin_mm = [0.0, 0.0, 600.0]");
     bench.replace(STUDY, "y_mm = [-2000.0, 4500.0]", "y_mm = [-2000.0, 2000.0]");
-    let milling = "[milling]\ncutter_diameter_mm = 16.0\nteeth = 4\nkn_mpa = 800.0\nfriction = 0.4\n\
+    let milling = "[tool]\ncutter_diameter_mm = 16.0\nteeth = 4\nkn_mpa = 800.0\nfriction = 0.4\n[cut]\n\
                    feed_per_tooth_mm = 0.05\naxial_depth_mm = 5.0\nengagement = \"up\"\nradial_depth_mm = 2.0\n\n[map]";
     bench.replace(STUDY, "[map]", milling);
     let ended = run(&bench, STUDY, &["--out", "out", "--json"]);
@@ -147,7 +147,7 @@ fn bad_input_ends_with_2_and_leaves_everything_as_it_was() {
         (
             "kuka-kr500.toml",
             "kuka-kr100-ha.toml",
-            ["klimchik-2017.toml:12: robots[5]: ", "second robot called 'KUKA KR 100 HA'"],
+            ["klimchik-2017.toml:13: robots[5]: ", "second robot called 'KUKA KR 100 HA'"],
         ),
         ("1000.0]", "9000.0]", ["zones.sides_mm[4]: ", "larger than the map, found 9000.0; allowed: "]),
         ("[-440.0, -1370.0, -635.0]", "[0.0, 0.0, -635.0]", ["benchmark.force_n: ", "no force in the plane"]),

@@ -218,8 +218,8 @@ fn a_task_without_rows_or_columns_is_refused() {
     bench.write(TASK, &path);
     refused_by_all(
         &bench,
-        &format!("{RUN}:7: task: "),
-        &["has no force columns", "[cutting]", "found \"../tasks/five"],
+        &format!("{RUN}:8: task: "),
+        &["has no force columns", "[tool] and [cut]", "found \"../tasks/five"],
     );
 }
 

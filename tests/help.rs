@@ -96,3 +96,34 @@ fn a_manual_that_cannot_be_written_is_refused_at_its_folder() {
     ended.assert_says(&["error: pages: results cannot be written here"]);
     assert_eq!(bench.read("pages"), "a file");
 }
+
+/// The paths that ARCHITECTURE.md names: those in its tables below a heading that is a folder, and all with a slash in them.
+#[test]
+fn the_paths_that_the_architecture_names_exist() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap();
+    let (mut base, mut checked, mut missing) = (root.to_owned(), 0, Vec::new());
+    for line in text.lines() {
+        let quoted = |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+        if line.starts_with("## ") {
+            base = quoted(line).first().map_or(root.to_owned(), |folder| root.join(folder));
+            if !base.exists() {
+                missing.push(line.to_owned());
+            }
+            continue;
+        }
+        let first_cell = line.strip_prefix('|').and_then(|row| row.split('|').next()).map(quoted).unwrap_or_default();
+        for name in quoted(line) {
+            let is_path = name.ends_with('/') || name.ends_with(".rs") || name.ends_with(".toml");
+            if is_path && !name.contains(' ') {
+                checked += 1;
+                let from = if first_cell.contains(&name) { base.as_path() } else { root };
+                if !from.join(&name).exists() {
+                    missing.push(format!("{name}, in: {line}"));
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+    assert!(checked > 40, "{checked}");
+}

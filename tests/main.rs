@@ -18,4 +18,5 @@ mod place;
 mod score_explain;
 mod simulate;
 mod stability;
+mod starting;
 mod uncertainty;

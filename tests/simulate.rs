@@ -105,12 +105,8 @@ fn an_unstable_run_ends_cleanly_with_the_verdict() {
 #[test]
 fn bad_input_names_line_field_value_and_what_is_allowed() {
     for (from, to, parts) in [
-        (
-            "radial_depth_mm = 4.0",
-            "radial_depth_mm = 10.5",
-            &["milling.radial_depth_mm", "10.5", "cutter_diameter_mm"][..],
-        ),
-        ("axial_depth_mm = 1.6", "axial_depth_mm = 22.5", &["milling.axial_depth_mm", "22.5", "flute_length_mm = 22"]),
+        ("radial_depth_mm = 4.0", "radial_depth_mm = 10.5", &["cut.radial_depth_mm", "10.5", "cutter_diameter_mm"][..]),
+        ("axial_depth_mm = 1.6", "axial_depth_mm = 22.5", &["cut.axial_depth_mm", "22.5", "flute_length_mm = 22"]),
         (
             "spindle_rpm = 18700.0",
             "spindle_rpm = 300.0",

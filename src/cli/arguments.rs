@@ -47,12 +47,42 @@ pub(super) enum Command {
     /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
     #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
+    /// Write a small commented set of input files that runs
+    #[command(after_long_help = help::INIT)]
+    Init(InitOptions),
+    /// Print the JSON Schema of a kind of input file
+    #[command(after_long_help = help::SCHEMA)]
+    Schema(SchemaOptions),
     /// Print the completion script of a shell
     #[command(after_long_help = help::COMPLETIONS)]
     Completions(CompletionsOptions),
     /// Write the manual pages
     #[command(after_long_help = help::MAN)]
     Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InitOptions {
+    /// Command that the files are for
+    pub kind: Starter,
+    /// Folder for the files; it is created where it is missing
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+/// The commands that there is a starter set for.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Starter {
+    Place,
+    Assess,
+    Identify,
+    Simulate,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaOptions {
+    /// Kind of file: run, robot, simulate, assess, identify-fit, identify-plan or compensate
+    pub name: String,
 }
 
 #[derive(Debug, Args)]

@@ -209,6 +209,34 @@ Exit codes:
   1  the small motions of the arm cannot be computed there, or a file could not be written
   2  wrong usage, bad input, or a results folder that cannot be written to";
 
+pub(super) const INIT: &str = "\
+Examples:
+  stead init place my-cell
+  stead init simulate my-arm
+
+Files written to the folder:
+  place     run.toml, robot.toml, task.csv
+  assess    assess.toml, robot.toml
+  identify  identify.toml, robot.toml, sheet.csv
+  simulate  simulate.toml, robot.toml (for stead stability too)
+
+Exit codes:
+  0  the files were written
+  2  one of the files is there already: nothing is written and nothing is changed";
+
+pub(super) const SCHEMA: &str = "\
+Examples:
+  stead schema run > run.schema.json
+  stead schema robot
+
+An editor that knows TOML completes and checks the keys of a file whose first line is `#:schema` and the path of its schema.
+
+Files written: none; the schema goes to standard output.
+
+Exit codes:
+  0  the schema was printed
+  2  there is no schema of this name";
+
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   stead completions bash > ~/.local/share/bash-completion/completions/stead

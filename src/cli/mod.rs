@@ -12,9 +12,11 @@ mod completions;
 mod explain;
 mod help;
 mod identify;
+mod init;
 mod man;
 mod place;
 mod progress;
+mod schema;
 mod score;
 mod simulate;
 mod stability;
@@ -78,6 +80,8 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Init(options) => init::run(&options),
+        Command::Schema(options) => schema::run(&options),
         Command::Completions(options) => completions::run(&options),
         Command::Man(options) => man::run(&options),
     };

@@ -1,8 +1,9 @@
 //! What comes from files: which ones, what they cite, and the one error for anything that they can get wrong.
 
-pub mod table;
+pub mod csv_table;
 
-use std::fmt;
+use sha2::{Digest, Sha256};
+use std::fmt::{self, Write};
 use std::path::Path;
 
 /// A file that was read, so that a result can say what it came from.
@@ -91,9 +92,29 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
+/// A file that was read, by what it is for, its name and its bytes, to say what a result came from.
+pub fn input_file(role: &'static str, name: impl Into<String>, bytes: &[u8]) -> InputFile {
+    InputFile { role, name: name.into(), sha256: sha256(bytes) }
+}
+
+/// The SHA-256 digest of some bytes, in lower-case hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digest_is_that_of_the_standard() {
+        // FIPS 180-4, the example "abc".
+        assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
 
     #[test]
     fn prints_what_is_known_and_nothing_else() {

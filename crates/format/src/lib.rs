@@ -17,34 +17,37 @@
 //! # }
 //! ```
 
-mod arrays;
-mod assess;
-mod certificate;
-mod compensate;
-mod cutting;
-mod identify;
-mod inertial;
+pub mod assess;
+pub mod compensate;
+mod deserialize;
+pub mod identify;
+pub mod inertial;
+pub mod init;
 pub mod input;
-mod milling;
-mod path_stability;
+pub mod place;
 mod points;
-mod printed;
-pub mod reader;
-mod robot;
-mod run;
+pub mod published_tables;
+pub mod quantity;
+pub mod robot;
+pub mod run;
+pub mod scalars;
+pub mod schema;
+pub mod shapes;
 mod sheet;
-mod simulation;
-pub mod source;
-mod tables;
+pub mod simulation;
+pub mod spindle;
 pub mod task;
 #[cfg(test)]
 mod testing;
+pub mod toml_file;
+pub mod tool;
+pub mod units;
 
 pub use assess::{AssessRun, read_assessment};
-pub use certificate::GAPS_ALLOWED;
 pub use compensate::{CompensateRun, read_compensation};
 pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
-pub use run::{Run, read_run, read_run_to_certify};
-pub use simulation::{FASTEST_RPM, MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify};
+pub use simulation::{MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use tool::FASTEST_RPM;

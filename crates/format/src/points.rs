@@ -1,7 +1,7 @@
 //! Measured points from CSV, as coordinate measuring machines export them.
 
-use super::source::input_file;
-use crate::input::table::Table;
+use crate::input::csv_table::CsvTable;
+use crate::input::input_file;
 use crate::input::{InputError, InputFile};
 use std::path::{Path, PathBuf};
 use stead_assessment::circle::CircleError;
@@ -29,7 +29,7 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
     let bytes = std::fs::read(file).map_err(|e| {
         InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable CSV file of points")
     })?;
-    let mut table = Table::new(file, &bytes)?;
+    let mut table = CsvTable::new(file, &bytes)?;
     let fail = |name: &str, problem: &str| {
         InputError::new(file, problem)
             .at_line(1)

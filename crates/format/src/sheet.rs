@@ -1,14 +1,14 @@
 //! Measurement sheets from CSV.
 
 use crate::input::InputError;
-use crate::input::table::{Row, Table};
+use crate::input::csv_table::{CsvTable, Row};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
-use stead_calibration::identification::rotation::{rotation_from_vector, vector_from_rotation};
 use stead_calibration::identification::{Configuration, Reading, Sheet};
 use stead_model::robot::Robot;
 use stead_model::robot::angles::ANGLE_ROUNDING;
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 const THETA: [&str; 6] = ["theta1_deg", "theta2_deg", "theta3_deg", "theta4_deg", "theta5_deg", "theta6_deg"];
 const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
@@ -35,7 +35,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(file: &Path, table: &Table<'_>) -> Result<Self, InputError> {
+    fn new(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
         let fail = |name: &str, problem: &str| InputError::new(file, problem).at_line(1).in_field(name).allowed(HEADER);
         let one = |name: &str| {
             if table.is_doubled(name) {
@@ -79,7 +79,7 @@ struct Entry {
 /// rows differ in joint angles or wrench, a point that is there twice in a configuration, joint angles outside the limits,
 /// no load, or a loaded place equal to the unloaded one.
 pub(super) fn sheet_from(file: &Path, bytes: &[u8], robot: &Robot) -> Result<Sheet, InputError> {
-    let mut table = Table::new(file, bytes)?;
+    let mut table = CsvTable::new(file, bytes)?;
     let columns = Columns::new(file, &table)?;
     let mut points: Vec<String> = Vec::new();
     let mut point_of: BTreeMap<String, usize> = BTreeMap::new();
@@ -169,7 +169,7 @@ fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize)
         None => None,
         Some([before, after]) => {
             let rotation = |columns| vector(row, columns).map(|v| rotation_from_vector(&v.map(f64::to_radians)));
-            Some(vector_from_rotation(&(rotation(after)? * rotation(before)?.transpose())))
+            Some(rotation_vector(&(rotation(after)? * rotation(before)?.transpose())))
         }
     };
     Ok(Reading { line: row.line(), configuration, point, unloaded, loaded, turn })

@@ -1,7 +1,7 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
 use crate::input::InputError;
-use crate::input::table::{Row, Table};
+use crate::input::csv_table::{CsvTable, Row};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
@@ -40,7 +40,7 @@ pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
 /// # Errors
 /// As [`read_csv`].
 pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
-    let mut table = Table::new(file, bytes)?;
+    let mut table = CsvTable::new(file, bytes)?;
     let columns = Columns::find(file, &table)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
@@ -67,7 +67,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(file: &Path, table: &Table<'_>) -> Result<Self, InputError> {
+    fn find(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
         let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT);
         let fail = |column: &str, problem: &str| {
             InputError::new(file, problem)

@@ -5,8 +5,8 @@ use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::lookup::LookupTable;
-use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
-use super::problem::{Placement, Problem};
+use super::outcome::{CANCELLATION, Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
+use super::problem::{Criterion, Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
 use super::search::{self, Found};
@@ -17,6 +17,7 @@ use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// Why a placement job has no result.
@@ -123,6 +124,8 @@ pub fn place(
             cycle: cycle(problem, transfer, &plans),
         }
     };
+    let mean = best.solution.mean();
+    let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     Ok(Outcome {
         cases: Cases {
             best: case(Sense::Min, best, Sense::Min),
@@ -137,7 +140,8 @@ pub fn place(
         map_worst: deflection_map(problem, &worst.solution.placement),
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
-        interrupted: found.iter().any(|f| f.interrupted) || monitor.should_stop(),
+        interrupted,
+        warnings: cancellation(problem, mean).into_iter().chain(interrupted.then(interruption)).collect(),
     })
 }
 
@@ -150,6 +154,21 @@ pub struct Score {
     pub best: Plan,
     /// The worst plan.
     pub worst: Plan,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
+fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
+    (mean <= CANCELLATION && problem.criterion == Criterion::default()).then(|| {
+        let message = "the best plan cancels the deflection to nothing, which no real force will; \
+                       criterion.force_uncertainty makes the score the worst case over force errors";
+        Warning::new("cancellation", message)
+    })
+}
+
+fn interruption() -> Warning {
+    Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
 /// Plans one given placement, best and worst.
@@ -165,10 +184,12 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
     else {
         return Err(nothing(&planner, placement, None, false));
     };
+    let warnings = cancellation(problem, best.mean()).into_iter().collect();
     Ok(Score {
         placement: *placement,
         best: detailed(problem, placement, &best.plans),
         worst: detailed(problem, placement, &worst),
+        warnings,
     })
 }
 

@@ -64,6 +64,7 @@ pub fn outcome() -> &'static Outcome {
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
+            warnings: Vec::new(),
         }
     })
 }

@@ -23,11 +23,12 @@ accuracies_mm = [0.2]
 forces_n = [500]
 ";
 
-const MILLING: &str = "[milling]
+const MILLING: &str = "[tool]
 cutter_diameter_mm = 10
 teeth = 3
 kn_mpa = 750
 friction = 0.4
+[cut]
 feed_per_tooth_mm = 0.08
 axial_depth_mm = 5
 engagement = 'down'
@@ -207,7 +208,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
             [":6: stiffness.range_share: ", "from 0 to 1", "found 1.5;"],
         ),
         (TEXT.replace("[map]", "[load]\nrated_share = 0\n[map]"), [":6: load.rated_share: ", "above 0", "found 0;"]),
-        (TEXT.replace("[map]", MILLING), [":4: benchmark.force_n: ", "beside a table [milling]", "found [-440"]),
+        (TEXT.replace("[map]", MILLING), [":4: benchmark.force_n: ", "beside a table [tool]", "found [-440"]),
         (
             computed.replace("radius_mm = 100", "radius_mm = 100\ntool_axis = [0, 0, 1]"),
             [":4: benchmark.tool_axis: ", "normal of the plane", "found [0, 0, 1]"],

@@ -1,7 +1,7 @@
 //! The rows of a plan file, as `stead place` writes them: one for each path point.
 
 use crate::input::InputError;
-use crate::input::table::{Row, Table};
+use crate::input::csv_table::{CsvTable, Row};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::robot::Posture;
@@ -50,7 +50,7 @@ const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection
 /// [`InputError`] naming line and column: a missing or doubled column, a value of the wrong kind, points that are not those of
 /// the path in their order.
 pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Vec<PlanRow>, InputError> {
-    let mut table = Table::new(file, bytes)?;
+    let mut table = CsvTable::new(file, bytes)?;
     let columns = columns(file, &table)?;
     let count = path.points().len();
     let mut rows = Vec::with_capacity(count);
@@ -76,7 +76,7 @@ pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Ve
     Ok(rows)
 }
 
-fn columns(file: &Path, table: &Table<'_>) -> Result<Columns, InputError> {
+fn columns(file: &Path, table: &CsvTable<'_>) -> Result<Columns, InputError> {
     let column = |name: &str| {
         let allowed = format!(
             "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",

@@ -5,13 +5,16 @@
 //! `joints[3].compliance_urad_per_nm[1]`, at `min_deg`, and `[2]`, at `max_deg`; a compensator has
 //! `joints[2].compensator.spring_stiffness_n_per_mm` and `joints[2].compensator.free_length_mm`.
 
-use super::super::reader::{Field, Table};
 use super::compliance::{COMPENSATOR, COMPLIANCE};
+use super::file::CovarianceTable;
 use crate::input::InputError;
+use crate::place::Place;
 use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Robot, Uncertainty, UncertaintyError};
 
 pub(super) const COVARIANCE: &str = "covariance";
+const PARAMETERS: &str = "parameters";
+const MATRIX: &str = "matrix";
 
 /// The name of a parameter in a robot file, without a quote.
 pub fn parameter_name(parameter: Parameter) -> String {
@@ -38,7 +41,7 @@ pub fn parameter_unit(parameter: Parameter) -> f64 {
 /// identification writes. Numbers have as many digits as they need to be read back as they are.
 pub fn covariance_text(uncertainty: &Uncertainty) -> String {
     let parameters = uncertainty.parameters();
-    let mut text = format!("[{COVARIANCE}]\nparameters = [\n");
+    let mut text = format!("[{COVARIANCE}]\n{PARAMETERS} = [\n");
     for parameter in parameters {
         text.push_str(&format!("    \"{}\",\n", parameter_name(*parameter)));
     }
@@ -56,38 +59,27 @@ pub fn covariance_text(uncertainty: &Uncertainty) -> String {
 }
 
 /// The same arm with the covariance of its file.
-pub(super) fn with_covariance(robot: Robot, table: &Table<'_>) -> Result<Robot, InputError> {
-    let [parameters, matrix] = table.fields(["parameters", "matrix"])?;
+pub(super) fn with_covariance(robot: Robot, table: &CovarianceTable, at: &Place<'_>) -> Result<Robot, InputError> {
     let known = names_of(&robot);
-    let names = parameters.list(&format!("an array of names of parameters: {known}"))?;
-    let mut found = Vec::with_capacity(names.len());
-    for name in &names {
-        found.push(parameter_from(name, &robot, &known)?);
+    let mut found = Vec::new();
+    for (name, number) in table.parameters.0.iter().zip(1..) {
+        found.push(parameter_from(name, &at.key(PARAMETERS).element(number), &robot, &known)?);
     }
-    let count = found.len();
+    let (count, matrix, rows) = (found.len(), at.key(MATRIX), &table.matrix.0);
     let allowed =
         format!("{count} rows of {count} finite numbers, in the order of parameters and the products of their units");
-    let mut rows = Vec::with_capacity(count);
-    for row in matrix.list(&allowed)? {
-        let entries = row.list(&allowed)?;
-        if entries.len() != count {
-            return Err(row.error(format!("has {} numbers and not {count}", entries.len()), allowed));
-        }
-        rows.push(entries);
+    if let Some((row, number)) = rows.iter().zip(1..).find(|(row, _)| row.0.len() != count) {
+        let problem = format!("has {} numbers and not {count}", row.0.len());
+        return Err(matrix.element(number).error(problem, allowed));
     }
     if rows.len() != count {
         return Err(matrix.error(format!("has {} rows and not {count}", rows.len()), allowed));
     }
     let units: Vec<f64> = found.iter().map(|parameter| parameter_unit(*parameter)).collect();
-    let mut covariance = DMatrix::zeros(count, count);
-    for (j, row) in rows.iter().enumerate() {
-        for (k, entry) in row.iter().enumerate() {
-            covariance[(j, k)] = entry.number_where(&allowed, |_| true)? * units[j] * units[k];
-        }
-    }
+    let covariance = DMatrix::from_fn(count, count, |j, k| rows[j].0[k].written() * units[j] * units[k]);
     Uncertainty::new(found, covariance)
         .and_then(|uncertainty| robot.with_uncertainty(uncertainty))
-        .map_err(|error| locate(&names, &matrix, &rows, &error))
+        .map_err(|error| locate(at, &error))
 }
 
 /// The names of all parameters that the laws of an arm have.
@@ -96,8 +88,7 @@ fn names_of(robot: &Robot) -> String {
     all.filter(|parameter| robot.has_parameter(*parameter)).map(parameter_name).collect::<Vec<_>>().join(", ")
 }
 
-fn parameter_from(name: &Field<'_>, robot: &Robot, known: &str) -> Result<Parameter, InputError> {
-    let text = name.string()?;
+fn parameter_from(text: &str, name: &Place<'_>, robot: &Robot, known: &str) -> Result<Parameter, InputError> {
     let meant = (0..6).flat_map(Parameter::of_joint).find(|parameter| parameter_name(*parameter) == text);
     let Some(parameter) = meant else {
         return Err(name.error("is no parameter of a compliance", known));
@@ -119,29 +110,33 @@ fn parameter_from(name: &Field<'_>, robot: &Robot, known: &str) -> Result<Parame
 }
 
 /// A broken rule of the covariance, at its line of the file.
-fn locate(names: &[Field<'_>], matrix: &Field<'_>, rows: &[Vec<Field<'_>>], error: &UncertaintyError) -> InputError {
+fn locate(at: &Place<'_>, error: &UncertaintyError) -> InputError {
     const SEMIDEFINITE: &str = "a positive semidefinite matrix: no combination of parameters with a variance below 0";
+    let matrix = at.key(MATRIX);
+    let name = |index: usize| at.key(PARAMETERS).element(index + 1);
+    let entry = |row: usize, column: usize| matrix.element(row + 1).element(column + 1);
     match error {
         UncertaintyError::Size { parameters, .. } => {
             matrix.error(error.to_string(), format!("{parameters} rows of {parameters} numbers"))
         }
-        UncertaintyError::Repeated { place, .. } => names[*place].error("is named twice", "each parameter once"),
+        UncertaintyError::Repeated { place, .. } => name(*place).error("is named twice", "each parameter once"),
         UncertaintyError::NotOfLaw { place, .. } => {
-            names[*place].error("is of a law that its joint does not have", "a parameter of the law of its joint")
+            name(*place).error("is of a law that its joint does not have", "a parameter of the law of its joint")
         }
         UncertaintyError::NotFinite { row, column, value } => {
-            rows[*row][*column].error(format!("is {value} in SI units"), "a number that is finite in SI units")
+            entry(*row, *column).error(format!("is {value} in SI units"), "a number that is finite in SI units")
         }
         UncertaintyError::NegativeVariance { row, .. } => {
-            rows[*row][*row].error("is a variance below 0", "a number not below 0 on the diagonal")
+            entry(*row, *row).error("is a variance below 0", "a number not below 0 on the diagonal")
         }
         UncertaintyError::NotSymmetric { row, column, .. } => {
-            let mirrored = format!("{}[{}][{}] = {}", matrix.path, column + 1, row + 1, rows[*column][*row].written());
+            let mirror = entry(*column, *row);
+            let mirrored = format!("{} = {}", mirror.path, mirror.written());
             let problem = format!("makes the matrix unsymmetric, against {mirrored}");
-            rows[*row][*column].error(problem, "the same number on both sides of the diagonal, up to 1e-9")
+            entry(*row, *column).error(problem, "the same number on both sides of the diagonal, up to 1e-9")
         }
         UncertaintyError::Correlation { row, column, correlation } => {
-            rows[*row][*column].error(format!("makes a correlation of {correlation}"), "a correlation from -1 to 1")
+            entry(*row, *column).error(format!("makes a correlation of {correlation}"), "a correlation from -1 to 1")
         }
         UncertaintyError::Indefinite { eigenvalue } => {
             matrix.error(format!("has correlations with an eigenvalue of {eigenvalue:.3e}"), SEMIDEFINITE)
@@ -153,7 +148,7 @@ fn locate(names: &[Field<'_>], matrix: &Field<'_>, rows: &[Vec<Field<'_>>], erro
 mod tests {
     use super::super::{read_robot, robot_from};
     use super::*;
-    use crate::source::Source;
+    use crate::toml_file::TomlFile;
     use std::path::Path;
 
     /// The shipped KR270 (72 lines) with a compensator at joint 2 and a covariance behind.
@@ -169,7 +164,7 @@ mod tests {
     }
 
     fn read(covariance: &str) -> Result<Robot, InputError> {
-        robot_from(&Source::new(Path::new("arm.toml"), text(covariance).into_bytes())?)
+        robot_from(&TomlFile::new(Path::new("arm.toml"), text(covariance).into_bytes())?)
     }
 
     const GOOD: &str = "[covariance]
@@ -255,8 +250,8 @@ matrix = [
                 ["2 numbers and not 3", "found [0.04, 0.1]", "3 rows of 3"],
             ),
             (3, "matrix", "    [0.0, -0.02, 0.0009],\n", "", ["2 rows and not 3", "found [ [0.04", "3 rows of 3"]),
-            (4, "matrix[1][2]", "[0.04, 0.1", "[0.04, nan", ["finite", "found nan", "3 rows of 3"]),
-            (5, "matrix[2][2]", "0.1, 4,", "0.1, 1e313,", ["finite", "found 1e313", "3 rows of 3"]),
+            (4, "matrix[1][2]", "[0.04, 0.1", "[0.04, nan", ["finite", "found nan", "rows of finite numbers"]),
+            (5, "matrix[2][2]", "0.1, 4,", "0.1, 1e313,", ["finite", "found 1e313", "rows of finite numbers"]),
             (5, "matrix[2][2]", "0.1, 4,", "0.1, -4,", ["below 0", "found -4", "not below 0"]),
             (
                 5,
@@ -273,7 +268,7 @@ matrix = [
                 "[0.0, -0.02, 0.000105]",
                 ["eigenvalue of -", "found [ [0.04", "semidefinite"],
             ),
-            (1, "matrix", &GOOD[GOOD.find("matrix").unwrap()..], "", ["missing", "", "3 rows of 3"]),
+            (1, "matrix", &GOOD[GOOD.find("matrix").unwrap()..], "", ["missing", "", "rows of finite numbers"]),
             (2, "parameter", "parameters", "parameter", ["nearest known one: parameters", "", "matrix"]),
         ] {
             assert!(GOOD.contains(from), "{from}");

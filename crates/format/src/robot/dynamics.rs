@@ -1,53 +1,61 @@
 //! What moves with the joints of a robot file: masses, damping, play, and stiffness normal to the axes.
 
-use super::super::inertial::{CENTRE, INERTIA, MASS, inertial_from};
-use super::super::reader::{Field, Table};
-use super::super::source::Source;
+use super::file::JointRow;
 use super::robot_from;
+use crate::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use crate::input::InputError;
+use crate::place::{Place, required};
+use crate::quantity::Quantity;
+use crate::toml_file::TomlFile;
 use stead_model::robot::{JointDynamics, Orthogonal, Robot};
 
 const DAMPING: &str = "damping_nms_per_rad";
-const BACKLASH: &str = "half_backlash_arcsec";
-const COMPENSATED: &str = "gravity_compensated";
 const ORTHOGONAL_STIFFNESS: &str = "orthogonal_stiffness_mnm_per_rad";
 const ORTHOGONAL_DAMPING: &str = "orthogonal_damping_nms_per_rad";
-const BEARING: &str = "bearing_mm";
 
-/// The keys of a joint's row that have to do with motion.
-pub(super) const KEYS: [&str; 9] =
-    [MASS, CENTRE, INERTIA, DAMPING, BACKLASH, COMPENSATED, ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING, BEARING];
-
-/// What the rows say of motion: nothing where none has any of these keys, else all of them must say enough.
-pub(super) fn dynamics_from(rows: &[Table<'_>; 6]) -> Result<Option<[JointDynamics; 6]>, InputError> {
-    if !rows.iter().any(|row| KEYS.iter().any(|key| row.field(key).is_given())) {
+/// What the rows say of motion: nothing where none has any of the keys for it, else all of them must say enough.
+pub(super) fn dynamics_from(rows: &[JointRow; 6], at: &Place<'_>) -> Result<Option<[JointDynamics; 6]>, InputError> {
+    if !rows.iter().any(JointRow::says_motion) {
         return Ok(None);
     }
     let mut joints = Vec::with_capacity(6);
-    for row in rows {
-        joints.push(joint_from(row)?);
+    for (row, number) in rows.iter().zip(1..) {
+        joints.push(joint_from(row, &at.element(number))?);
     }
     Ok(joints.try_into().ok())
 }
 
-fn joint_from(row: &Table<'_>) -> Result<JointDynamics, InputError> {
-    let link = inertial_from(row)?;
-    let not_negative = |field: &Field<'_>| field.number_where("a finite number not below 0", |value| value >= 0.0);
-    let damping = not_negative(&row.field(DAMPING))?;
-    let backlash = row.field(BACKLASH).optional(not_negative)?.unwrap_or_default();
-    let [stiffness, friction] = [ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING].map(|key| row.field(key));
-    let orthogonal = if stiffness.is_given() || friction.is_given() {
-        Some(Orthogonal { stiffness: stiffness.positive()? * 1e6, damping: not_negative(&friction)? })
-    } else {
-        None
-    };
+impl JointRow {
+    /// Whether the row has any of the keys that have to do with motion.
+    fn says_motion(&self) -> bool {
+        self.mass_kg.is_some()
+            || self.centre_of_mass_mm.is_some()
+            || self.inertia_kg_m2.is_some()
+            || self.damping_nms_per_rad.is_some()
+            || self.half_backlash_arcsec.is_some()
+            || self.gravity_compensated.is_some()
+            || self.orthogonal_stiffness_mnm_per_rad.is_some()
+            || self.orthogonal_damping_nms_per_rad.is_some()
+            || self.bearing_mm.is_some()
+    }
+}
+
+fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputError> {
+    let is_orthogonal = row.orthogonal_stiffness_mnm_per_rad.is_some() || row.orthogonal_damping_nms_per_rad.is_some();
     Ok(JointDynamics {
-        link,
-        damping,
-        backlash: (backlash / 3600.0).to_radians(),
-        gravity_compensated: row.field(COMPENSATED).optional(Field::boolean)?.unwrap_or_default(),
-        orthogonal,
-        bearing: row.field(BEARING).optional(Field::number)?.unwrap_or_default() / 1e3,
+        link: inertial_from(row.mass_kg, row.centre_of_mass_mm, row.inertia_kg_m2, at)?,
+        damping: required!(at, row.damping_nms_per_rad)?.si(),
+        backlash: row.half_backlash_arcsec.map_or(0.0, Quantity::si),
+        gravity_compensated: row.gravity_compensated.unwrap_or_default(),
+        orthogonal: if is_orthogonal {
+            Some(Orthogonal {
+                stiffness: required!(at, row.orthogonal_stiffness_mnm_per_rad)?.si(),
+                damping: required!(at, row.orthogonal_damping_nms_per_rad)?.si(),
+            })
+        } else {
+            None
+        },
+        bearing: row.bearing_mm.map_or(0.0, Quantity::si),
     })
 }
 
@@ -55,25 +63,23 @@ fn joint_from(row: &Table<'_>) -> Result<JointDynamics, InputError> {
 ///
 /// # Errors
 /// Those of [`robot_from`], and [`InputError`] at the first joint whose row says too little, naming what is missing.
-pub(crate) fn moving_robot_from(source: &Source, orthogonal: bool) -> Result<Robot, InputError> {
+pub(crate) fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
     let robot = robot_from(source)?;
     let document = source.parse()?;
-    let joints = Table::root(&document).field("joints");
-    let lacking = |number: usize, keys: &[&str], what: &str| -> Result<InputError, InputError> {
-        let rows = joints.tables()?;
-        let row = rows.get(number).ok_or_else(|| joints.error("has too few rows", "six rows"))?;
-        let field = keys.iter().map(|key| row.field(key)).find(|field| !field.is_given()).unwrap_or(row.field(MASS));
-        Ok(field.error(format!("is missing: {what}"), format!("{} in every [[joints]]", keys.join(", "))))
+    let lacking = |index: usize, keys: &[&str], what: &str| {
+        let row = document.root().key("joints").element(index + 1);
+        let key = keys.iter().find(|key| !row.key(key).is_given()).unwrap_or(&MASS);
+        row.key(key).error(format!("is missing: {what}"), format!("{} in every [[joints]]", keys.join(", ")))
     };
     match robot.dynamics() {
         None => {
             let what = "this robot file says nothing of masses and damping, so its motion cannot be computed";
-            Err(lacking(0, &[MASS, CENTRE, INERTIA, DAMPING], what)?)
+            Err(lacking(0, &[MASS, CENTRE, INERTIA, DAMPING], what))
         }
         Some(dynamics) => match dynamics.iter().position(|joint| orthogonal && joint.orthogonal.is_none()) {
             Some(joint) => {
                 let what = "the variant takes into account how joints yield normal to their axes";
-                Err(lacking(joint, &[ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING], what)?)
+                Err(lacking(joint, &[ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING], what))
             }
             None => Ok(robot),
         },

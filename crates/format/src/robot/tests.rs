@@ -23,7 +23,7 @@ fn text() -> String {
 }
 
 fn read(text: &str) -> Result<Robot, InputError> {
-    robot_from(&Source::new(Path::new("arm.toml"), text.as_bytes().to_vec())?)
+    robot_from(&TomlFile::new(Path::new("arm.toml"), text.as_bytes().to_vec())?)
 }
 
 /// The file with one line (from 1) replaced.
@@ -54,7 +54,7 @@ fn shipped_robots_are_the_paper_and_its_sensitivity() {
     let paper = kr270();
     for (joint, expected) in printed.joints().iter().zip(paper.joints()) {
         let speed = joint.max_speed;
-        assert!(speed.is_some_and(|speed| (1.7..3.6).contains(&speed)));
+        assert!(speed.is_some_and(|speed| (1.4..3.3).contains(&speed)));
         let difference = [
             joint.alpha - expected.alpha,
             joint.a - expected.a,

@@ -1,6 +1,6 @@
-use super::super::testing::{RUN, TASK, assert_refused, folder, read_text as read, root};
 use super::*;
 use crate::task::read_csv;
+use crate::testing::{RUN, TASK, assert_refused, folder, read_text as read, root};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use stead_placement::problem::Interval;
@@ -56,7 +56,7 @@ fn inputs_are_the_bytes_that_were_read() {
         ("task", "../tasks/five-segments.csv", "tasks/five-segments.csv"),
     ];
     for (input, (role, name, file)) in run.inputs.iter().zip(expected) {
-        let digest = crate::source::sha256(&std::fs::read(root().join(file)).unwrap());
+        let digest = crate::input::sha256(&std::fs::read(root().join(file)).unwrap());
         assert_eq!((input.role, input.name.as_str(), &input.sha256), (role, name, &digest));
     }
     assert_eq!(run.inputs.len(), 3);
@@ -84,8 +84,8 @@ fn a_bad_file_that_the_run_names_is_located() {
     assert!(message.contains("ran.toml: cannot be read: "), "{message}");
 }
 
-const CUTTING: &str = "[cutting]\ncutter_diameter_mm = 16\nteeth = 4\nmilling = 'climb'\nradial_depth_mm = 2\n\
-    axial_depth_mm = 5\nfeed_per_tooth_mm = 0.05\nkt_mpa = 800\nkr = 0.4\nkte_n_per_mm = 20\nkre_n_per_mm = 20\n";
+const CUTTING: &str = "[tool]\ncutter_diameter_mm = 16\nteeth = 4\nkt_mpa = 800\nkr = 0.4\nkte_n_per_mm = 20\n\
+    kre_n_per_mm = 20\n[cut]\nmilling = 'climb'\nradial_depth_mm = 2\naxial_depth_mm = 5\nfeed_per_tooth_mm = 0.05\n";
 
 proptest! {
     #[test]
@@ -102,23 +102,23 @@ proptest! {
 #[test]
 fn forces_come_from_one_place() {
     let both = format!("{CUTTING}[cell]");
-    assert_refused("[cell]", &both, &["run.toml:6: cutting: ", "one place only", "task.csv", "found [cutting]"]);
+    assert_refused("[cell]", &both, &["run.toml:6: tool: ", "one place only", "task.csv", "found [tool]"]);
     assert_refused(
         "task.csv",
         "path.csv",
-        &["run.toml:2: task: ", "no force columns", "found 'path.csv'", "[cutting]"],
+        &["run.toml:2: task: ", "no force columns", "found 'path.csv'", "[tool] and [cut]"],
     );
     let text = format!("{RUN}{CUTTING}").replace("task.csv", "path.csv");
     assert!(read(&text).unwrap().problem.task.wrenches().iter().all(|wrench| wrench.force.norm() > 50.0));
     let message = read(&text.replace("= 800", "= 1e305")).unwrap_err().to_string();
-    assert!(message.contains("run.toml:17: cutting: gives no usable forces"), "{message}");
+    assert!(message.contains("run.toml:20: tool.kt_mpa: makes no cutter: "), "{message}");
 }
 
 #[test]
 fn notes_say_what_the_result_rests_on() {
     let folder = folder();
     let robot = std::fs::read_to_string(folder.path().join("arm.toml")).unwrap();
-    std::fs::write(folder.path().join("arm.toml"), robot.replace("max_speed_deg_per_s = 84.0\n", "")).unwrap();
+    std::fs::write(folder.path().join("arm.toml"), robot.replacen("max_speed_deg_per_s = 84.0\n", "", 1)).unwrap();
     let file = folder.path().join("run.toml");
     std::fs::write(&file, format!("{RUN}{CUTTING}").replace("task.csv", "path.csv")).unwrap();
     let notes = read_run(&file).unwrap().notes;

@@ -7,9 +7,9 @@
 
 use super::Displacement;
 use super::loaded::{inverse_tangent, load_hessian, roots};
-use super::rotation::rotation_vector;
 use crate::robot::{Frames, Robot};
 use nalgebra::{Vector3, Vector6};
+use stead_numerics::rotation::rotation_vector;
 
 /// A load acting at a point of the tool.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,6 @@
 
 pub mod equilibrium;
 pub mod loaded;
-pub mod rotation;
 
 use crate::robot::Frames;
 use nalgebra::Vector3;

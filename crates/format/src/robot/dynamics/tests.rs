@@ -7,8 +7,8 @@ fn shipped() -> String {
     std::fs::read_to_string(file).unwrap()
 }
 
-fn source(text: &str) -> Source {
-    Source::new(Path::new("arm.toml"), text.as_bytes().to_vec()).unwrap()
+fn source(text: &str) -> TomlFile {
+    TomlFile::new(Path::new("arm.toml"), text.as_bytes().to_vec()).unwrap()
 }
 
 /// The line on which some text stands for the nth time (from 0).

@@ -1,7 +1,12 @@
 //! The table `[certificate]` of a run file, and what a certificate asks of the rest of it.
 
-use super::reader::{Field, Table};
 use crate::input::InputError;
+use crate::place::Place;
+use crate::quantity::Quantity;
+use crate::units::{Percent, Positive, S, ranges};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::ops::Bound::{Excluded, Included};
 use stead_placement::certify::certifiable;
 use stead_placement::problem::Problem;
 use stead_placement::settings::CertificateSettings;
@@ -10,19 +15,34 @@ use stead_placement::symmetry::Unsupported;
 /// Which gaps can be asked for, on the command line as well.
 pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";
 
-pub(super) fn certificate_from(table: &Table<'_>) -> Result<CertificateSettings, InputError> {
-    let [gap, limit] = table.fields(["gap_percent", "time_limit_s"])?;
-    let percent = gap.number_where(GAPS_ALLOWED, |percent| CertificateSettings::gap(percent).is_some())?;
-    Ok(CertificateSettings { gap: percent / 100.0, time_limit: limit.optional(Field::positive)? })
+ranges! {
+    /// A gap in per cent; finer ones are within rounding.
+    Gap: Included(1e-4), Excluded(100.0);
+}
+
+/// A proof of how far the placement found is from the best possible.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CertificateTable {
+    /// The proof is done when no placement can be better than the one found by more than this.
+    pub gap_percent: Percent<Gap>,
+    /// Time after which the proof ends with the bound that it has; no limit where left out.
+    pub time_limit_s: Option<S<Positive>>,
+}
+
+impl CertificateTable {
+    pub(super) fn settings(&self) -> CertificateSettings {
+        CertificateSettings { gap: self.gap_percent.si(), time_limit: self.time_limit_s.map(Quantity::si) }
+    }
 }
 
 /// Refuses a cell whose tables would not fit in memory; other reasons against a certificate are left to the job, which places
 /// the workpiece without one.
-pub(super) fn check_size(cell: &Field<'_>, problem: &Problem) -> Result<(), InputError> {
+pub(super) fn check_size(problem: &Problem, cell: &Place<'_>) -> Result<(), InputError> {
     match certifiable(problem) {
         Err(too_large @ Unsupported::TooLarge { max, .. }) => {
             let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", max as f64 / 1e9);
-            Err(InputError::new(cell.source.file(), too_large.to_string())
+            Err(InputError::new(cell.file.file(), too_large.to_string())
                 .at_line(cell.line())
                 .in_field("cell")
                 .allowed(allowed))
@@ -33,9 +53,9 @@ pub(super) fn check_size(cell: &Field<'_>, problem: &Problem) -> Result<(), Inpu
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RUN, assert_refused, folder, read_text as read};
-    use super::super::{read_run, read_run_to_certify};
     use super::*;
+    use crate::testing::{RUN, assert_refused, folder, read_text as read};
+    use crate::{read_run, read_run_to_certify};
 
     #[test]
     fn a_certificate_is_asked_for_in_per_cent() {

@@ -7,7 +7,7 @@ use std::path::Path;
 pub const LARGEST: f64 = 1e9;
 
 /// A CSV file being read, its header already.
-pub struct Table<'a> {
+pub struct CsvTable<'a> {
     file: &'a Path,
     reader: csv::Reader<&'a [u8]>,
     header: csv::StringRecord,
@@ -15,7 +15,7 @@ pub struct Table<'a> {
     lines: LineCounter<'a>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> CsvTable<'a> {
     /// Reads the header; `file` is the name in messages.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ impl Row<'_> {
         self.line
     }
 
-    /// The text in a column that [`Table::column`] told.
+    /// The text in a column that [`CsvTable::column`] told.
     pub fn text(&self, column: usize) -> &str {
         &self.record[column]
     }

@@ -1,31 +1,57 @@
-//! The text of one TOML file: where its lines are, how it parses, what its bytes hash to.
+//! The text of one TOML file: where its lines are, and how it parses.
+//!
+//! ```
+//! use serde::Deserialize;
+//! use stead_format::shapes::Interval;
+//! use stead_format::toml_file::TomlFile;
+//! use stead_format::units::{Mm, Positive};
+//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! #[derive(Deserialize)]
+//! #[serde(deny_unknown_fields)]
+//! struct Cell {
+//!     x_mm: Interval<Mm>,
+//!     wall_mm: Mm<Positive>,
+//!     gap_mm: Option<Mm>,
+//! }
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = 20".to_vec())?;
+//! let cell: Cell = source.parse()?.read()?;
+//! assert_eq!((cell.x_mm.si(), cell.wall_mm.si(), cell.gap_mm), ([-0.3, 0.3], 0.02, None));
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
+//! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
+//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0";
+//! assert_eq!(error.as_deref(), Some(expected));
+//! # Ok(())
+//! # }
+//! ```
 
-use crate::input::{InputError, InputFile};
-use sha2::{Digest, Sha256};
-use std::fmt::Write;
+use crate::input::{InputError, InputFile, input_file};
+use crate::place::Place;
+use serde::de::DeserializeOwned;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 /// A TOML file read into memory, with its name for messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Source {
+pub struct TomlFile {
     file: PathBuf,
     text: String,
 }
 
-/// The parse tree of a [`Source`], every value with its place in the text.
+/// The parse tree of a [`TomlFile`], every value with its place in the text.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
-    pub(super) source: &'a Source,
-    pub(super) tree: Spanned<DeTable<'a>>,
+    file: &'a TomlFile,
+    root: Spanned<DeValue<'a>>,
 }
 
 /// Longest piece of a file that is quoted in a message, in characters.
 const QUOTE: usize = 80;
 
-impl Source {
+impl TomlFile {
     /// Reads a file.
     ///
     /// # Errors
@@ -64,6 +90,11 @@ impl Source {
         self.text.as_bytes()
     }
 
+    /// The text without a first line that names its schema (`#:schema PATH`), which is true in the folder of the file alone.
+    pub fn without_schema(&self) -> &str {
+        without_schema(&self.text)
+    }
+
     /// The entry of a config among the files that a result came from: its name alone, wherever it lies.
     pub fn as_config(&self) -> InputFile {
         input_file("config", self.file.file_name().unwrap_or_default().to_string_lossy(), self.bytes())
@@ -82,7 +113,8 @@ impl Source {
                 .found(format!("'{}'", shorten(self.text.lines().nth(line - 1).unwrap_or_default())))
                 .allowed("a TOML file")
         })?;
-        Ok(Document { source: self, tree })
+        let span = tree.span();
+        Ok(Document { file: self, root: Spanned::new(span, DeValue::Table(tree.into_inner())) })
     }
 
     /// The line, from 1, in which a byte of the text stands.
@@ -94,6 +126,11 @@ impl Source {
     pub(super) fn quote(&self, span: Range<usize>) -> String {
         shorten(self.text.get(span).unwrap_or_default())
     }
+}
+
+/// A text without a first line that names its schema.
+pub(crate) fn without_schema(text: &str) -> &str {
+    text.split_once('\n').filter(|(line, _)| line.starts_with("#:schema")).map_or(text, |(_, rest)| rest)
 }
 
 /// The line, from 1, that comes after some text.
@@ -109,32 +146,35 @@ fn shorten(text: &str) -> String {
     }
 }
 
-/// A file that was read, by what it is for, its name and its bytes, to say what a result came from.
-pub fn input_file(role: &'static str, name: impl Into<String>, bytes: &[u8]) -> InputFile {
-    InputFile { role, name: name.into(), sha256: sha256(bytes) }
-}
+impl<'a> Document<'a> {
+    /// What the file says, as the type that declares its keys.
+    ///
+    /// # Errors
+    /// [`InputError`] at the first key that is unknown or missing, or whose value is of the wrong kind or out of range.
+    pub fn read<T: DeserializeOwned>(&'a self) -> Result<T, InputError> {
+        self.root().read()
+    }
 
-/// The SHA-256 digest of some bytes, in lower-case hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        // Writing to a string cannot fail.
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+    /// The place of a value, for an error there: `cell.x_mm`, `joints[3].min_deg`; array elements are counted from 1.
+    pub fn at(&'a self, path: &str) -> Place<'a> {
+        path.split(['.', '[']).fold(self.root(), |place, step| match step.strip_suffix(']') {
+            Some(number) => place.element(number.parse().unwrap_or(0)),
+            None => place.key(step),
+        })
+    }
+
+    /// The table that the whole file is.
+    pub fn root(&'a self) -> Place<'a> {
+        Place::root(self.file, &self.root)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn source(bytes: &[u8]) -> Result<Source, InputError> {
-        Source::new(Path::new("a.toml"), bytes.to_vec())
-    }
-
-    #[test]
-    fn digest_is_that_of_the_standard() {
-        // FIPS 180-4, the example "abc".
-        assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    fn source(bytes: &[u8]) -> Result<TomlFile, InputError> {
+        TomlFile::new(Path::new("a.toml"), bytes.to_vec())
     }
 
     #[test]

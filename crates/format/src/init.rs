@@ -1,0 +1,142 @@
+//! Starter sets: small commented files of each kind that run as they are.
+
+use crate::input::InputError;
+use crate::toml_file::without_schema;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What a starter set is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StarterSet {
+    /// `run.toml`, `robot.toml` and `task.csv`, for `stead place`.
+    Place,
+    /// `assess.toml` and `robot.toml`, for `stead assess`.
+    Assess,
+    /// `identify.toml`, `robot.toml` and `sheet.csv`, for `stead identify`.
+    Identify,
+    /// `simulate.toml` and `robot.toml`, for `stead simulate` and `stead stability`.
+    Simulate,
+}
+
+const ROBOT: (&str, &str) = ("robot.toml", include_str!("init/robot.toml"));
+
+impl StarterSet {
+    /// The files of the set with their names, the one to start with first.
+    pub fn files(self) -> Vec<(&'static str, &'static str)> {
+        match self {
+            Self::Place => {
+                vec![("run.toml", include_str!("init/run.toml")), ROBOT, ("task.csv", include_str!("init/task.csv"))]
+            }
+            Self::Assess => vec![("assess.toml", include_str!("init/assess.toml")), ROBOT],
+            Self::Identify => vec![
+                ("identify.toml", include_str!("init/identify.toml")),
+                ROBOT,
+                ("sheet.csv", include_str!("../../../tasks/identify-example.csv")),
+            ],
+            Self::Simulate => vec![
+                ("simulate.toml", include_str!("init/simulate.toml")),
+                ("robot.toml", without_schema(include_str!("../../../configs/robots/staubli-tx200.toml"))),
+            ],
+        }
+    }
+}
+
+/// Writes a starter set to a folder, which is made where there is none. All files or none: where one of them is there
+/// already, or one cannot be written, nothing is left behind and nothing is changed.
+///
+/// # Errors
+/// [`InputError`] that names the file that is there already, or that cannot be written.
+pub fn init(set: StarterSet, folder: &Path) -> Result<Vec<PathBuf>, InputError> {
+    let files: Vec<(PathBuf, &str)> = set.files().into_iter().map(|(name, text)| (folder.join(name), text)).collect();
+    if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
+        return Err(InputError::new(path, "is there already, and is left as it is").allowed(EMPTY));
+    }
+    let is_new = !folder.exists();
+    std::fs::create_dir_all(folder).map_err(|e| cannot(folder, &e))?;
+    let mut written = Vec::with_capacity(files.len());
+    for (path, text) in &files {
+        // Fails rather than replacing a file that has come in the meantime.
+        let created = OpenOptions::new().write(true).create_new(true).open(path);
+        let result = created.and_then(|file| {
+            written.push(path.clone());
+            write(file, text)
+        });
+        if let Err(error) = result {
+            // What is removed here is what was made here.
+            written.iter().for_each(|path| drop(std::fs::remove_file(path)));
+            if is_new {
+                let _ = std::fs::remove_dir(folder);
+            }
+            return Err(cannot(path, &error));
+        }
+    }
+    Ok(written)
+}
+
+const EMPTY: &str = "a folder without files of these names, or one that can be made";
+
+fn write(mut file: File, text: &str) -> std::io::Result<()> {
+    file.write_all(text.as_bytes())?;
+    file.sync_all()
+}
+
+fn cannot(path: &Path, error: &std::io::Error) -> InputError {
+    InputError::new(path, format!("cannot be written: {error}")).allowed(EMPTY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Overrides, read_assessment, read_identification, read_plan, read_run, read_simulation, read_stability,
+    };
+
+    fn written(set: StarterSet) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        let files = init(set, folder.path()).unwrap();
+        assert_eq!(files.len(), set.files().len());
+        folder
+    }
+
+    #[test]
+    fn every_set_is_read_as_it_is() {
+        let place = written(StarterSet::Place);
+        let run = read_run(&place.path().join("run.toml")).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!((run.problem.task.points().len(), run.notes.len()), (17, 0));
+        let assess = written(StarterSet::Assess);
+        read_assessment(&assess.path().join("assess.toml")).unwrap_or_else(|e| panic!("{e}"));
+        let identify = written(StarterSet::Identify);
+        read_identification(&identify.path().join("identify.toml")).unwrap_or_else(|e| panic!("{e}"));
+        read_plan(&identify.path().join("identify.toml"), None).unwrap_or_else(|e| panic!("{e}"));
+        let simulate = written(StarterSet::Simulate);
+        let file = simulate.path().join("simulate.toml");
+        read_simulation(&file, &Overrides::default()).unwrap_or_else(|e| panic!("{e}"));
+        read_stability(&file, &Overrides::default()).unwrap_or_else(|e| panic!("{e}"));
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_left_as_it_is_and_nothing_is_written() {
+        for name in ["run.toml", "task.csv"] {
+            let folder = tempfile::tempdir().unwrap();
+            let mine = folder.path().join(name);
+            std::fs::write(&mine, "mine").unwrap();
+            let message = init(StarterSet::Place, folder.path()).unwrap_err().to_string();
+            assert!(
+                message.contains(&format!("{name}: is there already")) && message.contains("; allowed: "),
+                "{message}"
+            );
+            assert_eq!(std::fs::read_to_string(&mine).unwrap(), "mine");
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        }
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "mine").unwrap();
+        let message = init(StarterSet::Assess, &file.join("below")).unwrap_err().to_string();
+        assert!(message.contains("below: cannot be written: "), "{message}");
+    }
+}

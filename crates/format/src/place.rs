@@ -1,0 +1,131 @@
+//! A place in a TOML file where a value is, or would be: what errors are located by.
+
+use crate::deserialize::Node;
+use crate::input::InputError;
+use crate::quantity::Expects;
+use crate::toml_file::TomlFile;
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// A key of a table or an element of an array, with its value if there is one.
+#[derive(Debug, Clone)]
+pub struct Place<'a> {
+    pub(crate) file: &'a TomlFile,
+    /// `cell.x_mm`, `joints[3].min_deg`; nothing for the table that the whole file is.
+    pub(crate) path: String,
+    /// Line of the table or array that the value is in, or would be in.
+    pub(crate) parent_line: usize,
+    pub(crate) value: Option<&'a Spanned<DeValue<'a>>>,
+}
+
+/// A file that another one names, read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFile {
+    /// The name as given in the naming file, with forward slashes.
+    pub name: String,
+    /// The name with the folder of the naming file before it.
+    pub file: PathBuf,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+impl<'a> Place<'a> {
+    pub(crate) fn root(file: &'a TomlFile, value: &'a Spanned<DeValue<'a>>) -> Self {
+        Self { file, path: String::new(), parent_line: 1, value: Some(value) }
+    }
+
+    /// A key of the table that is here.
+    pub fn key(&self, key: &str) -> Self {
+        let value = self.value.and_then(|value| value.get_ref().as_table()).and_then(|table| table.get(key));
+        let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
+        Self { file: self.file, path, parent_line: self.line(), value }
+    }
+
+    /// An element of the array that is here, counted from 1.
+    pub fn element(&self, number: usize) -> Self {
+        let array = self.value.and_then(|value| value.get_ref().as_array());
+        let value = array.and_then(|array| array.get(number.wrapping_sub(1)));
+        Self { file: self.file, path: format!("{}[{number}]", self.path), parent_line: self.line(), value }
+    }
+
+    /// Whether the file has a value here.
+    pub fn is_given(&self) -> bool {
+        self.value.is_some()
+    }
+
+    /// Line of the value, or of the table that lacks it, from 1.
+    pub fn line(&self) -> usize {
+        match self.value {
+            Some(_) if self.path.is_empty() => 1,
+            Some(value) => self.file.line(value.span().start),
+            None => self.parent_line,
+        }
+    }
+
+    /// The value as written, on one line; nothing where there is none.
+    pub fn written(&self) -> String {
+        self.value.map(|value| self.file.quote(value.span())).unwrap_or_default()
+    }
+
+    /// An error here, with the value found.
+    pub fn error(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
+        let error = InputError::new(self.file.file(), problem).at_line(self.line()).in_field(&self.path);
+        match self.value {
+            Some(_) => error.found(self.written()).allowed(allowed),
+            None => error.allowed(allowed),
+        }
+    }
+
+    /// An error about a value that is not here.
+    pub fn missing(&self, allowed: impl Into<String>) -> InputError {
+        self.error("is missing", allowed)
+    }
+
+    /// The value of a key of the table that is here, which the type of the table leaves optional but its use does not.
+    ///
+    /// # Errors
+    /// [`InputError`] at the table when there is none.
+    pub fn require<T: Expects>(&self, key: &str, value: Option<T>) -> Result<T, InputError> {
+        value.ok_or_else(|| self.key(key).missing(T::expected()))
+    }
+
+    /// An error about a number that is here, but not among those that the rest of the file allows.
+    pub fn out_of_range(&self, allowed: impl Into<String>) -> InputError {
+        self.error("is out of range", allowed)
+    }
+
+    /// What is here, as the type that declares it.
+    ///
+    /// # Errors
+    /// [`InputError`] at the first value that is unknown, missing, of the wrong kind or out of range.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
+        T::deserialize(Node::new(self.clone())).map_err(|problem| problem.located(self, "another value"))
+    }
+
+    /// The file named here, by a path relative to the folder of this one, read.
+    ///
+    /// # Errors
+    /// [`InputError`] here when there is no name, or the file cannot be read.
+    pub fn named_file(&self) -> Result<NamedFile, InputError> {
+        let name: String = self.read()?;
+        let file = match self.file.file().parent() {
+            Some(folder) => folder.join(&name),
+            None => PathBuf::from(&name),
+        };
+        let bytes = std::fs::read(&file).map_err(|e| {
+            let problem = format!("names a file that cannot be read, {}: {e}", file.display());
+            self.error(problem, "a readable file, its path relative to the folder of the file that names it")
+        })?;
+        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
+    }
+}
+
+/// The value of an optional key of a table that is needed all the same: `required!(place of the table, table.key)`.
+macro_rules! required {
+    ($place:expr, $table:ident.$key:ident) => {
+        $place.require(stringify!($key), $table.$key)
+    };
+}
+pub(crate) use required;

@@ -1,0 +1,104 @@
+//! What a robot file declares.
+
+use super::compliance::OneOrRange;
+use crate::inertial::InertiaTable;
+use crate::shapes::{List, Vector};
+use crate::units::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm and
+/// angles in deg, as the keys say; every number needs a source.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotFile {
+    /// Name of the robot, on one line.
+    pub name: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// Largest payload by the data sheet.
+    pub payload_kg: Option<Kg<Positive>>,
+    /// Radius of the working range by the data sheet.
+    pub working_radius_mm: Option<Mm<Positive>>,
+    /// Price.
+    pub price_eur: Option<Eur<Positive>>,
+    /// The six joints, base first.
+    pub joints: Vec<JointRow>,
+    /// How well the compliances are known: what `stead identify fit` writes.
+    pub covariance: Option<CovarianceTable>,
+}
+
+/// One joint, with the link behind it. The frame of a row is that of modified Denavit-Hartenberg parameters: its z axis is
+/// the joint axis, its origin is reached after `alpha`, `a` and `d`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointRow {
+    /// Angle from the previous joint axis to this one, about the previous x axis (modified Denavit-Hartenberg).
+    pub alpha_deg: Deg,
+    /// Distance from the previous joint axis to this one, along the previous x axis (modified Denavit-Hartenberg).
+    pub a_mm: Mm,
+    /// Offset along this joint axis (modified Denavit-Hartenberg).
+    pub d_mm: Mm,
+    /// Lower limit of the joint angle.
+    pub min_deg: Deg,
+    /// Upper limit of the joint angle.
+    pub max_deg: Deg,
+    /// Stiffness of the joint about its axis; either this or `compliance_urad_per_nm`.
+    pub stiffness_mnm_per_rad: Option<MnmPerRad<Positive>>,
+    /// Compliance of the joint about its axis: one number, or a range `[at min_deg, at max_deg]`, linear in between.
+    pub compliance_urad_per_nm: Option<OneOrRange>,
+    /// Largest speed of the joint.
+    pub max_speed_deg_per_s: Option<DegPerS<Positive>>,
+    /// Largest acceleration of the joint.
+    pub max_acceleration_deg_per_s2: Option<DegPerS2<Positive>>,
+    /// Largest jerk of the joint.
+    pub max_jerk_deg_per_s3: Option<DegPerS3<Positive>>,
+    /// A gravity compensator beside the joint; the stiffness or compliance of the row is then that of the joint alone.
+    pub compensator: Option<CompensatorTable>,
+    /// Mass of the link behind the joint. This and the keys below are for `stead simulate`, `stead stability` and
+    /// `[stability]` of a run.
+    pub mass_kg: Option<Kg<Positive>>,
+    /// Centre of mass of the link, in the frame of the row.
+    pub centre_of_mass_mm: Option<Vector<Mm>>,
+    /// Inertia tensor of the link about its centre of mass, in the directions of the frame of the row.
+    pub inertia_kg_m2: Option<InertiaTable>,
+    /// Viscous damping about the joint axis.
+    pub damping_nms_per_rad: Option<NmsPerRad<NotNegative>>,
+    /// Play of the joint to either side; 0 where left out.
+    pub half_backlash_arcsec: Option<Arcsec<NotNegative>>,
+    /// Whether a compensator carries the gravity load of this joint; false where left out.
+    pub gravity_compensated: Option<bool>,
+    /// Stiffness against rotation about each of the two directions normal to the joint axis.
+    pub orthogonal_stiffness_mnm_per_rad: Option<MnmPerRad<Positive>>,
+    /// Viscous damping against rotation about each of the two directions normal to the joint axis.
+    pub orthogonal_damping_nms_per_rad: Option<NmsPerRad<NotNegative>>,
+    /// Where on the joint axis it yields in these directions: along z from the origin of the row's frame; 0 where left out.
+    pub bearing_mm: Option<Mm>,
+}
+
+/// A spring between two points, one on either link of a joint (Klimchik et al. 2017).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompensatorTable {
+    /// Stiffness of the spring.
+    pub spring_stiffness_n_per_mm: NPerMm<Positive>,
+    /// Distance of the spring's one end from the joint axis.
+    pub a_mm: Mm<Positive>,
+    /// Distance of its other end from the joint axis.
+    pub l_mm: Mm<Positive>,
+    /// Angle between the two ends about the joint axis, less half a turn, at joint angle 0.
+    pub alpha_deg: Deg,
+    /// Length of the spring without force.
+    pub free_length_mm: Mm<Positive>,
+}
+
+/// Covariance of parameters of the joint compliances.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CovarianceTable {
+    /// Names of the parameters, as their keys are named: `joints[1].compliance_urad_per_nm`, with `[1]` or `[2]` behind for
+    /// the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`.
+    pub parameters: List<String>,
+    /// Their covariance matrix, in products of the units of the keys; symmetric, positive semidefinite.
+    pub matrix: List<List<Number>>,
+}

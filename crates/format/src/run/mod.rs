@@ -1,0 +1,183 @@
+//! Run files.
+
+mod certificate;
+mod notes;
+mod stability;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
+pub use stability::PathStabilityTable;
+pub use tables::{
+    CellTable, ConstraintsTable, CriterionTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable,
+};
+
+use crate::input::{InputError, InputFile, input_file};
+use crate::place::{NamedFile, Place};
+use crate::robot::{moving_robot_from, robot_from};
+use crate::spindle::SpindleTable;
+use crate::task::{Imported, parse_csv};
+use crate::toml_file::TomlFile;
+use crate::tool::{CutTable, Cutting, ToolTable};
+use certificate::check_size;
+use notes::{density_note, direction_note, speed_note, tilt_note};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use stead_model::published::Published;
+use stead_model::task::Task;
+use stead_placement::problem::Problem;
+use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
+use stead_simulation::arm::Variant;
+use stead_simulation::path_stability::PathStabilityAnalysis;
+use tables::{check_confidence, check_tables};
+
+/// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which its
+/// workpiece may stand.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RunFile {
+    /// The robot file, relative to the folder of this file.
+    pub robot: String,
+    /// The task file, relative to the folder of this file: the tool path as CSV, with or without the forces along it.
+    pub task: String,
+    /// The tool frame in the flange frame.
+    pub spindle: SpindleTable,
+    /// Where the workpiece may stand.
+    pub cell: CellTable,
+    /// What a placement has to keep to.
+    pub constraints: ConstraintsTable,
+    /// By what a placement is scored.
+    pub criterion: Option<CriterionTable>,
+    /// The free rotation of the spindle about the tool axis.
+    pub redundancy: RedundancyTable,
+    /// How hard to search.
+    pub search: Option<SearchTable>,
+    /// Moves between segments.
+    pub transfer: Option<TransferTable>,
+    /// Asks for a proof of how far the placement is from the best possible.
+    pub certificate: Option<CertificateTable>,
+    /// The cutter. With `[cut]` it gives the forces of a task without force columns, and what `[stability]` is asked of.
+    pub tool: Option<ToolTable>,
+    /// What the cutter cuts.
+    pub cut: Option<CutTable>,
+    /// Asks for critical depths along the path.
+    pub stability: Option<PathStabilityTable>,
+    /// Published figures to print beside ours.
+    pub reference: Option<ReferenceTable>,
+}
+
+/// A run file and the files it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// What is to be solved.
+    pub problem: Problem,
+    /// How hard to search.
+    pub search: SearchSettings,
+    /// Limits of the moves between segments.
+    pub transfer: TransferSettings,
+    /// The certificate, where one is asked for.
+    pub certificate: Option<CertificateSettings>,
+    /// The files that were read, in the order config, robot, task.
+    pub inputs: Vec<InputFile>,
+    /// Published figures to print beside ours.
+    pub reference: Option<Published<[f64; 4]>>,
+    /// What is to be cut along the path, where its stability is asked for.
+    pub path_stability: Option<PathStabilityAnalysis>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Reads a run file, the keys of [`RunFile`], and the robot and task files that it names.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
+/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none, a cell too
+/// large for the certificate that is asked for.
+pub fn read_run(file: &Path) -> Result<Run, InputError> {
+    read_run_to_certify(file, None)
+}
+
+/// Reads a run file as [`read_run`] does, for a certificate with this gap (relative), whatever its own table says.
+///
+/// # Errors
+/// Those of [`read_run`].
+pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let at = document.root();
+    let run: RunFile = document.read()?;
+    let spindle = match run.stability {
+        Some(_) => run.spindle.moving_spindle(&at.key("spindle"))?,
+        None => run.spindle.spindle(&at.key("spindle"))?,
+    };
+    let criterion = run.criterion.unwrap_or_default().criterion();
+    let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
+    let search = run.search.unwrap_or_default().settings();
+    let transfer = run.transfer.unwrap_or_default().settings();
+    let certificate = run.certificate.map(|table| table.settings());
+    let limit = certificate.and_then(|settings| settings.time_limit);
+    let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
+    let cutting = Cutting::of(&run.tool, &run.cut, &at)?;
+
+    let (robot_field, task_field) = (at.key("robot"), at.key("task"));
+    let robot_file = robot_field.named_file()?;
+    let robot_source = TomlFile::new(&robot_file.file, robot_file.bytes)?;
+    let path_stability = match &run.stability {
+        Some(table) => Some(table.analysis(&Cutting::required(cutting.as_ref(), &at)?, &at.key("stability"))?),
+        None => None,
+    };
+    let robot = match &path_stability {
+        Some(analysis) => moving_robot_from(&robot_source, analysis.variant >= Variant::Orthogonal)?,
+        None => robot_from(&robot_source)?,
+    };
+    check_confidence(&criterion, &robot, &at.key("criterion"))?;
+    let task_file = task_field.named_file()?;
+    let imported = parse_csv(&task_file.file, &task_file.bytes)?;
+    let mut notes: Vec<String> =
+        [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
+    let inputs = vec![
+        source.as_config(),
+        input_file("robot", robot_file.name, robot_source.bytes()),
+        input_file("task", &task_file.name, &task_file.bytes),
+    ];
+    let task = task_from(imported, &task_file, &task_field, cutting.as_ref(), run.stability.is_some())?;
+    let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
+    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    check_tables(&search, &problem, &at.key("search"))?;
+    if certificate.is_some() {
+        check_size(&problem, &at.key("cell"))?;
+    }
+    notes.extend(density_note(&problem));
+    notes.extend(direction_note(&problem.task));
+    let reference = run.reference.map(ReferenceTable::reference);
+    Ok(Run { problem, search, transfer, certificate, inputs, reference, path_stability, notes })
+}
+
+/// Puts the forces to the path: those of the file, or those of the cutter and its cut, which may be there for the stability
+/// alone.
+fn task_from(
+    imported: Imported,
+    file: &NamedFile,
+    field: &Place<'_>,
+    cutting: Option<&Cutting<'_>>,
+    is_for_stability: bool,
+) -> Result<Task, InputError> {
+    let rule = "force columns in the task or tables [tool] and [cut], one and not both";
+    let wrenches = match (imported.wrenches, cutting) {
+        (Some(_), Some(cutting)) if !is_for_stability => {
+            let problem = format!("forces come from one place only, and the task {} has force columns", file.name);
+            return Err(cutting.tool_at.error(problem, rule));
+        }
+        (Some(wrenches), _) => wrenches,
+        (None, Some(cutting)) => cutting.path_forces()?.wrenches(&imported.path),
+        (None, None) => {
+            let problem = "has no force columns, and there are no tables [tool] and [cut] to compute them";
+            return Err(field.error(problem, rule));
+        }
+    };
+    let at = cutting.map_or(field, |cutting| &cutting.tool_at);
+    Task::new(imported.path, wrenches)
+        .map_err(|e| at.error(format!("gives no usable forces: {e}"), "values whose forces are finite"))
+}

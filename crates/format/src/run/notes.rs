@@ -1,0 +1,64 @@
+//! What the user should know about a run though it is not wrong, in sentences.
+
+use stead_model::robot::Robot;
+use stead_model::task::{Task, ToolPath};
+use stead_placement::problem::Problem;
+
+/// A feed that misses the plane normal to the tool axis by no more than this is normal to it. deg
+const NORMAL_FEED_DEG: f64 = 0.1;
+
+/// The largest tilt of the feed, where there is one.
+pub(super) fn tilt_note(path: &ToolPath, lines: &[usize]) -> Option<String> {
+    let tilts = path.points().iter().zip(lines).map(|(point, line)| (point.feed_tilt().abs().to_degrees(), line));
+    let steepest = tilts.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(tilt, _)| *tilt > NORMAL_FEED_DEG);
+    steepest.map(|(tilt, line)| {
+        format!(
+            "feed is up to {tilt:.2} deg off the normal of the tool axis (task line {line}): \
+             the wall normal is axis x feed"
+        )
+    })
+}
+
+/// Points so near to each other that beta cannot change by a step of its grid between them.
+pub(super) fn density_note(problem: &Problem) -> Option<String> {
+    let step = problem.redundancy.beta_step();
+    let inner = || problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let stuck = inner().filter(|point| problem.beta_step_limit(*point) < step * (1.0 - 1e-9)).count();
+    (stuck > 0).then(|| {
+        format!(
+            "between {stuck} of {} neighbouring points the rate of beta allows less than beta_step_deg: steps of the grid are \
+             spread over several points there, or beta is held where that breaks a limit; a finer grid or a thinner path is \
+             planned more exactly",
+            inner().count()
+        )
+    })
+}
+
+/// A feed that points away from the next point by more than this is suspicious. deg
+const FEED_TO_PATH_DEG: f64 = 60.0;
+
+/// The first point whose feed does not point along the path.
+pub(super) fn direction_note(task: &Task) -> Option<String> {
+    let points = task.points();
+    let off = |point: &usize| {
+        let (feed, chord) = (points[point - 1].feed, points[*point].position - points[point - 1].position);
+        libm::acos((feed.dot(&chord) / chord.norm()).clamp(-1.0, 1.0)).to_degrees()
+    };
+    let mut inner = task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let first = inner.find(|point| off(point) > FEED_TO_PATH_DEG)?;
+    let (from, angle) = (first - 1, off(&first));
+    Some(format!("at point {from} the feed is {angle:.0} deg off the way to the next point: check the signs of feed_*"))
+}
+
+/// The joints whose speed is not known, where there are some.
+pub(super) fn speed_note(robot: &Robot) -> Option<String> {
+    let unknown = robot.joints().iter().zip(1..).filter(|(joint, _)| joint.max_speed.is_none());
+    let numbers: Vec<String> = unknown.map(|(_, number): (_, usize)| number.to_string()).collect();
+    (!numbers.is_empty()).then(|| {
+        format!(
+            "the robot file gives no max_speed_deg_per_s for joints {}: their steps along the path are not bounded, \
+             and the times of moves between segments are not known",
+            numbers.join(", ")
+        )
+    })
+}

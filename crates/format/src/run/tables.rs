@@ -1,0 +1,314 @@
+//! The tables of a run file, each with the domain object that it becomes.
+
+use crate::input::InputError;
+use crate::place::Place;
+use crate::quantity::Quantity;
+use crate::scalars::{Whole, Word, words};
+use crate::shapes::{Array, Interval};
+use crate::units::{Deg, DegPerMm, Mm, MmPerS, Number, Positive, S, ZeroToTen, ranges};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::ops::Bound::{Excluded, Included};
+use stead_model::published::Published;
+use stead_model::robot::{Robot, angles::yaw_from_q4};
+use stead_placement::lookup::LookupTable;
+use stead_placement::problem::{self, Cell, Constraints, Criterion, Problem, Redundancy};
+use stead_placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
+
+ranges! {
+    /// From -1 to 1.
+    PlusMinusOne: Included(-1.0), Included(1.0);
+    /// From 0 to below 1.
+    BelowOne: Included(0.0), Excluded(1.0);
+}
+
+/// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CellTable {
+    /// Range `[min, max]` of the x coordinate.
+    pub x_mm: Interval<Mm>,
+    /// Range `[min, max]` of the y coordinate.
+    pub y_mm: Interval<Mm>,
+    /// Range `[min, max]` of the z coordinate.
+    pub z_mm: Interval<Mm>,
+    /// Range `[min, max]` of sin(yaw / 2), the quaternion component that turns the workpiece about the vertical axis; all
+    /// yaw angles where left out.
+    pub q4: Option<Interval<Number<PlusMinusOne>>>,
+}
+
+impl CellTable {
+    pub(super) fn cell(&self) -> Cell {
+        let interval = |[min, max]: [f64; 2]| problem::Interval { min, max };
+        let yaw = self.q4.map_or([-1.0, 1.0], Interval::si).map(yaw_from_q4);
+        Cell { position: [self.x_mm, self.y_mm, self.z_mm].map(|ends| interval(ends.si())), yaw: interval(yaw) }
+    }
+}
+
+/// What a placement has to keep to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintsTable {
+    /// Smallest inverse condition number of the scaled Jacobian: how far the arm keeps from singularities.
+    pub min_inverse_condition: Number<BelowOne>,
+    /// Length by which the translational part of the Jacobian is scaled.
+    pub characteristic_length_mm: Mm<Positive>,
+    /// Largest deflection of the tool centre point at any path point; no limit where left out.
+    pub max_deflection_mm: Option<Mm<Positive>>,
+}
+
+impl ConstraintsTable {
+    pub(super) fn constraints(&self) -> Constraints {
+        Constraints {
+            min_inverse_condition: self.min_inverse_condition.si(),
+            characteristic_length: self.characteristic_length_mm.si(),
+            max_deflection: self.max_deflection_mm.map(Quantity::si),
+        }
+    }
+}
+
+/// By what a placement is scored.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CriterionTable {
+    /// Size of an unknown error of the force, as a share of it, added in the worst direction; 0 where left out.
+    pub force_uncertainty: Option<Number<ZeroToTen>>,
+    /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
+    /// file needs a table `[covariance]`.
+    pub confidence: Option<Number<ZeroToTen>>,
+}
+
+impl CriterionTable {
+    pub(super) fn criterion(&self) -> Criterion {
+        let [force_uncertainty, confidence] =
+            [self.force_uncertainty, self.confidence].map(|value| value.map_or(0.0, Quantity::si));
+        Criterion { force_uncertainty, confidence }
+    }
+}
+
+/// Refuses a confidence where nothing is known of the errors of the compliances.
+pub(super) fn check_confidence(criterion: &Criterion, robot: &Robot, at: &Place<'_>) -> Result<(), InputError> {
+    if criterion.confidence > 0.0 && robot.uncertainty().is_none() {
+        return Err(at.key("confidence").error(
+            "asks for standard deviations, but the robot file has no table [covariance]",
+            "0, or a robot file that says how well its compliances are known",
+        ));
+    }
+    Ok(())
+}
+
+/// The free rotation of the spindle about the tool axis, beta, along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RedundancyTable {
+    /// Step of the grid of beta; 360 over a whole number from 4 to 7200. Final plans are refined off the grid.
+    pub beta_step_deg: Deg<Positive>,
+    /// Speed of the tool along the path.
+    pub feed_mm_per_s: MmPerS<Positive>,
+    /// Largest change of beta along the path.
+    pub max_beta_rate_deg_per_mm: DegPerMm<Positive>,
+}
+
+/// Bounds of the number of grid values of beta over a full turn.
+const BETA_COUNT: std::ops::RangeInclusive<f64> = 4.0..=7200.0;
+
+impl RedundancyTable {
+    pub(super) fn redundancy(&self, at: &Place<'_>) -> Result<Redundancy, InputError> {
+        let step = self.beta_step_deg.written();
+        let count = (360.0 / step).round();
+        if !BETA_COUNT.contains(&count) || (count * step - 360.0).abs() > 360.0 * 1e-9 {
+            let (most, fewest) = (BETA_COUNT.end(), BETA_COUNT.start());
+            return Err(at.key("beta_step_deg").error(
+                "does not divide a full turn into an allowed number of steps",
+                format!(
+                    "360 over a whole number from {fewest} to {most}, so from {} to {}",
+                    360.0 / most,
+                    360.0 / fewest
+                ),
+            ));
+        }
+        Ok(Redundancy {
+            beta_count: count as usize,
+            feed: self.feed_mm_per_s.si(),
+            max_beta_rate: self.max_beta_rate_deg_per_mm.si(),
+        })
+    }
+}
+
+words!(PostureSearch: "exact" => PostureSearch::Exact, "genetic" => PostureSearch::Genetic);
+words!(Tables: "auto" => Tables::Auto, "always" => Tables::Always, "never" => Tables::Never);
+
+/// How hard to search.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SearchTable {
+    /// Seed of all random numbers: the same seed gives the same result.
+    pub seed: Option<Whole<0, 9223372036854775807>>,
+    /// Candidates in a generation.
+    pub population: Option<Whole<4, 100000>>,
+    /// Generations after the first.
+    pub generations: Option<Whole<0, 100000>>,
+    /// Whether each candidate is given the best posture of every segment, `exact`, or postures are searched for, `genetic`.
+    pub postures: Option<Word<PostureSearch>>,
+    /// Distinct basins of each search that are refined.
+    pub basins: Option<Whole<1, 64>>,
+    /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
+    pub tables: Option<Word<Tables>>,
+}
+
+impl SearchTable {
+    pub(super) fn settings(&self) -> SearchSettings {
+        let default = SearchSettings::default();
+        SearchSettings {
+            seed: self.seed.map_or(default.seed, Whole::get),
+            population: self.population.map_or(default.population, Whole::count),
+            generations: self.generations.map_or(default.generations, Whole::count),
+            postures: self.postures.map_or(default.postures, |word| word.0),
+            basins: self.basins.map_or(default.basins, Whole::count),
+            tables: self.tables.map_or(default.tables, |word| word.0),
+        }
+    }
+}
+
+/// Refuses to promise a lookup table where the problem does not allow one.
+pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
+    if search.tables == Tables::Always
+        && let Err(unsuited) = LookupTable::shape_for(problem)
+    {
+        let reason = format!("asks for a table, but there can be none: {unsuited}");
+        return Err(at.key("tables").error(reason, "\"auto\" or \"never\""));
+    }
+    Ok(())
+}
+
+/// Moves between segments, for joints whose row of the robot file has no acceleration or jerk.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TransferTable {
+    /// Time from rest to full speed.
+    pub acceleration_time_s: Option<S<Positive>>,
+    /// Time from no to full acceleration.
+    pub jerk_time_s: Option<S<Positive>>,
+}
+
+impl TransferTable {
+    pub(super) fn settings(&self) -> TransferSettings {
+        let default = TransferSettings::default();
+        TransferSettings {
+            acceleration_time: self.acceleration_time_s.map_or(default.acceleration_time, Quantity::si),
+            jerk_time: self.jerk_time_s.map_or(default.jerk_time, Quantity::si),
+        }
+    }
+}
+
+/// Published figures to print beside ours.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceTable {
+    /// Where they were published.
+    pub source: String,
+    /// Mean deflection of cases 1 to 4.
+    pub case_mm: Array<Mm<Positive>, 4>,
+}
+
+impl ReferenceTable {
+    pub(super) fn reference(self) -> Published<[f64; 4]> {
+        Published { source: self.source, figures: self.case_mm.0.map(Quantity::written) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PostureSearch, SearchSettings, Tables, TransferSettings};
+    use crate::testing::{RUN, assert_refused, read_text as read};
+    use std::f64::consts::PI;
+    use stead_placement::problem::Interval;
+
+    #[test]
+    fn optional_tables_override_the_defaults() {
+        let more = "[criterion]\nforce_uncertainty = 0.1\n[search]\nseed = 9223372036854775807\npopulation = 40\n\
+                    postures = 'genetic'\ntables = 'never'\n[transfer]\njerk_time_s = 0.2\n";
+        let text = format!("{RUN}{more}").replace("z_mm = [-500, -500]", "z_mm = [-500, -500]\nq4 = [0.5, 0.5]");
+        let run = read(&text.replace("length_mm = 682", "length_mm = 682\nmax_deflection_mm = 1.5")).unwrap();
+        assert_eq!(run.problem.criterion.force_uncertainty, 0.1);
+        assert_eq!(run.problem.constraints.max_deflection, Some(1.5e-3));
+        assert_eq!(run.problem.cell.position[2], Interval { min: -0.5, max: -0.5 });
+        assert!((run.problem.cell.yaw.min - PI / 3.0).abs() < 1e-15 && run.problem.cell.yaw.width() == 0.0);
+        assert_eq!(run.problem.redundancy.beta_count, 50);
+        let default = SearchSettings::default();
+        let expected = SearchSettings {
+            tables: Tables::Never,
+            seed: i64::MAX as u64,
+            population: 40,
+            postures: PostureSearch::Genetic,
+            ..default
+        };
+        assert_eq!(run.search, expected);
+        assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, ..TransferSettings::default() });
+        assert!(run.reference.is_none() && run.notes.is_empty());
+    }
+
+    #[test]
+    fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
+        let condition = "min_inverse_condition";
+        for (from, to, parts) in [
+            ("[cell]", "[cell]]", [":6: ", "TOML", "found '[cell]]'"]),
+            ("x_mm =", "x_m =", [":7: cell.x_m: ", "nearest known one: x_mm", "found [-300, 300]"]),
+            ("[cell]", "[call]", [":6: call: ", "nearest known one: cell", "found [call]"]),
+            ("[-300, 300]", "[300, -300]", [":7: cell.x_mm: ", "found [300, -300]", "min not above max"]),
+            ("[-300, 300]", "[nan, 300]", [":7: cell.x_mm[1]: ", "found nan", "finite"]),
+            ("[-300, 300]", "'wide'", [":7: cell.x_mm: ", "not an array", "found 'wide'"]),
+            ("[-500, -500]", "[-500, -500]\nq4 = [-1, 1.5]", [":10: cell.q4[2]: ", "found 1.5", "from -1 to 1"]),
+            ("[-500, -500]", "[-500, -500]\nq4 = [1, -1]", [":10: cell.q4: ", "found [1, -1]", "from -1 to 1"]),
+            ("[1, 0, 0]", "[1, 0, 0.1]", [":5: spindle.rotation: ", "no rotation", "found [[0, -0.7"]),
+            ("[1, 0, 0]", "[-1, 0, 0]", [":5: spindle.rotation: ", "reflection", "right-handed"]),
+            ("684]", "684, 0]", [":4: spindle.xyz_mm: ", "4 elements and not 3", "found [0, 0, 684, 0]"]),
+            ("= 0.2", "= 1.0", [condition, "found 1.0", "from 0 to below 1"]),
+            ("= 682", "= -682", [":12: constraints.characteristic_length_mm: ", "found -682", "above 0"]),
+            ("= 682", "= 682\nmax_deflection_mm = 0", [":13: constraints.max_deflection_mm: ", "found 0", "above 0"]),
+            ("= 7.2", "= 7", [":14: redundancy.beta_step_deg: ", "found 7;", "from 0.05 to 90"]),
+            ("= 7.2", "= 120", [":14: redundancy.beta_step_deg: ", "found 120;", "from 0.05 to 90"]),
+            ("= 7.2", "= 0.01", [":14: redundancy.beta_step_deg: ", "found 0.01;", "from 0.05 to 90"]),
+            ("= 50", "= 0", [":15: redundancy.feed_mm_per_s: ", "found 0;", "above 0"]),
+            ("feed_mm_per_s = 50\n", "", [":13: redundancy.feed_mm_per_s: ", "missing", "above 0"]),
+            ("[cell]", "[criterion]\nforce_uncertainty = 11\n[cell]", [":7: criterion.force", "found 11;", "to 10"]),
+            (
+                "[cell]",
+                "[search]\nseed = -1\n[cell]",
+                [":7: search.seed: ", "found -1", "from 0 to 9223372036854775807"],
+            ),
+            ("[cell]", "[search]\npopulation = 3\n[cell]", [":7: search.population: ", "found 3", "from 4 to 100000"]),
+            ("[cell]", "[search]\nbasins = 65\n[cell]", [":7: search.basins: ", "found 65", "from 1 to 64"]),
+            ("[cell]", "[search]\npostures = 'all'\n[cell]", [":7: search.postures: ", "found 'all'", "\"genetic\""]),
+            ("[cell]", "[search]\ntables = 'some'\n[cell]", [":7: search.tables: ", "found 'some'", "\"always\""]),
+            ("[cell]", "[transfer]\njerk_time_s = 0\n[cell]", [":7: transfer.jerk_time_s: ", "found 0", "above 0"]),
+            (
+                "[cell]",
+                "[reference]\nsource = 'x'\ncase_mm = [1, 2, 3, 0]\n[cell]",
+                [":8: reference", "found 0", "four"],
+            ),
+        ] {
+            assert_refused(from, to, &[&["run.toml"], &parts[..]].concat());
+        }
+        let cell = &RUN[RUN.find("[cell]").unwrap()..RUN.find("[constraints]").unwrap()];
+        assert_refused(cell, "", &["run.toml:1: cell: ", "is missing", "a table [cell]"]);
+    }
+
+    #[test]
+    fn a_table_that_cannot_be_is_refused_where_it_is_asked_for() {
+        let folder = crate::testing::folder();
+        let tilted = crate::testing::TASK.replace(",0,0,1,10,20,0\n1,10", ",0,0.6,0.8,10,20,0\n1,10");
+        std::fs::write(folder.path().join("task.csv"), tilted).unwrap();
+        let file = folder.path().join("run.toml");
+        let read = |word: &str| {
+            std::fs::write(&file, format!("{RUN}[search]\ntables = '{word}'\n")).unwrap();
+            crate::read_run(&file)
+        };
+        assert!(read("auto").is_ok() && read("never").is_ok());
+        let message = read("always").unwrap_err().to_string();
+        for part in ["run.toml:18: search.tables: ", "not upright", "point 0", "found 'always'", "; allowed: \"auto\""]
+        {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+    }
+}

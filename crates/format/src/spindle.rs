@@ -1,0 +1,59 @@
+//! The table `[spindle]`: the tool frame in the flange frame, and what the flange carries.
+
+use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
+use crate::input::InputError;
+use crate::place::Place;
+use crate::shapes::{Matrix, Vector};
+use crate::units::{Kg, Mm, Positive};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use stead_model::robot::Spindle;
+
+/// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
+/// point and its z axis along the tool, from the work to the spindle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpindleTable {
+    /// Tool centre point in the flange frame.
+    pub xyz_mm: Vector<Mm>,
+    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame.
+    pub rotation: Matrix,
+    /// Mass of all that the flange carries: spindle, holder and tool. Needed where motion or stability is computed.
+    pub mass_kg: Option<Kg<Positive>>,
+    /// Centre of mass of all that the flange carries, in the flange frame.
+    pub centre_of_mass_mm: Option<Vector<Mm>>,
+    /// Inertia tensor of all that the flange carries about its centre of mass, in the directions of the flange frame.
+    pub inertia_kg_m2: Option<InertiaTable>,
+}
+
+impl SpindleTable {
+    /// The spindle that the table describes.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and field: a matrix that is no rotation, a body that cannot be.
+    pub(crate) fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
+        let mut spindle = Spindle::new(self.rotation.matrix(), self.xyz_mm.vector()).map_err(|problem| {
+            let tolerance = Spindle::ROTATION_TOLERANCE;
+            let rule = format!("a right-handed rotation matrix [row, row, row] within {tolerance}");
+            at.key("rotation").error(problem, rule)
+        })?;
+        if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() || self.inertia_kg_m2.is_some() {
+            spindle.payload = Some(inertial_from(self.mass_kg, self.centre_of_mass_mm, self.inertia_kg_m2, at)?);
+        }
+        Ok(spindle)
+    }
+
+    /// The same where motion is computed: what the flange carries has to be known.
+    ///
+    /// # Errors
+    /// As [`SpindleTable::spindle`], and for a table without a mass.
+    pub(crate) fn moving_spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
+        let spindle = self.spindle(at)?;
+        if spindle.payload.is_none() {
+            let what = "is missing: how the arm moves depends on what the flange carries";
+            let allowed = format!("{MASS}, {CENTRE} and {INERTIA} of spindle, holder and tool, in the flange frame");
+            return Err(at.key(MASS).error(what, allowed));
+        }
+        Ok(spindle)
+    }
+}

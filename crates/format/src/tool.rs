@@ -1,0 +1,146 @@
+//! The tables `[tool]` and `[cut]`: one cutter and one cut, for runs, simulations and assessments.
+
+mod cutter;
+mod engagement;
+mod force_model;
+mod milling;
+mod moved;
+
+pub(crate) use moved::successor;
+
+use crate::input::InputError;
+use crate::place::Place;
+use crate::scalars::{Whole, Word, words};
+use crate::shapes::List;
+use crate::units::{Acute, Deg, Mm, Mpa, NPerMm, NotNegative, Number, Positive, Rpm, Um, ranges};
+pub use engagement::EngagementKind;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::ops::Bound::{Excluded, Included};
+use stead_model::cutting::{MillingDirection, Rotation, Side};
+
+/// Speeds beyond this are those of no spindle. rpm
+pub const FASTEST_RPM: f64 = 1e6;
+
+ranges! {
+    /// An entering angle. deg
+    EnteringAngle: Excluded(0.0), Excluded(180.0);
+    /// A speed that a spindle may have. 1/min
+    SpindleSpeed: Excluded(0.0), Included(FASTEST_RPM);
+}
+
+words!(Rotation: "clockwise" => Rotation::Clockwise, "counterclockwise" => Rotation::Counterclockwise);
+words!(MillingDirection: "conventional" => MillingDirection::Conventional, "climb" => MillingDirection::Climb);
+words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "none" => None);
+
+/// The cutter: its geometry, its sense of rotation and the coefficients of its forces. Which of the optional keys are needed
+/// depends on what is computed: forces along a path need `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
+/// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ToolTable {
+    /// Diameter of the cutter.
+    pub cutter_diameter_mm: Mm<Positive>,
+    /// Number of teeth.
+    pub teeth: Whole<1, 100>,
+    /// Sense of rotation seen from the spindle; clockwise where left out.
+    pub rotation: Option<Word<Rotation>>,
+    /// Angle from each tooth to the next, 360 in all; equal ones where left out.
+    pub pitch_deg: Option<List<Deg>>,
+    /// What the radius of each edge is more than half the diameter; 0 where left out.
+    pub runout_um: Option<List<Um>>,
+    /// Helix angle; 0 where left out.
+    pub helix_deg: Option<Deg<Acute>>,
+    /// Length of the flutes.
+    pub flute_length_mm: Option<Mm<Positive>>,
+    /// Entering angle of the edges, between the edge and the plane normal to the tool axis; 90 where left out.
+    pub entering_angle_deg: Option<Deg<EnteringAngle>>,
+    /// Rake angle of the edges; 0 where left out.
+    pub rake_deg: Option<Deg<Acute>>,
+    /// Tangential cutting coefficient: force per area of the chip.
+    pub kt_mpa: Option<Mpa<Positive>>,
+    /// Radial cutting coefficient over the tangential one; either this or `kr_mpa`.
+    pub kr: Option<Number<NotNegative>>,
+    /// Radial cutting coefficient; either this or `kr`.
+    pub kr_mpa: Option<Mpa>,
+    /// Axial cutting coefficient; 0 where left out.
+    pub ka_mpa: Option<Mpa>,
+    /// Tangential edge coefficient: force per length of the edge in the cut.
+    pub kte_n_per_mm: Option<NPerMm<NotNegative>>,
+    /// Radial edge coefficient: force per length of the edge in the cut.
+    pub kre_n_per_mm: Option<NPerMm<NotNegative>>,
+    /// Specific cutting force normal to the rake face.
+    pub kn_mpa: Option<Mpa<Positive>>,
+    /// Friction on the rake face over the force normal to it; 0 where left out.
+    pub friction: Option<Number<NotNegative>>,
+}
+
+/// What the cutter cuts. Forces along a path need `milling`, `radial_depth_mm` and `feed_per_tooth_mm`; simulation and
+/// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes with
+/// it, and `feed_per_tooth_mm`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CutTable {
+    /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
+    pub milling: Option<Word<MillingDirection>>,
+    /// Width of the cut, across the feed.
+    pub radial_depth_mm: Option<Mm<Positive>>,
+    /// Depth of the cut, along the tool axis.
+    pub axial_depth_mm: Mm<Positive>,
+    /// Speed of the spindle.
+    pub spindle_rpm: Option<Rpm<SpindleSpeed>>,
+    /// Feed per tooth.
+    pub feed_per_tooth_mm: Option<Mm<Positive>>,
+    /// Which part of the cutter is in the work: all of one half (`slot`), one side of it with `radial_depth_mm` (`up`, `down`,
+    /// `centred`), or a slot that is open in the middle with `open_width_mm` (`open-slot`).
+    pub engagement: Option<Word<EngagementKind>>,
+    /// Width of the opening with `engagement = "open-slot"`.
+    pub open_width_mm: Option<Mm<Positive>>,
+    /// On which side of the path its corners are those of a pocket, where the cutter is in the work all over; `none` where
+    /// left out.
+    pub concave_corners: Option<Word<Option<Side>>>,
+}
+
+/// Both tables with their places in a file.
+#[derive(Debug, Clone)]
+pub(crate) struct Cutting<'a> {
+    tool: &'a ToolTable,
+    cut: &'a CutTable,
+    pub tool_at: Place<'a>,
+    cut_at: Place<'a>,
+}
+
+impl<'a> Cutting<'a> {
+    /// The tables of a file that has both.
+    pub fn new(tool: &'a ToolTable, cut: &'a CutTable, at: &Place<'a>) -> Self {
+        Self { tool, cut, tool_at: at.key("tool"), cut_at: at.key("cut") }
+    }
+
+    /// The tables of a file, if it has them.
+    ///
+    /// # Errors
+    /// [`InputError`] at the table that is missing beside the other one.
+    pub fn of(
+        tool: &'a Option<ToolTable>,
+        cut: &'a Option<CutTable>,
+        at: &Place<'a>,
+    ) -> Result<Option<Self>, InputError> {
+        match (tool, cut) {
+            (None, None) => Ok(None),
+            (Some(tool), Some(cut)) => Ok(Some(Self::new(tool, cut, at))),
+            (Some(_), None) => Err(at.key("cut").missing("a table [cut] beside [tool]")),
+            (None, Some(_)) => Err(at.key("tool").missing("a table [tool] beside [cut]")),
+        }
+    }
+
+    /// The tables where they are needed.
+    ///
+    /// # Errors
+    /// [`InputError`] where there are none.
+    pub fn required(cutting: Option<&Self>, at: &Place<'a>) -> Result<Self, InputError> {
+        cutting.cloned().ok_or_else(|| at.key("tool").missing("tables [tool] and [cut]"))
+    }
+}
+
+#[cfg(test)]
+mod tests;

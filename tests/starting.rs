@@ -1,0 +1,68 @@
+//! `stead schema` and `stead init` from outside.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic, in its helpers too")]
+
+use crate::common::Bench;
+use std::path::Path;
+
+/// A starter set in the folder `new`.
+fn starter(kind: &str) -> Bench {
+    let bench = Bench::new();
+    let ended = bench.stead(&["init", kind, "new"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{kind}");
+    assert!(ended.stdout.contains("now run: stead "), "{}", ended.stdout);
+    bench
+}
+
+#[test]
+fn every_starter_set_runs() {
+    for (kind, files, commands) in [
+        ("place", &["robot.toml", "run.toml", "task.csv"][..], &[&["place", "new/run.toml"][..]][..]),
+        ("assess", &["assess.toml", "robot.toml"], &[&["assess", "new/assess.toml"]]),
+        (
+            "identify",
+            &["identify.toml", "robot.toml", "sheet.csv"],
+            &[&["identify", "plan", "new/identify.toml"], &["identify", "fit", "new/identify.toml"]],
+        ),
+        (
+            "simulate",
+            &["robot.toml", "simulate.toml"],
+            &[&["simulate", "new/simulate.toml"], &["stability", "new/simulate.toml"]],
+        ),
+    ] {
+        let bench = starter(kind);
+        assert!(bench.tree("new").keys().map(String::as_str).eq(files.iter().copied()), "{kind}");
+        for command in commands {
+            let ended = bench.stead(&[command, &["--out", "out"][..]].concat());
+            assert_eq!(ended.code, Some(0), "{command:?}: {}", ended.stderr);
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_there_is_neither_replaced_nor_joined() {
+    let bench = Bench::new();
+    bench.write("new/robot.toml", "mine\n");
+    let before = bench.tree("");
+    for kind in ["place", "assess", "identify", "simulate"] {
+        let ended = bench.stead(&["init", kind, "new"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+        ended.assert_says(&["error: new/robot.toml: is there already", "; allowed: "]);
+        assert_eq!(bench.tree(""), before);
+    }
+    assert_eq!(bench.stead(&["init", "cook", "new"]).code, Some(2));
+}
+
+#[test]
+fn schemas_are_printed_as_they_are_kept() {
+    let bench = Bench::new();
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/schema");
+    for entry in std::fs::read_dir(kept).unwrap() {
+        let path = entry.unwrap().path();
+        let ended = bench.stead(&["schema", path.file_stem().unwrap().to_str().unwrap()]);
+        assert_eq!((ended.code, ended.stdout), (Some(0), std::fs::read_to_string(&path).unwrap()));
+    }
+    let ended = bench.stead(&["schema", "robbot"]);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+    ended.assert_says(&["no schema 'robbot'", "nearest known one: robot", "; allowed: run, robot"]);
+}
