@@ -11,7 +11,7 @@ pub(super) fn run(options: &InitOptions) -> Result<(), Failure> {
         Starter::Identify => (StarterSet::Identify, "identify fit"),
         Starter::Simulate => (StarterSet::Simulate, "simulate"),
     };
-    let files = init(set, &options.folder)?;
+    let files = init(set, &options.folder).map_err(stead::Error::from)?;
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let first = names.first().cloned().unwrap_or_default();
     print(format!("written: {}\nnow run: stead {command} {first}\n", names.join(", ")).as_bytes());

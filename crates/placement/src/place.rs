@@ -9,7 +9,7 @@ use super::outcome::{CANCELLATION, Case, Cases, Outcome, Plan, PlanPoint, Refine
 use super::problem::{Criterion, Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
-use super::search::{self, Found};
+use super::search::{self, SearchResult};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
 use super::symmetry::Unsupported;
@@ -87,7 +87,7 @@ pub fn place(
     };
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.misled && !f.interrupted) && !monitor.should_stop() {
+    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
         (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
@@ -99,14 +99,14 @@ pub fn place(
         [false, true] => found[0].basins = found[1].basins.clone(),
         [false, false] => {
             let nearest = &found[0].basins[0];
-            return Err(nothing(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
+            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
         }
     }
     let planner = Planner::finer(problem);
     let (solutions, refinements) =
-        finish(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(|| {
-            nothing(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true)
-        })?;
+        refine_basins(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(
+            || infeasible(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true),
+        )?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let case = |placement_sense, solution: &Refined, plan_sense| {
@@ -182,7 +182,7 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
     let (Some(best), Ok(worst)) =
         (planned(&planner, placement, None, spacing, &mut workspace), worst_plan(&planner, placement, None))
     else {
-        return Err(nothing(&planner, placement, None, false));
+        return Err(infeasible(&planner, placement, None, false));
     };
     let warnings = cancellation(problem, best.mean()).into_iter().collect();
     Ok(Score {
@@ -204,12 +204,16 @@ struct Refined {
 const TIE: f64 = 1e-5;
 
 /// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
-/// polished on a table: refinement gains less from there.
-const HOPELESS: f64 = 0.03;
+/// improved on a lookup table: refinement gains less from there.
+const MAX_DEFICIT: f64 = 0.03;
 
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
 /// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
-fn finish(evaluator: &Evaluator<'_>, found: &[Found; 2], monitor: &Monitor) -> Option<([Refined; 2], Vec<Refinement>)> {
+fn refine_basins(
+    evaluator: &Evaluator<'_>,
+    found: &[SearchResult; 2],
+    monitor: &Monitor,
+) -> Option<([Refined; 2], Vec<Refinement>)> {
     let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
@@ -227,17 +231,17 @@ fn finish(evaluator: &Evaluator<'_>, found: &[Found; 2], monitor: &Monitor) -> O
     };
     let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
     let mut results = run(&ahead, jobs.len());
-    let hopeful = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
+    let can_win = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
         let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.mean());
         match (evaluator.table(), first, candidate.objective.mean()) {
             (Some(_), Some(first), Some(mean)) => match sense {
-                Sense::Min => mean * (1.0 - HOPELESS) < first,
-                Sense::Max => mean * (1.0 + HOPELESS) > first,
+                Sense::Min => mean * (1.0 - MAX_DEFICIT) < first,
+                Sense::Max => mean * (1.0 + MAX_DEFICIT) > first,
             },
             _ => true,
         }
     };
-    let others: Vec<_> = others.into_iter().filter(hopeful).collect();
+    let others: Vec<_> = others.into_iter().filter(can_win).collect();
     let of = ahead.len() + others.len();
     results.extend(run(&others, of));
     // In the order of the searches: a stable sort.
@@ -287,7 +291,7 @@ fn worst_plan(
     planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
 }
 
-fn nothing(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
+fn infeasible(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
     let none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace());
     let findings = none.err().map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
     Infeasible { placement: *placement, searched, findings }

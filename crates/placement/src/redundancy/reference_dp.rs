@@ -142,7 +142,7 @@ fn nodes(
     space: &mut Workspace,
 ) -> Vec<Node> {
     let problem = planner.problem;
-    // The evaluator says which grid values are worth a closer look.
+    // The batch evaluator says which grid values are worth a closer look.
     let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
         return Vec::new();
     };
