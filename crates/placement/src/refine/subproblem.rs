@@ -8,6 +8,7 @@
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
 
 use super::super::problem::{Interval, Placement, Problem};
+use super::super::redundancy::SegmentPlan;
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::{LENGTH_UNIT, Solution};
 use clarabel::algebra::CscMatrix;
@@ -48,7 +49,8 @@ pub struct Answer {
 #[error("the subproblem could not be solved")]
 pub struct Unsolved;
 
-/// Coefficients of one inequality `row . x <= bound`.
+/// Coefficients of inequalities `row . x <= bound`.
+#[derive(Default)]
 struct Rows {
     row: Vec<usize>,
     column: Vec<usize>,
@@ -83,102 +85,160 @@ impl Rows {
 /// # Errors
 /// [`Unsolved`] when clarabel refused it or found no solution.
 pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
-    let n = locals.len();
-    let (beta, epigraph, margins) = (4, 4 + n, 4 + 2 * n);
-    let kinked: Vec<usize> = (0..n).filter(|i| !locals[*i].changes.is_empty()).collect();
-    let unit = solution.mean();
-    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    let kinked = (0..locals.len()).filter(|i| !locals[*i].changes.is_empty()).collect();
+    let rows = Rows::default();
+    let mut build = Build { problem, solution, locals, question, kinked, unit: solution.mean(), rows };
     if question.pose_stays {
-        for k in 0..4 {
-            rows.add([(k, 1.0)], 0.0);
-        }
+        (0..4).for_each(|k| build.rows.add([(k, 1.0)], 0.0));
     }
-    let equalities = rows.bound.len();
-    let terms = |i: usize, gradient: &[f64; LOCAL]| -> Vec<(usize, f64)> {
-        (0..4).map(|k| (k, gradient[k])).chain([(beta + i, gradient[4])]).collect()
-    };
-    // How far a linear function can move inside the trust region, twice over for safety.
-    let swing = |terms: &[(usize, f64)]| 2.0 * question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
+    let equalities = build.rows.bound.len();
+    (0..locals.len()).for_each(|i| build.point(i));
+    solution.plans.iter().for_each(|plan| build.steps(plan));
+    build.trust_region();
+    let inequalities = build.rows.bound.len() - equalities;
+    let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
+    cones.extend(build.cones());
+    build.answer(&cones)
+}
 
-    for (i, local) in locals.iter().enumerate() {
+/// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each of the
+/// n points, the score of each point (the epigraph variables), and what errors add to the scores that have a kink there.
+struct Build<'a> {
+    problem: &'a Problem,
+    solution: &'a Solution,
+    locals: &'a [Local],
+    question: Question,
+    /// Points whose score has a second-order cone.
+    kinked: Vec<usize>,
+    /// Scores are in this unit. m
+    unit: f64,
+    rows: Rows,
+}
+
+/// Column of the first change of beta.
+const BETA: usize = 4;
+
+impl Build<'_> {
+    /// Column of the first score.
+    fn epigraph(&self) -> usize {
+        BETA + self.locals.len()
+    }
+
+    /// Column of the first margin of a score with a kink.
+    fn margins(&self) -> usize {
+        BETA + 2 * self.locals.len()
+    }
+
+    /// A gradient by placement and beta as entries of the columns of point `i`.
+    fn terms(i: usize, gradient: &[f64; LOCAL]) -> Vec<(usize, f64)> {
+        (0..4).map(|k| (k, gradient[k])).chain([(BETA + i, gradient[4])]).collect()
+    }
+
+    /// `low <= terms <= high`, each side only if a step inside the trust region can reach it, twice over for safety.
+    fn add_between(&mut self, terms: &[(usize, f64)], low: f64, high: f64) {
+        let swing = 2.0 * self.question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
+        self.rows.add_between(terms, low, high, swing);
+    }
+
+    /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
+    fn point(&mut self, i: usize) {
+        let (local, unit) = (&self.locals[i], self.unit);
+        let (epigraph, margins) = (self.epigraph() + i, self.margins());
         let (c, u) = (&local.state.normal_part, &local.added);
         for sign in [1.0, -1.0] {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let margin = kinked.binary_search(&i).ok().map(|place| (margins + place, 1.0));
-            let row = terms(i, &slope).into_iter().chain([(epigraph + i, -1.0)]).chain(margin);
-            rows.add(row, -(sign * c.value + u.value) / unit);
+            let margin = self.kinked.binary_search(&i).ok().map(|place| (margins + place, 1.0));
+            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(margin);
+            self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
-        if let Some(limit) = problem.constraints.max_deflection {
-            rows.add([(epigraph + i, 1.0)], limit / unit);
+        if let Some(limit) = self.problem.constraints.max_deflection {
+            self.rows.add([(epigraph, 1.0)], limit / unit);
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
-        let row = terms(i, &condition.gradient);
-        let spare = condition.value - problem.constraints.min_inverse_condition;
-        rows.add_between(&row, -spare, f64::INFINITY, swing(&row));
-        for (j, joint) in problem.robot.joints().iter().enumerate() {
-            let row = terms(i, &local.state.joints[j].gradient);
+        let spare = condition.value - self.problem.constraints.min_inverse_condition;
+        self.add_between(&Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
+        for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
-            rows.add_between(&row, joint.min - q, joint.max - q, swing(&row));
+            self.add_between(&Self::terms(i, &local.state.joints[j].gradient), joint.min - q, joint.max - q);
         }
     }
-    for plan in &solution.plans {
+
+    /// What holds between the points of a segment: the rate of beta and the steps of the joints.
+    fn steps(&mut self, plan: &SegmentPlan) {
         for (place, i) in plan.points.clone().enumerate().skip(1) {
             let turned = plan.betas[place] - plan.betas[place - 1];
-            let limit = problem.beta_step_limit(i);
-            let row = [(beta + i, 1.0), (beta + i - 1, -1.0)];
-            rows.add_between(&row, -limit - turned, limit - turned, swing(&row));
-            let limits = problem.joint_steps(i);
+            let limit = self.problem.beta_step_limit(i);
+            let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
+            self.add_between(&row, -limit - turned, limit - turned);
+            let limits = self.problem.joint_steps(i);
+            let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
-                let (here, there) = (&locals[i].state.joints[j].gradient, &locals[i - 1].state.joints[j].gradient);
+                let (here, there) = (&at.state.joints[j].gradient, &before.state.joints[j].gradient);
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
-                row.extend([(beta + i, here[4]), (beta + i - 1, -there[4])]);
-                let step = locals[i].joints[j] - locals[i - 1].joints[j];
-                rows.add_between(&row, -limits[j] - step, limits[j] - step, swing(&row));
+                row.extend([(BETA + i, here[4]), (BETA + i - 1, -there[4])]);
+                let step = at.joints[j] - before.joints[j];
+                self.add_between(&row, -limits[j] - step, limits[j] - step);
             }
         }
     }
-    for (k, bounds) in pose_bounds(problem, &solution.placement).into_iter().enumerate() {
-        let trust = question.trust;
-        rows.add([(k, 1.0)], bounds.max.min(trust));
-        rows.add([(k, -1.0)], (-bounds.min).min(trust));
-    }
-    for i in 0..n {
-        rows.add([(beta + i, 1.0)], question.trust);
-        rows.add([(beta + i, -1.0)], question.trust);
-    }
 
-    let inequalities = rows.bound.len() - equalities;
-    let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
-    for (place, i) in kinked.iter().enumerate() {
-        rows.add([(margins + place, -1.0)], 0.0);
-        let changes = &locals[*i].changes;
-        for change in changes {
-            rows.add(terms(*i, &change.gradient.map(|slope| -slope / unit)), change.value / unit);
+    /// The cell, and how far the placement and every beta may go in one step.
+    fn trust_region(&mut self) {
+        let trust = self.question.trust;
+        for (k, bounds) in pose_bounds(self.problem, &self.solution.placement).into_iter().enumerate() {
+            self.rows.add([(k, 1.0)], bounds.max.min(trust));
+            self.rows.add([(k, -1.0)], (-bounds.min).min(trust));
         }
-        cones.push(SecondOrderConeT(1 + changes.len()));
-    }
-
-    let variables = margins + kinked.len();
-    let mut linear = vec![0.0; variables];
-    linear[epigraph..margins].fill(1.0 / n as f64);
-    let curvature =
-        if question.curved { curvature(locals, variables, unit) } else { CscMatrix::zeros((variables, variables)) };
-    let matrix = CscMatrix::new_from_triplets(rows.bound.len(), variables, rows.row, rows.column, rows.value);
-    let found = programme(&curvature, &linear, &matrix, &rows.bound, &cones)?;
-    let mut pose = [0.0; 4];
-    let mut pose_gradient = [0.0; 4];
-    for k in 0..4 {
-        pose[k] = if question.pose_stays { 0.0 } else { found.x[k] * UNITS[k] };
-        if question.pose_stays {
-            pose_gradient[k] = -found.z[k] * unit;
+        for i in 0..self.locals.len() {
+            self.rows.add([(BETA + i, 1.0)], trust);
+            self.rows.add([(BETA + i, -1.0)], trust);
         }
     }
-    Ok(Answer {
-        placement: pose,
-        betas: found.x[beta..beta + n].to_vec(),
-        promised: ((1.0 - found.obj_val) * unit).max(0.0),
-        pose_gradient,
-    })
+
+    /// One second-order cone for each score with a kink.
+    fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
+        let (margins, unit) = (self.margins(), self.unit);
+        let mut cones = Vec::with_capacity(self.kinked.len());
+        for (place, i) in self.kinked.iter().enumerate() {
+            self.rows.add([(margins + place, -1.0)], 0.0);
+            let changes = &self.locals[*i].changes;
+            for change in changes {
+                let slopes = change.gradient.map(|slope| -slope / unit);
+                self.rows.add(Self::terms(*i, &slopes), change.value / unit);
+            }
+            cones.push(SecondOrderConeT(1 + changes.len()));
+        }
+        cones
+    }
+
+    /// Minimises the mean score.
+    fn answer(self, cones: &[SupportedConeT<f64>]) -> Result<Answer, Unsolved> {
+        let (n, unit, question) = (self.locals.len(), self.unit, self.question);
+        let variables = self.margins() + self.kinked.len();
+        let mut linear = vec![0.0; variables];
+        linear[self.epigraph()..self.margins()].fill(1.0 / n as f64);
+        let curvature = match question.curved {
+            true => curvature(self.locals, variables, unit),
+            false => CscMatrix::zeros((variables, variables)),
+        };
+        let Rows { row, column, value, bound } = self.rows;
+        let matrix = CscMatrix::new_from_triplets(bound.len(), variables, row, column, value);
+        let found = programme(&curvature, &linear, &matrix, &bound, cones)?;
+        let mut pose = [0.0; 4];
+        let mut pose_gradient = [0.0; 4];
+        for k in 0..4 {
+            pose[k] = if question.pose_stays { 0.0 } else { found.x[k] * UNITS[k] };
+            if question.pose_stays {
+                pose_gradient[k] = -found.z[k] * unit;
+            }
+        }
+        Ok(Answer {
+            placement: pose,
+            betas: found.x[BETA..BETA + n].to_vec(),
+            promised: ((1.0 - found.obj_val) * unit).max(0.0),
+            pose_gradient,
+        })
+    }
 }
 
 /// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
@@ -214,7 +274,7 @@ pub fn pose_step(
     let value = row.iter().zip(&column).map(|(j, k)| upper[(*j, *k)]).collect();
     let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
     let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
-    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    let mut rows = Rows::default();
     let bounds = pose_bounds(problem, placement);
     for (k, bound) in bounds.iter().enumerate() {
         rows.add([(k, 1.0)], bound.max.min(trust));
@@ -244,7 +304,7 @@ pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
         }
     }
     let quadratic = CscMatrix::new_from_triplets(n, n, row, column, value);
-    let mut rows = Rows { row: Vec::new(), column: Vec::new(), value: Vec::new(), bound: Vec::new() };
+    let mut rows = Rows::default();
     rows.add((0..gradients.len()).map(|i| (i, 1.0)), 1.0);
     for k in 0..n {
         rows.add([(k, -1.0)], 0.0);
