@@ -17,26 +17,24 @@
 //! # }
 //! ```
 
-mod arrays;
-mod assess;
-mod compensate;
+pub mod assess;
+pub mod compensate;
 mod deserialize;
-mod identify;
+pub mod identify;
 pub mod inertial;
 pub mod init;
 pub mod input;
 pub mod place;
 mod points;
-mod published_tables;
+pub mod published_tables;
 pub mod quantity;
-pub mod reader;
 pub mod robot;
 pub mod run;
 pub mod scalars;
 pub mod schema;
 pub mod shapes;
 mod sheet;
-mod simulation;
+pub mod simulation;
 pub mod spindle;
 pub mod task;
 #[cfg(test)]

@@ -1,78 +1,125 @@
-//! Published tables of an assessment, to set beside ours.
+//! Published tables of an assessment, to print beside ours.
 
-use super::reader::{Field, Table};
 use super::toml_file::TomlFile;
 use crate::input::InputError;
+use crate::place::Place;
+use crate::quantity::{self, Range, Unit};
+use crate::shapes::{Array, List};
+use crate::units::{Mm, N, Positive};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
 use stead_assessment::published::{PublishedTables, Quantity, Reading};
 
-/// Reads published tables: `source`, the heads `sides_mm`, `forces_n` and `accuracies_mm`, and for each of `[[robots]]` its
-/// `name`, `accuracy_mm` (by force), `largest_force_n` (by accuracy: the largest of the forces at which the robot is
-/// listed) and the tables `[robots.up]` and `[robots.down]` with `test_mm` and `rated_mm` (smallest, largest, middle),
-/// `optimal_mm` and `middle_mm` (by side). Rows by force or side may be shorter than their head: the rest are dashes.
+/// Published tables. Rows by force, accuracy or side may be shorter than their head: the rest are dashes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedTablesFile {
+    /// Where they were published.
+    pub source: String,
+    /// Head of the rows by side of a zone.
+    pub sides_mm: List<Mm<Positive>>,
+    /// Head of the rows by force.
+    pub forces_n: List<N<Positive>>,
+    /// Head of the rows by accuracy.
+    pub accuracies_mm: List<Mm<Positive>>,
+    /// What was published of each robot.
+    pub robots: Vec<PublishedRobot>,
+}
+
+/// What was published of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedRobot {
+    /// Name of the robot, as in its robot file.
+    pub name: String,
+    /// Accuracy by force.
+    pub accuracy_mm: List<Mm<Positive>>,
+    /// By accuracy: the largest of the forces at which the robot is listed.
+    pub largest_force_n: List<N<Positive>>,
+    /// With the elbow up.
+    pub up: PublishedCircularities,
+    /// With the elbow down.
+    pub down: PublishedCircularities,
+}
+
+/// Published circularities of a robot with its elbow up or down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedCircularities {
+    /// Under the test load: smallest, largest, and in the middle of the map.
+    pub test_mm: Array<Mm<Positive>, 3>,
+    /// Under the rated load: smallest, largest, and in the middle of the map.
+    pub rated_mm: Array<Mm<Positive>, 3>,
+    /// Largest in the best zone, by side.
+    pub optimal_mm: List<Mm<Positive>>,
+    /// Largest in the middle zone, by side.
+    pub middle_mm: List<Mm<Positive>>,
+}
+
+/// Reads published tables, the keys of [`PublishedTablesFile`].
+///
+/// # Errors
+/// [`InputError`] with line and field: a file that is no TOML, a missing or unknown key, a value of the wrong kind or out of
+/// range, a row longer than its head.
 pub(super) fn published_tables_from(source: &TomlFile) -> Result<PublishedTables, InputError> {
     let document = source.parse()?;
-    let [origin, sides, forces, accuracies, robots] =
-        Table::root(&document).fields(["source", "sides_mm", "forces_n", "accuracies_mm", "robots"])?;
-    let head = |field: &Field<'_>| field.numbers("one or more numbers above 0", |value| value > 0.0);
-    let heads = Heads { sides: head(&sides)?, forces: head(&forces)?, accuracies: head(&accuracies)? };
-    let mut published = PublishedTables { source: origin.string()?.to_owned(), ..PublishedTables::default() };
-    for row in robots.tables()? {
-        robot(&row, &heads, &mut published)?;
+    let file: PublishedTablesFile = document.read()?;
+    let mut published = PublishedTables { source: file.source.clone(), ..PublishedTables::default() };
+    for (row, number) in file.robots.iter().zip(1..) {
+        row.add_to(&mut published, &file, &document.root().key("robots").element(number))?;
     }
     Ok(published)
 }
 
-/// What the rows are by, in the units of the file.
-struct Heads {
-    sides: Vec<f64>,
-    forces: Vec<f64>,
-    accuracies: Vec<f64>,
-}
-
-fn robot(row: &Table<'_>, heads: &Heads, published: &mut PublishedTables) -> Result<(), InputError> {
-    let [name, accuracy, largest, up, down] = row.fields(["name", "accuracy_mm", "largest_force_n", "up", "down"])?;
-    let name = name.string()?;
-    let values = under(&heads.forces, &accuracy)?;
-    published
-        .accuracies
-        .extend(values.into_iter().map(|(force, value)| (name.to_owned(), force, value.map(|mm| mm / 1e3))));
-    for (accuracy, most) in under(&heads.accuracies, &largest)? {
-        let reached = heads.forces.iter().filter(|force| most.is_some_and(|most| **force <= most));
-        published.capable.extend(reached.map(|force| (accuracy / 1e3, *force, name.to_owned())));
-    }
-    for (elbow, field) in [(Elbow::Up, up), (Elbow::Down, down)] {
-        let [test, rated, optimal, middle] =
-            field.table()?.fields(["test_mm", "rated_mm", "optimal_mm", "middle_mm"])?;
-        let mut add = |load: Load, quantity: Quantity, mm: Option<f64>| {
-            let value = mm.map(|mm| mm / 1e3);
-            published.readings.push(Reading { robot: name.to_owned(), elbow, load, quantity, value });
-        };
-        for (load, field) in [(Load::Test, test), (Load::Rated, rated)] {
-            let rule = "three numbers above 0: smallest, largest, middle";
-            let numbers: [f64; 3] = field.numbers_where(rule, |value| value > 0.0)?;
-            for (quantity, mm) in [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().zip(numbers) {
-                add(load, quantity, Some(mm));
+impl PublishedRobot {
+    fn add_to(
+        &self,
+        published: &mut PublishedTables,
+        file: &PublishedTablesFile,
+        at: &Place<'_>,
+    ) -> Result<(), InputError> {
+        let named = || self.name.clone();
+        let by_force = under(&file.forces_n, &self.accuracy_mm, &at.key("accuracy_mm"))?;
+        published.accuracies.extend(by_force.into_iter().map(|(force, value)| (named(), force, value)));
+        let forces = file.forces_n.si();
+        for (accuracy, most) in under(&file.accuracies_mm, &self.largest_force_n, &at.key("largest_force_n"))? {
+            let reached = forces.iter().filter(|force| most.is_some_and(|most| **force <= most));
+            published.capable.extend(reached.map(|force| (accuracy, *force, named())));
+        }
+        for (elbow, table, at) in [(Elbow::Up, &self.up, at.key("up")), (Elbow::Down, &self.down, at.key("down"))] {
+            let mut add = |load: Load, quantity: Quantity, value: Option<f64>| {
+                published.readings.push(Reading { robot: named(), elbow, load, quantity, value });
+            };
+            for (load, values) in [(Load::Test, table.test_mm), (Load::Rated, table.rated_mm)] {
+                let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle];
+                for (quantity, value) in quantities.into_iter().zip(values.si()) {
+                    add(load, quantity, Some(value));
+                }
+            }
+            for (side, value) in under(&file.sides_mm, &table.optimal_mm, &at.key("optimal_mm"))? {
+                add(Load::Test, Quantity::OptimalZone(side), value);
+            }
+            for (side, value) in under(&file.sides_mm, &table.middle_mm, &at.key("middle_mm"))? {
+                add(Load::Test, Quantity::MiddleZone(side), value);
             }
         }
-        for (side, mm) in under(&heads.sides, &optimal)? {
-            add(Load::Test, Quantity::OptimalZone(side / 1e3), mm);
-        }
-        for (side, mm) in under(&heads.sides, &middle)? {
-            add(Load::Test, Quantity::MiddleZone(side / 1e3), mm);
-        }
+        Ok(())
     }
-    Ok(())
 }
 
-/// The numbers of a row, each with its head; `None` where the row has ended.
-fn under(heads: &[f64], row: &Field<'_>) -> Result<Vec<(f64, Option<f64>)>, InputError> {
-    let rule = format!("at most {} numbers above 0, as many as there are heads", heads.len());
-    let numbers = row.numbers(&rule, |value| value > 0.0)?;
+/// The numbers of a row in SI units, each with its head; `None` where the row has ended.
+fn under<H: Unit, V: Unit, R: Range>(
+    heads: &List<quantity::Quantity<H, R>>,
+    row: &List<quantity::Quantity<V, R>>,
+    at: &Place<'_>,
+) -> Result<Vec<(f64, Option<f64>)>, InputError> {
+    let (heads, numbers) = (heads.si(), row.si());
     if numbers.len() > heads.len() {
-        return Err(row.error(format!("has {} numbers under {} heads", numbers.len(), heads.len()), rule));
+        let problem = format!("has {} numbers under {} heads", numbers.len(), heads.len());
+        let rule = format!("at most {} numbers above 0, as many as there are heads", heads.len());
+        return Err(at.error(problem, rule));
     }
-    let padded = numbers.into_iter().map(Some).chain(std::iter::repeat(None));
-    Ok(heads.iter().copied().zip(padded).collect())
+    Ok(heads.into_iter().zip(numbers.into_iter().map(Some).chain(std::iter::repeat(None))).collect())
 }

@@ -1,6 +1,9 @@
 //! Values of a file that are one whole number, one text, or one of some words.
 
+use crate::input::InputError;
+use crate::place::Place;
 use crate::quantity::{Expects, Reading, expecting};
+use crate::shapes::List;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -68,6 +71,20 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "integer", "minimum": MIN, "maximum": MAX })
     }
+}
+
+/// Which of the six joints a list names.
+///
+/// # Errors
+/// [`InputError`] at a number that is in the list twice.
+pub(crate) fn joint_set(numbers: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[bool; 6], InputError> {
+    let mut joints = [false; 6];
+    for (number, place) in numbers.0.iter().zip(1..) {
+        if std::mem::replace(&mut joints[number.count() - 1], true) {
+            return Err(at.element(place).error("is there twice", "numbers of joints from 1 to 6, each once"));
+        }
+    }
+    Ok(joints)
 }
 
 /// What the words of a field stand for.

@@ -3,8 +3,12 @@
 //! An editor that knows TOML checks and completes a file whose first line is `#:schema` and the path of its schema. The
 //! schemas are kept in `configs/schema/`; after a change of a type, `stead schema NAME > configs/schema/NAME.json` renews one.
 
+use crate::assess::AssessmentFile;
+use crate::compensate::CompensationFile;
+use crate::identify::IdentificationFile;
 use crate::robot::RobotFile;
 use crate::run::RunFile;
+use crate::simulation::SimulationFile;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Map, Value};
@@ -23,7 +27,15 @@ pub struct UnknownSchema {
 type Make = fn() -> Schema;
 
 /// Every kind of file, by the name of its schema.
-const SCHEMAS: [(&str, Make); 2] = [("run", of::<RunFile>), ("robot", of::<RobotFile>)];
+const SCHEMAS: [(&str, Make); 7] = [
+    ("run", of::<RunFile>),
+    ("robot", of::<RobotFile>),
+    ("simulate", of::<SimulationFile>),
+    ("assess", of::<AssessmentFile>),
+    ("identify-fit", || requiring(of::<IdentificationFile>(), &["sheet"])),
+    ("identify-plan", || requiring(of::<IdentificationFile>(), &["noise_mm", "plan"])),
+    ("compensate", of::<CompensationFile>),
+];
 
 /// The names of all schemas.
 pub fn names() -> Vec<&'static str> {
@@ -55,6 +67,14 @@ pub fn schema(name: &str) -> Result<String, UnknownSchema> {
 fn of<T: JsonSchema>() -> Schema {
     let settings = SchemaSettings::draft07().with_transform(RecursiveTransform(without_null));
     settings.into_generator().into_root_schema_for::<T>()
+}
+
+/// Requires optional keys, which one command needs and another that reads the same file does not.
+fn requiring(mut schema: Schema, keys: &[&str]) -> Schema {
+    if let Some(Value::Array(required)) = schema.get_mut("required") {
+        required.extend(keys.iter().map(|key| Value::from(*key)));
+    }
+    schema
 }
 
 /// Takes the null out that an optional key may be in JSON: TOML has none, a key is left out.

@@ -116,6 +116,11 @@ pub struct Interval<Q: Expects>(Array<Q, 2>);
 pub struct Span<Q: Expects>(Array<Q, 2>);
 
 impl<U: Unit, R: Range> Interval<Quantity<U, R>> {
+    /// Both ends in the unit of the file.
+    pub fn written(self) -> [f64; 2] {
+        self.0.0.map(Quantity::written)
+    }
+
     /// Both ends in SI units and radians.
     pub fn si(self) -> [f64; 2] {
         self.0.si()

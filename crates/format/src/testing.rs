@@ -1,8 +1,6 @@
 //! Files for the tests of this room.
 
 use crate::input::InputError;
-use crate::reader::{Field, Table};
-use crate::toml_file::TomlFile;
 use crate::{Run, read_run};
 use std::path::{Path, PathBuf};
 
@@ -65,14 +63,6 @@ pub fn assert_refused(from: &str, to: &str, parts: &[&str]) {
     for part in parts.iter().chain(&["; allowed: "]) {
         assert!(message.contains(part), "{part} in {message}");
     }
-}
-
-/// What `read` makes of the field `a.v` of a table `[a]` on line 2 with `v` on line 3.
-pub fn read_field<T>(value: &str, read: impl FnOnce(&Field<'_>) -> Result<T, InputError>) -> Result<T, String> {
-    let source = TomlFile::new(Path::new("f.toml"), format!("# first\n[a]\n{value}\n").into_bytes()).unwrap();
-    let document = source.parse().unwrap();
-    let table = Table::root(&document).fields(["a"]).and_then(|[a]| a.table()).unwrap();
-    table.fields(["v", "w"]).and_then(|[v, _]| read(&v)).map_err(|e| e.to_string())
 }
 
 /// Asserts that a message names file, line and field, and holds some parts.

@@ -1,4 +1,30 @@
 //! The text of one TOML file: where its lines are, and how it parses.
+//!
+//! ```
+//! use serde::Deserialize;
+//! use stead_format::shapes::Interval;
+//! use stead_format::toml_file::TomlFile;
+//! use stead_format::units::{Mm, Positive};
+//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! #[derive(Deserialize)]
+//! #[serde(deny_unknown_fields)]
+//! struct Cell {
+//!     x_mm: Interval<Mm>,
+//!     wall_mm: Mm<Positive>,
+//!     gap_mm: Option<Mm>,
+//! }
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = 20".to_vec())?;
+//! let cell: Cell = source.parse()?.read()?;
+//! assert_eq!((cell.x_mm.si(), cell.wall_mm.si(), cell.gap_mm), ([-0.3, 0.3], 0.02, None));
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
+//! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
+//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0";
+//! assert_eq!(error.as_deref(), Some(expected));
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::input::{InputError, InputFile, input_file};
 use crate::place::Place;

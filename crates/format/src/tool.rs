@@ -111,6 +111,11 @@ pub(crate) struct Cutting<'a> {
 }
 
 impl<'a> Cutting<'a> {
+    /// The tables of a file that has both.
+    pub fn new(tool: &'a ToolTable, cut: &'a CutTable, at: &Place<'a>) -> Self {
+        Self { tool, cut, tool_at: at.key("tool"), cut_at: at.key("cut") }
+    }
+
     /// The tables of a file, if it has them.
     ///
     /// # Errors
@@ -122,7 +127,7 @@ impl<'a> Cutting<'a> {
     ) -> Result<Option<Self>, InputError> {
         match (tool, cut) {
             (None, None) => Ok(None),
-            (Some(tool), Some(cut)) => Ok(Some(Self { tool, cut, tool_at: at.key("tool"), cut_at: at.key("cut") })),
+            (Some(tool), Some(cut)) => Ok(Some(Self::new(tool, cut, at))),
             (Some(_), None) => Err(at.key("cut").missing("a table [cut] beside [tool]")),
             (None, Some(_)) => Err(at.key("tool").missing("a table [tool] beside [cut]")),
         }

@@ -1,13 +1,26 @@
 //! The tables `[benchmark]` and `[stiffness]`: the circle, its load, and how the arm yields to it.
 
-use super::super::reader::{Field, Table};
+use super::file::{BenchmarkTable, StiffnessTable, Traced};
 use crate::input::InputError;
+use crate::place::{Place, required};
+use crate::quantity::Quantity;
+use crate::scalars::joint_set;
+use crate::shapes::Vector;
+use crate::units::{Number, ranges};
 use nalgebra::{Matrix3, Vector3};
+use std::ops::Bound::Included;
 use stead_assessment::benchmark::{Benchmark, LimitsAt, Plane, StiffnessModel, Turning};
 use stead_assessment::comparison::ElbowNames;
 use stead_model::cutting::ForceHistory;
 use stead_model::robot::{Pose, point_from_tool};
 use stead_model::task::{PathPoint, Wrench};
+
+ranges! {
+    /// Radius of a circle. mm
+    Radius: Included(1e-3), Included(1e5);
+    /// A force or a moment, within what machines can do.
+    Force: Included(-1e7), Included(1e7);
+}
 
 /// What `[stiffness]` says.
 #[derive(Debug, Clone, Copy)]
@@ -17,31 +30,15 @@ pub(super) struct Yields {
     pub model: StiffnessModel,
 }
 
-impl Default for Yields {
-    fn default() -> Self {
-        Self { joints: [true; 6], range_share: None, model: StiffnessModel::Unloaded }
-    }
-}
-
-pub(super) fn yield_from(table: &Table<'_>) -> Result<Yields, InputError> {
-    let [joints, share, loaded] = table.fields(["joints", "range_share", "loaded"])?;
-    let default = Yields::default();
-    let rule = "numbers of joints from 1 to 6, each at most once";
-    let read = |field: &Field<'_>| {
-        let mut yielding = [false; 6];
-        for entry in field.list(rule)? {
-            let number = entry.integer(1..=6)? as usize;
-            if std::mem::replace(&mut yielding[number - 1], true) {
-                return Err(entry.error("is there twice", rule));
-            }
-        }
-        Ok(yielding)
+pub(super) fn yields_from(table: &StiffnessTable, at: &Place<'_>) -> Result<Yields, InputError> {
+    let joints = match &table.joints {
+        Some(joints) => joint_set(joints, &at.key("joints"))?,
+        None => [true; 6],
     };
-    let unit = |field: &Field<'_>| field.number_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
-    let is_loaded = loaded.optional(Field::boolean)?.unwrap_or(false);
+    let is_loaded = table.loaded.unwrap_or_default();
     Ok(Yields {
-        joints: joints.optional(read)?.unwrap_or(default.joints),
-        range_share: share.optional(unit)?,
+        joints,
+        range_share: table.range_share.map(Quantity::si),
         model: if is_loaded { StiffnessModel::Loaded } else { StiffnessModel::Unloaded },
     })
 }
@@ -52,83 +49,84 @@ pub(super) struct Setting<'a> {
     pub flange_from_tool: Pose<f64>,
     pub yields: Yields,
     pub force_history: Option<&'a ForceHistory>,
-    pub milling: &'a Field<'a>,
-    pub spindle: &'a Field<'a>,
 }
 
-pub(super) fn benchmark_from(table: &Table<'_>, setting: &Setting<'_>) -> Result<(Benchmark, ElbowNames), InputError> {
-    let [radius, points, force, moment, turns, traced, axis, beta, limits, names] = table.fields([
-        "radius_mm",
-        "points",
-        "force_n",
-        "moment_nm",
-        "force_turns",
-        "traced",
-        "tool_axis",
-        "beta_deg",
-        "limits_at",
-        "elbow_names",
-    ])?;
+pub(super) fn benchmark_from(
+    table: &BenchmarkTable,
+    root: &Place<'_>,
+    setting: &Setting<'_>,
+) -> Result<(Benchmark, ElbowNames), InputError> {
+    let at = root.key("benchmark");
     let normal = setting.plane.normal();
-    let tool_axis = axis.optional(direction)?.unwrap_or(normal);
-    let wrench = match setting.force_history {
-        Some(force_history) => {
-            if let Some(given) = [&force, &moment].into_iter().find(|field| field.is_given()) {
-                return Err(given.error("is given beside a table [tool]", "force_n and moment_nm, or [tool] and [cut]"));
-            }
-            turning_wrench(&force_history.mean, &tool_axis, &normal).ok_or_else(|| {
-                axis.error(
-                    "does not stand on the plane of the circle",
-                    "with [tool] and [cut]: the normal of the plane, or none",
-                )
-            })?
-        }
-        None => Wrench { force: load(&force)?, moment: moment.optional(load)?.unwrap_or_default() },
+    let tool_axis = match table.tool_axis {
+        Some(axis) => direction(axis, &at.key("tool_axis"))?,
+        None => normal,
     };
-    if libm::hypot(wrench.force.x, wrench.force.y) < LEAST_FORCE {
-        let rule = "a force with a part in the plane of the circle: [radial, tangential, normal] with the first two not both 0";
-        let field = if setting.force_history.is_some() { setting.milling } else { &force };
-        return Err(field.error("gives no force in the plane", rule));
-    }
-    let turnings = [("with-tool", Turning::WithTool), ("against-tool", Turning::AgainstTool)];
-    let limit_words = [("circle", LimitsAt::Circle), ("centre", LimitsAt::Centre)];
-    let name_words = [("geometric", ElbowNames::Geometric), ("swapped", ElbowNames::Swapped)];
-    let is_tool = traced.optional(|field| field.one_of(&[("tool", true), ("wrist-centre", false)]))?.unwrap_or(true);
-    if !is_tool && setting.spindle.is_given() {
+    let wrench = wrench_from(table, root, setting.force_history, &tool_axis, &normal)?;
+    let is_tool = table.traced.is_none_or(|word| word.0 == Traced::Tool);
+    if !is_tool && root.key("spindle").is_given() {
         let problem = "leaves out the spindle, but there is a table [spindle]";
-        return Err(traced.error(problem, "\"tool\" with a table [spindle], or \"wrist-centre\" without"));
+        let allowed = "\"tool\" with a table [spindle], or \"wrist-centre\" without";
+        return Err(at.key("traced").error(problem, allowed));
     }
-    let beta = beta.optional(Field::number)?.unwrap_or_default().to_radians();
+    let beta = table.beta_deg.map_or(0.0, Quantity::si);
     let benchmark = Benchmark {
         plane: setting.plane,
-        radius: radius.number_where("a number from 0.001 to 100000", |mm| (1e-3..=1e5).contains(&mm))? / 1e3,
-        points: points.optional(|field| field.integer(8..=100_000))?.unwrap_or(72) as usize,
+        radius: table.radius_mm.si(),
+        points: table.points.map_or(72, |points| points.count()),
         wrench,
-        turning: turns.optional(|field| field.one_of(&turnings))?.unwrap_or(Turning::WithTool),
+        turning: table.force_turns.map_or(Turning::WithTool, |word| word.0),
         base_from_tool: orientation(&setting.plane, &tool_axis, beta),
         flange_from_tool: is_tool.then_some(setting.flange_from_tool),
         yielding: setting.yields.joints,
-        limits_at: limits.optional(|field| field.one_of(&limit_words))?.unwrap_or(LimitsAt::Circle),
+        limits_at: table.limits_at.map_or(LimitsAt::Circle, |word| word.0),
         stiffness: setting.yields.model,
     };
-    let names = names.optional(|field| field.one_of(&name_words))?.unwrap_or(ElbowNames::Geometric);
-    Ok((benchmark, names))
+    Ok((benchmark, table.elbow_names.map_or(ElbowNames::Geometric, |word| word.0)))
+}
+
+/// The load at polar angle 0: that of `[tool]` and `[cut]`, or the given one.
+fn wrench_from(
+    table: &BenchmarkTable,
+    root: &Place<'_>,
+    force_history: Option<&ForceHistory>,
+    tool_axis: &Vector3<f64>,
+    normal: &Vector3<f64>,
+) -> Result<Wrench, InputError> {
+    let at = root.key("benchmark");
+    let wrench = match force_history {
+        Some(force_history) => {
+            if let Some(given) = ["force_n", "moment_nm"].map(|key| at.key(key)).iter().find(|place| place.is_given()) {
+                return Err(given.error("is given beside a table [tool]", "force_n and moment_nm, or [tool] and [cut]"));
+            }
+            turning_wrench(&force_history.mean, tool_axis, normal).ok_or_else(|| {
+                let allowed = "with [tool] and [cut]: the normal of the plane, or none";
+                at.key("tool_axis").error("does not stand on the plane of the circle", allowed)
+            })?
+        }
+        None => Wrench {
+            force: required!(at, table.force_n)?.vector(),
+            moment: table.moment_nm.map_or_else(Vector3::zeros, |moment| moment.vector()),
+        },
+    };
+    if libm::hypot(wrench.force.x, wrench.force.y) >= LEAST_FORCE {
+        return Ok(wrench);
+    }
+    let rule =
+        "a force with a part in the plane of the circle: [radial, tangential, normal] with the first two not both 0";
+    let at = if force_history.is_some() { root.key("tool") } else { at.key("force_n") };
+    Err(at.error("gives no force in the plane", rule))
 }
 
 /// No force in the plane is smaller than this. N
 const LEAST_FORCE: f64 = 1e-6;
 
-/// A force or a moment, within what machines can do.
-fn load(field: &Field<'_>) -> Result<Vector3<f64>, InputError> {
-    field.numbers_where("three numbers from -1e7 to 1e7", |part| part.abs() <= 1e7).map(Vector3::from)
-}
-
 /// A direction, made exactly one long.
-pub(super) fn direction(field: &Field<'_>) -> Result<Vector3<f64>, InputError> {
-    let vector = field.vector3()?;
+pub(super) fn direction(given: Vector<Number>, at: &Place<'_>) -> Result<Vector3<f64>, InputError> {
+    let vector = given.vector();
     let length = vector.norm();
     if (length - 1.0).abs() > 1e-3 {
-        return Err(field.error(format!("has length {length:.4}"), "a direction of length 1, within 0.001"));
+        return Err(at.error(format!("has length {length:.4}"), "a direction of length 1, within 0.001"));
     }
     Ok(vector / length)
 }

@@ -1,19 +1,23 @@
 //! Assessment files: the config of `stead assess`.
 
 mod benchmark;
+mod file;
 #[cfg(test)]
 mod tests;
 
-use benchmark::{Setting, benchmark_from, direction, yield_from};
+pub use file::*;
 
 use super::published_tables::published_tables_from;
-use super::reader::{Field, NamedFile, Table};
 use super::robot::robot_from;
-use super::spindle::SpindleTable;
 use super::toml_file::TomlFile;
-use crate::input::input_file;
-use crate::input::{InputError, InputFile};
+use crate::input::{InputError, InputFile, input_file};
+use crate::place::{NamedFile, Place};
+use crate::quantity::Quantity;
+use crate::shapes::List;
 use crate::tool::Cutting;
+use crate::units::{Mm, Positive};
+use benchmark::{Setting, benchmark_from, direction, yields_from};
+use nalgebra::Vector3;
 use std::path::Path;
 use stead_assessment::benchmark::Plane;
 use stead_assessment::comparison::Comparison;
@@ -40,9 +44,7 @@ pub struct AssessRun {
     pub notes: Vec<String>,
 }
 
-/// Reads an assessment file and the robot files that it names. Top-level keys: `robots` (paths relative to the folder of
-/// the file), `[benchmark]` and `[map]`; optionally `[zones]`, `[plane]`, `[spindle]`, `[tool]`, `[cut]`, `[stiffness]`, `[load]`,
-/// `[selection]` and `[reference]`. The shipped files explain each field.
+/// Reads an assessment file, the keys of [`AssessmentFile`], and the robot files that it names.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
@@ -50,53 +52,45 @@ pub struct AssessRun {
 pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let [robots, benchmark, plane, spindle, tool, cut, map, zones, stiffness, load, selection, reference] =
-        Table::root(&document).fields([
-            "robots",
-            "benchmark",
-            "plane",
-            "spindle",
-            "tool",
-            "cut",
-            "map",
-            "zones",
-            "stiffness",
-            "load",
-            "selection",
-            "reference",
-        ])?;
-    let plane = plane.optional(|field| plane_from(&field.table()?))?.unwrap_or(Plane::XOZ);
-    let mounted = spindle.optional(|field| field.read::<SpindleTable>()?.spindle(field))?;
-    let (tool_table, cut_table) = (tool.read()?, cut.read()?);
-    let cutting = Cutting::of(&tool_table, &cut_table, &document.root())?;
+    let at = document.root();
+    let file: AssessmentFile = document.read()?;
+    let plane = match &file.plane {
+        Some(table) => plane_from(table, &at.key("plane"))?,
+        None => Plane::XOZ,
+    };
+    let flange_from_tool = match &file.spindle {
+        Some(table) => table.spindle(&at.key("spindle"))?.flange_from_tool,
+        None => Pose::identity(),
+    };
+    let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
     let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
     let force_history = cut.map(|cut| cut.force_history());
-    let yields = stiffness.optional(|field| yield_from(&field.table()?))?.unwrap_or_default();
-    let flange_from_tool = mounted.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
-    let setting = Setting {
-        plane,
-        flange_from_tool,
-        yields,
-        force_history: force_history.as_ref(),
-        milling: &tool,
-        spindle: &spindle,
+    let yields = yields_from(&file.stiffness.unwrap_or_default(), &at.key("stiffness"))?;
+    let setting = Setting { plane, flange_from_tool, yields, force_history: force_history.as_ref() };
+    let (benchmark, elbow_names) = benchmark_from(&file.benchmark, &at, &setting)?;
+    let grid = grid_from(&file.map, &at.key("map"))?;
+    let zones = match &file.zones {
+        Some(table) => zones_from(&table.sides_mm, &at.key("zones").key("sides_mm"), &grid)?,
+        None => Vec::new(),
     };
-    let (benchmark, elbow_names) = benchmark_from(&benchmark.table()?, &setting)?;
-    let grid = grid_from(&map.table()?)?;
-    let zones = zones.optional(|field| zones_from(&field.table()?, &grid))?.unwrap_or_default();
-    let (rated_share, gravity) = load.optional(|field| load_from(&field.table()?))?.unwrap_or((RATED, GRAVITY));
-    let selection = selection.optional(|field| selection_from(&field.table()?, gravity))?;
-    let selection =
-        selection.unwrap_or(Selection { accuracies: vec![], forces: vec![], remaining_share: 1.0, gravity });
+    let load = file.load.unwrap_or_default();
+    let rated_share = load.rated_share.map_or(RATED, Quantity::si);
+    let gravity = load.gravity_m_per_s2.map_or(GRAVITY, Quantity::si);
+    let selection = match &file.selection {
+        Some(table) => selection_from(table, &at.key("selection"), gravity)?,
+        None => Selection { accuracies: vec![], forces: vec![], remaining_share: 1.0, gravity },
+    };
 
     let mut inputs = vec![source.as_config()];
-    let robots = robots_from(&robots, yields.range_share, &mut inputs)?;
-    let published = reference.optional(|field| {
-        let [tables] = field.table()?.fields(["tables"])?;
-        let named = tables.named_file()?;
-        inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
-        published_tables_from(&TomlFile::new(&named.file, named.bytes)?)
-    })?;
+    let robots = robots_from(&file.robots, &at.key("robots"), yields.range_share, &mut inputs)?;
+    let published = match file.reference {
+        Some(_) => {
+            let named = at.key("reference").key("tables").named_file()?;
+            inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
+            Some(published_tables_from(&TomlFile::new(&named.file, named.bytes)?)?)
+        }
+        None => None,
+    };
     let asked = !selection.forces.is_empty();
     let notes = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten()).collect();
     let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
@@ -110,12 +104,14 @@ const GRAVITY: f64 = 9.806_65;
 
 /// The robots of a list, with one compliance in place of a range where a share of the range is given.
 fn robots_from(
-    field: &Field<'_>,
+    names: &List<String>,
+    at: &Place<'_>,
     range_share: Option<f64>,
     inputs: &mut Vec<InputFile>,
 ) -> Result<Vec<Robot>, InputError> {
     let mut robots: Vec<Robot> = Vec::new();
-    for entry in field.list("the paths of one or more robot files, relative to the folder of this file")? {
+    for number in 1..=names.0.len() {
+        let entry = at.element(number);
         let NamedFile { name, file, bytes } = entry.named_file()?;
         inputs.push(input_file("robot", name, &bytes));
         let robot = robot_from(&TomlFile::new(&file, bytes)?)?;
@@ -134,43 +130,43 @@ fn robots_from(
 }
 
 /// The plane of the circle: two directions in the base frame, made exactly normal to each other.
-fn plane_from(table: &Table<'_>) -> Result<Plane, InputError> {
-    let [origin, x, y] = table.fields(["origin_mm", "x", "y"])?;
-    let (first, second) = (direction(&x)?, direction(&y)?);
+fn plane_from(table: &PlaneTable, at: &Place<'_>) -> Result<Plane, InputError> {
+    let (first, second) = (direction(table.x, &at.key("x"))?, direction(table.y, &at.key("y"))?);
     if first.dot(&second).abs() > 1e-3 {
         let problem = format!("is not normal to x, their dot product is {:.4}", first.dot(&second));
-        return Err(y.error(problem, "a direction normal to x, within 0.001"));
+        return Err(at.key("y").error(problem, "a direction normal to x, within 0.001"));
     }
-    let origin = origin.optional(Field::vector3)?.unwrap_or_default() / 1e3;
+    let origin = table.origin_mm.map_or_else(Vector3::zeros, |origin| origin.vector());
     Ok(Plane { origin, x: first, y: (second - first * first.dot(&second)).normalize() })
 }
 
 /// More places than this are refused.
 const MOST_NODES: f64 = 4e6;
 
-fn grid_from(table: &Table<'_>) -> Result<Grid, InputError> {
-    let [x, y, step] = table.fields(["x_mm", "y_mm", "step_mm"])?;
-    let (across, up, step_mm) = (x.interval()?, y.interval()?, step.positive()?);
-    let counts = [across, up].map(|[from, to]| ((to - from) / step_mm + 1e-9).floor() + 1.0);
+fn grid_from(table: &MapTable, at: &Place<'_>) -> Result<Grid, InputError> {
+    let (across, up, step) = (table.x_mm, table.y_mm, table.step_mm);
+    let counts = [across, up].map(|ends| {
+        let [from, to] = ends.written();
+        ((to - from) / step.written() + 1e-9).floor() + 1.0
+    });
     let nodes = counts[0] * counts[1];
     if nodes > MOST_NODES {
-        return Err(
-            step.error(format!("makes {nodes} places"), format!("a step that makes at most {MOST_NODES} of them"))
-        );
+        let allowed = format!("a step that makes at most {MOST_NODES} of them");
+        return Err(at.key("step_mm").error(format!("makes {nodes} places"), allowed));
     }
-    Ok(Grid { origin: [across[0] / 1e3, up[0] / 1e3], step: step_mm / 1e3, counts: counts.map(|count| count as usize) })
+    let origin = [across.si()[0], up.si()[0]];
+    Ok(Grid { origin, step: step.si(), counts: counts.map(|count| count as usize) })
 }
 
 /// Sides of the zones in steps of the grid.
-fn zones_from(table: &Table<'_>, grid: &Grid) -> Result<Vec<usize>, InputError> {
-    let [sides] = table.fields(["sides_mm"])?;
+fn zones_from(sides: &List<Mm<Positive>>, at: &Place<'_>, grid: &Grid) -> Result<Vec<usize>, InputError> {
     let step_mm = grid.step * 1e3;
     let most_mm = step_mm * (grid.counts[0].min(grid.counts[1]) - 1) as f64;
     let rule =
         format!("whole multiples of step_mm = {step_mm} above 0 and not above {most_mm}, the shorter side of the map");
     let mut zones = Vec::new();
-    for entry in sides.list(&rule)? {
-        let side = entry.number_where(&rule, |side| side > 0.0)?;
+    for (side, number) in sides.0.iter().zip(1..) {
+        let (side, entry) = (side.written(), at.element(number));
         if side > most_mm * (1.0 + 1e-9) {
             return Err(entry.error("is larger than the map", rule));
         }
@@ -186,28 +182,18 @@ fn zones_from(table: &Table<'_>, grid: &Grid) -> Result<Vec<usize>, InputError> 
     Ok(zones)
 }
 
-fn load_from(table: &Table<'_>) -> Result<(f64, f64), InputError> {
-    let [share, gravity] = table.fields(["rated_share", "gravity_m_per_s2"])?;
-    let rule = "a number above 0 and not above 10";
-    let share = share.optional(|field| field.number_where(rule, |share| share > 0.0 && share <= 10.0))?;
-    Ok((share.unwrap_or(RATED), gravity.optional(Field::positive)?.unwrap_or(GRAVITY)))
-}
-
-fn selection_from(table: &Table<'_>, gravity: f64) -> Result<Selection, InputError> {
-    let [accuracies, forces, share] = table.fields(["accuracies_mm", "forces_n", "remaining_share"])?;
-    let rule = "one or more numbers above 0 in ascending order";
-    let ascending = |field: &Field<'_>| {
-        let numbers = field.numbers(rule, |v| v > 0.0)?;
+fn selection_from(table: &SelectionTable, at: &Place<'_>, gravity: f64) -> Result<Selection, InputError> {
+    let ascending = |key: &str, numbers: Vec<f64>| {
         if numbers.windows(2).any(|pair| pair[0] >= pair[1]) {
-            return Err(field.error("is not in ascending order", rule));
+            let rule = "one or more numbers above 0 in ascending order";
+            return Err(at.key(key).error("is not in ascending order", rule));
         }
         Ok(numbers)
     };
-    let unit = |field: &Field<'_>| field.number_where("a number above 0 and not above 1", |v| v > 0.0 && v <= 1.0);
     Ok(Selection {
-        accuracies: ascending(&accuracies)?.into_iter().map(|mm| mm / 1e3).collect(),
-        forces: ascending(&forces)?,
-        remaining_share: share.optional(unit)?.unwrap_or(1.0),
+        accuracies: ascending("accuracies_mm", table.accuracies_mm.si())?,
+        forces: ascending("forces_n", table.forces_n.si())?,
+        remaining_share: table.remaining_share.map_or(1.0, Quantity::si),
         gravity,
     })
 }

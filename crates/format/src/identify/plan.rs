@@ -1,16 +1,89 @@
 //! The table `[plan]` of an identification file.
 
-use super::Shared;
+use super::directions::{Directions, NamedDirections};
+use super::{IdentificationFile, Shared};
 use crate::input::{InputError, InputFile};
-use crate::reader::{Field, Table};
+use crate::place::{Place, required};
+use crate::quantity::{Expects, Quantity};
+use crate::scalars::{Whole, Word};
+use crate::shapes::{Array, Interval, List, Vector};
 use crate::toml_file::TomlFile;
+use crate::units::{Deg, Mm, N, Nm, NotNegative, Percent, Positive};
 use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
 use stead_model::robot::Robot;
+
+/// Which measurements to choose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanTable {
+    /// Number of configurations to measure.
+    pub configurations: Whole<1, 1000>,
+    /// Size of the load.
+    pub load_n: N<Positive>,
+    /// Directions of the load in the base frame, whose z axis points up: `any` (where left out), `horizontal`, `vertical` (down,
+    /// as a weight hangs), or a list.
+    pub load_directions: Option<Directions>,
+    /// About where the reference points are, in the flange frame.
+    pub reference_points_mm: List<Vector<Mm>>,
+    /// Angles of the joint beside the compensator, in ascending order; without a compensator of joint 2, and then any angle
+    /// where left out.
+    pub levels_deg: Option<List<Deg>>,
+    /// Joint limits for measuring, where narrower ones than those of the robot are needed.
+    pub limits_deg: Option<Array<Interval<Deg>, 6>>,
+    /// No reference point may move further; 10 where left out.
+    pub max_deflection_mm: Option<Mm<Positive>>,
+    /// The point whose deflection is to be known, in the flange frame; the load point where left out.
+    pub tip_mm: Option<Vector<Mm>>,
+    /// Number of random poses at which it is to be known, under the load in any direction; 200 where left out.
+    pub tests: Option<Whole<1, 100000>>,
+    /// Poses and loads at which it is to be known, in place of `tests`.
+    pub test: Option<Vec<TestTable>>,
+    /// Random configurations to choose from; 2000 where left out, or `configurations` if that is more.
+    pub candidates: Option<Whole<2, 100000>>,
+    /// Seed of all random numbers: the same seed gives the same result; 1 where left out.
+    pub seed: Option<Whole<0, 9223372036854775807>>,
+    /// Starts of the search: a greedy one, the best random set, and others; 8 where left out.
+    pub starts: Option<Whole<2, 100000>>,
+    /// Random sets to compare with; 1000 where left out.
+    pub random_sets: Option<Whole<1, 100000>>,
+    /// A compliance with a larger expected standard deviation is warned of; 20 where left out.
+    pub hardly_seen_percent: Option<Percent<Positive>>,
+    /// Where wrist, flange, tip, load and reference points must be, in the base frame; anywhere where left out.
+    pub volume: Option<VolumeTable>,
+}
+
+/// Where wrist, flange, tip, load and reference points must be, in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VolumeTable {
+    /// Range `[min, max]` of the x coordinate; any where left out.
+    pub x_mm: Option<Interval<Mm>>,
+    /// Range `[min, max]` of the y coordinate; any where left out.
+    pub y_mm: Option<Interval<Mm>>,
+    /// Range `[min, max]` of the z coordinate; any where left out.
+    pub z_mm: Option<Interval<Mm>>,
+    /// Least distance from the z axis; 0 where left out.
+    pub min_radius_mm: Option<Mm<NotNegative>>,
+}
+
+/// A pose and a load.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TestTable {
+    /// Joint angles.
+    pub joints_deg: Array<Deg, 6>,
+    /// Force at the tip, in the base frame.
+    pub force_n: Vector<N>,
+    /// Moment at the tip, in the base frame; 0 where left out.
+    pub moment_nm: Option<Vector<Nm>>,
+}
 
 /// What `stead identify plan` reads.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,14 +118,7 @@ const MOST_MM: f64 = 10.0;
 const LEVELS: usize = 5;
 
 /// Reads an identification file for a plan: what [`read_identification`](super::read_identification) reads but the sheet, which
-/// is not there yet, with `noise_mm`, and the table `[plan]`.
-///
-/// Keys of `[plan]`: `configurations`, `load_n` and `reference_points_mm` (flange frame); optionally `load_directions` (`"any"`,
-/// `"horizontal"`, `"vertical"` or a list of directions in the base frame), `levels_deg` (angles of the joint beside the
-/// compensator, or of joint 2), `limits_deg` (narrower joint limits), `max_deflection_mm`, `tip_mm` (flange frame), `tests` or
-/// `[[plan.test]]` (`joints_deg`, `force_n`, `moment_nm`), `candidates`, `seed`, `starts`, `random_sets`, `hardly_seen_percent`
-/// and `[plan.volume]` (`x_mm`, `y_mm`, `z_mm`, `min_radius_mm`). The shipped file explains each. `seed` given here takes the
-/// place of the file's.
+/// is not there yet, with `noise_mm`, and the table `[plan]`. `seed` given here takes the place of the file's.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
@@ -60,128 +126,110 @@ const LEVELS: usize = 5;
 pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let shared = Shared::new(&document)?;
-    let table = shared.plan.table()?;
-    let [
-        configurations,
-        load,
-        directions,
-        points,
-        levels,
-        limits,
-        deflection,
-        tip,
-        tests,
-        test,
-        candidates,
-        file_seed,
-        starts,
-        random_sets,
-        hardly,
-        volume,
-    ] = table.fields([
-        "configurations",
-        "load_n",
-        "load_directions",
-        "reference_points_mm",
-        "levels_deg",
-        "limits_deg",
-        "max_deflection_mm",
-        "tip_mm",
-        "tests",
-        "test",
-        "candidates",
-        "seed",
-        "starts",
-        "random_sets",
-        "hardly_seen_percent",
-        "volume",
-    ])?;
-    let count = |field: &Field<'_>, default: usize, least: u64| {
-        let asked = field.optional(|field| field.integer(least..=100_000))?;
-        Ok::<usize, InputError>(asked.map_or(default, |asked| asked as usize))
-    };
-    let size = configurations.integer(1..=1000)? as usize;
-    let candidate_count = count(&candidates, CANDIDATES.max(size), 2)?;
-    if candidate_count < size {
-        let allowed = format!("at least as many as configurations = {size}");
-        return Err(candidates.error("is less than there are to choose", allowed));
-    }
-    if tests.is_given() && test.is_given() {
-        return Err(tests.error("is the number of tests to draw, but there are tests [[plan.test]]", "one of the two"));
-    }
-    let robot = &shared.robot;
-    let limits = limits_from(&limits, robot)?;
-    let level_joint = shared.varying.map_or(1, |(joint, _)| joint);
-    let needed = shared.varying.map_or(0, |(_, law)| if matches!(law, Law::Spring(_)) { 3 } else { 1 });
-    let spread =
-        Spread { joint: level_joint, needed, limits: limits[level_joint], tolerance: shared.fit.angle_tolerance };
-    let request = Request {
-        load_point: shared.load_point,
-        points: points.list(POINTS)?.iter().map(|point| Ok(point.vector3()? / 1e3)).collect::<Result<_, _>>()?,
-        noise: shared.noise.positive()? / 1e3,
-        varying: shared.varying,
-        hold: shared.fit.hold,
-        angle_tolerance: shared.fit.angle_tolerance,
-        level_joint,
-        levels: spread.levels_from(&levels)?,
-        limits,
-        loads: directions.optional(loads_from)?.unwrap_or(LoadDirections::Any),
-        load: load.positive()?,
-        volume: volume.optional(|field| volume_from(&field.table()?))?.unwrap_or(Volume::OPEN),
-        max_deflection: deflection.optional(Field::positive)?.unwrap_or(MOST_MM) / 1e3,
-        tip: tip.optional(Field::vector3)?.map_or(shared.load_point, |tip| tip / 1e3),
-        tests: if test.is_given() {
-            TestCases::Given(test.tables()?.iter().map(|table| test_from(table, robot)).collect::<Result<_, _>>()?)
-        } else {
-            TestCases::Drawn(count(&tests, TESTS, 1)?)
-        },
-        configurations: size,
-        candidates: candidate_count,
-        seed: seed.map_or_else(|| Ok(file_seed.optional(|f| f.integer(0..=i64::MAX as u64))?.unwrap_or(1)), Ok)?,
-        starts: count(&starts, STARTS, 2)?,
-        random_sets: count(&random_sets, RANDOM_SETS, 1)?,
-        max_relative_deviation: hardly.optional(Field::positive)?.unwrap_or(HARDLY_PERCENT) / 100.0,
-        robot: shared.robot,
-    };
+    let at = document.root();
+    let contents: IdentificationFile = document.read()?;
+    let shared = Shared::new(&contents, &at)?;
+    let noise = required!(at, contents.noise_mm)?.si();
+    let plan_at = at.key("plan");
+    let plan = contents.plan.as_ref().ok_or_else(|| plan_at.missing("a table [plan]"))?;
+    let inputs = vec![source.as_config(), shared.robot_input.clone()];
+    let notes = shared.note.iter().cloned().collect();
+    let mut request = plan.request(shared, noise, &plan_at)?;
+    request.seed = seed.unwrap_or(request.seed);
     Ok(PlanRun {
         request,
         file: file.to_owned(),
-        configurations_line: configurations.line(),
-        table_line: shared.plan.line(),
-        inputs: vec![source.as_config(), shared.robot_input],
-        notes: shared.note.into_iter().collect(),
+        configurations_line: plan_at.key("configurations").line(),
+        table_line: plan_at.line(),
+        inputs,
+        notes,
     })
 }
 
-const POINTS: &str = "one or more places [x, y, z] in the flange frame";
+impl PlanTable {
+    fn request(&self, shared: Shared, noise: f64, at: &Place<'_>) -> Result<Request, InputError> {
+        let size = self.configurations.count();
+        let candidates = self.candidates.map_or(CANDIDATES.max(size), |count| count.count());
+        if candidates < size {
+            let allowed = format!("at least as many as configurations = {size}");
+            return Err(at.key("candidates").error("is less than there are to choose", allowed));
+        }
+        let robot = shared.robot;
+        let tests = self.test_cases(&robot, at)?;
+        let limits = limits_from(self.limits_deg, &robot, &at.key("limits_deg"))?;
+        let level_joint = shared.varying.map_or(1, |(joint, _)| joint);
+        let needed = shared.varying.map_or(0, |(_, law)| if matches!(law, Law::Spring(_)) { 3 } else { 1 });
+        let spread =
+            Spread { joint: level_joint, needed, limits: limits[level_joint], tolerance: shared.angle_tolerance };
+        let loads = match &self.load_directions {
+            Some(directions) => loads_from(directions, &at.key("load_directions"))?,
+            None => LoadDirections::Any,
+        };
+        Ok(Request {
+            load_point: shared.load_point,
+            points: self.reference_points_mm.0.iter().map(|point| point.vector()).collect(),
+            noise,
+            varying: shared.varying,
+            hold: shared.hold,
+            angle_tolerance: shared.angle_tolerance,
+            level_joint,
+            levels: spread.levels_from(self.levels_deg.as_ref(), &at.key("levels_deg"))?,
+            limits,
+            loads,
+            load: self.load_n.si(),
+            volume: self.volume.map_or(Volume::OPEN, |table| table.volume()),
+            max_deflection: self.max_deflection_mm.map_or(MOST_MM / 1e3, Quantity::si),
+            tip: self.tip_mm.map_or(shared.load_point, |tip| tip.vector()),
+            tests,
+            configurations: size,
+            candidates,
+            seed: self.seed.map_or(1, Whole::get),
+            starts: self.starts.map_or(STARTS, Whole::count),
+            random_sets: self.random_sets.map_or(RANDOM_SETS, Whole::count),
+            max_relative_deviation: self.hardly_seen_percent.map_or(HARDLY_PERCENT / 100.0, Quantity::si),
+            robot,
+        })
+    }
+
+    fn test_cases(&self, robot: &Robot, at: &Place<'_>) -> Result<TestCases, InputError> {
+        match (self.tests, &self.test) {
+            (Some(_), Some(_)) => {
+                let problem = "is the number of tests to draw, but there are tests [[plan.test]]";
+                Err(at.key("tests").error(problem, "one of the two"))
+            }
+            (count, None) => Ok(TestCases::Drawn(count.map_or(TESTS, Whole::count))),
+            (None, Some(tests)) => {
+                let rows = at.key("test");
+                let cases = tests.iter().zip(1..).map(|(test, number)| test.load_case(robot, &rows.element(number)));
+                Ok(TestCases::Given(cases.collect::<Result<_, _>>()?))
+            }
+        }
+    }
+}
 
 /// Limits of the measurements: those of the robot, to half a turn to either side, or narrower ones.
-fn limits_from(field: &Field<'_>, robot: &Robot) -> Result<[[f64; 2]; 6], InputError> {
+fn limits_from(
+    given: Option<Array<Interval<Deg>, 6>>,
+    robot: &Robot,
+    at: &Place<'_>,
+) -> Result<[[f64; 2]; 6], InputError> {
     let own: [[f64; 2]; 6] = std::array::from_fn(|j| [robot.joints()[j].min, robot.joints()[j].max]);
-    let Some(rows) = field.optional(|field| field.list(LIMITS))? else {
+    let Some(Array(rows)) = given else {
         return Ok(own.map(|[min, max]| {
             let (low, high) = (min.max(-PI), max.min(PI));
             if low < high { [low, high] } else { [min, max] }
         }));
     };
-    let Ok(rows) = <[Field<'_>; 6]>::try_from(rows) else {
-        return Err(field.error("has not one entry for each joint", LIMITS));
-    };
-    let mut limits = own;
-    for ((row, limits), [min, max]) in rows.iter().zip(&mut limits).zip(own) {
-        let ends = row.interval()?.map(f64::to_radians);
+    let limits = rows.map(Interval::si);
+    for ((ends, number), [min, max]) in limits.iter().zip(1..).zip(own) {
         if ends[0] < min - 1e-9 || ends[1] > max + 1e-9 {
             let allowed =
                 format!("two angles from {:.4} to {:.4}, the limits of the joint", min.to_degrees(), max.to_degrees());
-            return Err(row.error("is outside the limits of the joint", allowed));
+            return Err(at.element(number).error("is outside the limits of the joint", allowed));
         }
-        *limits = ends;
     }
     Ok(limits)
 }
-
-const LIMITS: &str = "six pairs [min, max] in degrees";
 
 /// How the angles of the joint with few of them are to lie.
 struct Spread {
@@ -192,83 +240,81 @@ struct Spread {
 }
 
 impl Spread {
-    fn levels_from(&self, field: &Field<'_>) -> Result<Vec<f64>, InputError> {
+    fn levels_from(&self, given: Option<&List<Deg>>, at: &Place<'_>) -> Result<Vec<f64>, InputError> {
         let [min, max] = self.limits;
-        if !field.is_given() {
+        let Some(given) = given else {
             // Whole degrees, a twentieth of the range away from its ends.
             let level = |k: usize| {
                 let part = 0.05 + 0.9 * k as f64 / (LEVELS - 1) as f64;
                 (min + (max - min) * part).to_degrees().round().to_radians().clamp(min, max)
             };
             return Ok(if self.needed > 0 { (0..LEVELS).map(level).collect() } else { vec![] });
-        }
+        };
         let rule = format!(
             "angles of joint {} in ascending order from {:.4} to {:.4}",
             self.joint + 1,
             min.to_degrees(),
             max.to_degrees()
         );
-        let levels: Vec<f64> = field.numbers(&rule, |_| true)?.into_iter().map(f64::to_radians).collect();
+        let levels = given.si();
         if levels.iter().any(|level| !(min - 1e-9..=max + 1e-9).contains(level)) {
-            return Err(field.error("is not within the limits of the joint", rule));
+            return Err(at.error("is not within the limits of the joint", rule));
         }
         if levels.windows(2).any(|pair| pair[1] - pair[0] <= self.tolerance.max(1e-9)) {
             let problem = "has angles that are not in ascending order, or no further apart than angle_tolerance_deg";
-            return Err(field.error(problem, rule));
+            return Err(at.error(problem, rule));
         }
         if levels.len() < self.needed {
             let problem = format!("has {} angles, from which a compensator cannot be told", levels.len());
-            return Err(field.error(problem, format!("three or more {rule}")));
+            return Err(at.error(problem, format!("three or more {rule}")));
         }
         Ok(levels)
     }
 }
 
-fn loads_from(field: &Field<'_>) -> Result<LoadDirections, InputError> {
-    if !field.is_array() {
-        let words = [("any", 0), ("horizontal", 1), ("vertical", 2)];
-        return Ok([LoadDirections::Any, LoadDirections::Horizontal, LoadDirections::Vertical]
-            [field.one_of(&words)?]
-        .clone());
-    }
-    let rule = "directions [x, y, z] in the base frame, not zero; or \"any\", \"horizontal\", \"vertical\"";
-    let direction = |entry: &Field<'_>| {
-        let vector = entry.vector3()?;
-        if vector.norm() < 1e-9 {
-            Err(entry.error("is no direction: its length is zero", rule))
-        } else {
-            Ok(vector.normalize())
+fn loads_from(directions: &Directions, at: &Place<'_>) -> Result<LoadDirections, InputError> {
+    match directions {
+        Directions::Named(Word(NamedDirections::Any)) => Ok(LoadDirections::Any),
+        Directions::Named(Word(NamedDirections::Horizontal)) => Ok(LoadDirections::Horizontal),
+        Directions::Named(Word(NamedDirections::Vertical)) => Ok(LoadDirections::Vertical),
+        Directions::Listed(list) => {
+            let vectors: Vec<Vector3<f64>> = list.0.iter().map(|direction| direction.vector()).collect();
+            match vectors.iter().position(|vector| vector.norm() < 1e-9) {
+                Some(index) => {
+                    Err(at.element(index + 1).error("is no direction: its length is zero", Directions::expected()))
+                }
+                None => Ok(LoadDirections::Listed(vectors.iter().map(|vector| vector.normalize()).collect())),
+            }
         }
-    };
-    Ok(LoadDirections::Listed(field.list(rule)?.iter().map(direction).collect::<Result<_, _>>()?))
+    }
 }
 
-fn volume_from(table: &Table<'_>) -> Result<Volume, InputError> {
-    let [x, y, z, radius] = table.fields(["x_mm", "y_mm", "z_mm", "min_radius_mm"])?;
-    let mut volume = Volume::OPEN;
-    for (ends, field) in volume.ranges.iter_mut().zip([x, y, z]) {
-        if let Some(given) = field.optional(Field::interval)? {
-            *ends = given.map(|end| end / 1e3);
+impl VolumeTable {
+    fn volume(&self) -> Volume {
+        let mut volume = Volume::OPEN;
+        for (ends, given) in volume.ranges.iter_mut().zip([self.x_mm, self.y_mm, self.z_mm]) {
+            *ends = given.map_or(*ends, Interval::si);
         }
+        Volume { min_radius: self.min_radius_mm.map_or(0.0, Quantity::si), ..volume }
     }
-    let rule = "a finite number not below 0";
-    let radius = radius.optional(|field| field.number_where(rule, |radius| radius >= 0.0))?;
-    Ok(Volume { min_radius: radius.unwrap_or_default() / 1e3, ..volume })
 }
 
-fn test_from(table: &Table<'_>, robot: &Robot) -> Result<LoadCase, InputError> {
-    let [joints, force, moment] = table.fields(["joints_deg", "force_n", "moment_nm"])?;
-    let theta: [f64; 6] = joints.numbers_where("six joint angles in degrees", |_| true)?.map(f64::to_radians);
-    for (index, joint) in robot.joints().iter().enumerate() {
-        if !(joint.min - 1e-9..=joint.max + 1e-9).contains(&theta[index]) {
-            let (min, max) = (joint.min.to_degrees(), joint.max.to_degrees());
-            let problem = format!("puts joint {} outside its limits", index + 1);
-            return Err(joints.error(problem, format!("{min:.4} to {max:.4} for joint {}", index + 1)));
+impl TestTable {
+    fn load_case(&self, robot: &Robot, at: &Place<'_>) -> Result<LoadCase, InputError> {
+        let theta = self.joints_deg.si();
+        for (index, joint) in robot.joints().iter().enumerate() {
+            if !(joint.min - 1e-9..=joint.max + 1e-9).contains(&theta[index]) {
+                let (min, max) = (joint.min.to_degrees(), joint.max.to_degrees());
+                let problem = format!("puts joint {} outside its limits", index + 1);
+                let allowed = format!("{min:.4} to {max:.4} for joint {}", index + 1);
+                return Err(at.key("joints_deg").error(problem, allowed));
+            }
         }
+        let force = self.force_n.vector();
+        let moment = self.moment_nm.map_or_else(Vector3::zeros, |moment| moment.vector());
+        if force.norm() == 0.0 && moment.norm() == 0.0 {
+            return Err(at.key("force_n").error("is a load of zero", "a force, or a moment_nm, that is not zero"));
+        }
+        Ok(LoadCase { theta, force, moment })
     }
-    let (force_given, moment) = (force.vector3()?, moment.optional(Field::vector3)?.unwrap_or_else(Vector3::zeros));
-    if force_given.norm() == 0.0 && moment.norm() == 0.0 {
-        return Err(force.error("is a load of zero", "a force, or a moment_nm, that is not zero"));
-    }
-    Ok(LoadCase { theta, force: force_given, moment })
 }

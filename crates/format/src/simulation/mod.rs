@@ -1,20 +1,23 @@
 //! Simulation files: the config of `stead simulate` and `stead stability`.
 
 mod arm;
-mod look;
+mod evaluation;
+mod file;
 mod stability;
 #[cfg(test)]
 mod tests;
 
 pub use arm::{MOST_DAMPING_SCALE, Overrides};
+pub use file::*;
 
-use super::reader::{Field, Table};
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile};
+use crate::place::Place;
 use crate::tool::Cutting;
+use crate::units::{Mm, Positive};
 pub(crate) use arm::DampingScale;
-use arm::{ArmFields, FEED, setup_from};
-use look::{LookFields, check_duration, check_step, look_from};
+use arm::setup_from;
+use evaluation::{check_duration, check_step, evaluation_from};
 use stability::analysis_from;
 pub(crate) use stability::max_depth;
 use std::path::Path;
@@ -44,12 +47,10 @@ pub struct SimulationRun {
 }
 
 /// Slices of the cutter and steps a turn, where the file does not say.
-const SLICES: u64 = 32;
-const STEPS_PER_TURN: u64 = 360;
+const SLICES: usize = 32;
+const STEPS_PER_TURN: usize = 360;
 
-/// Reads a simulation file and the robot file that it names. Top-level keys: `robot` (its path relative to the folder of the
-/// file), `[spindle]`, with mass, `[pass]`, `[work]`, `[tool]` and `[cut]`; optionally `variant`, `damping_scale`, `[simulation]`,
-/// `[stability]` and `[published]`. The shipped files explain each field.
+/// Reads a simulation file, the keys of [`SimulationFile`], and the robot file that it names.
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of the
@@ -70,63 +71,41 @@ pub fn read_stability(file: &Path, overrides: &Overrides) -> Result<SimulationRu
 fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<SimulationRun, InputError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
-    let [robot, variant, damping_scale, spindle, pass, work, tool, cut, simulation, stability, published] =
-        Table::root(&document).fields([
-            "robot",
-            "variant",
-            "damping_scale",
-            "spindle",
-            "pass",
-            "work",
-            "tool",
-            "cut",
-            "simulation",
-            "stability",
-            "published",
-        ])?;
+    let at = document.root();
+    let file: SimulationFile = document.read()?;
     let mut inputs = vec![source.as_config()];
-    let feed = pass.table()?.field(FEED);
-    let setup = setup_from(&ArmFields { robot, variant, damping_scale, spindle, pass }, overrides, &mut inputs)?;
-    let [length, gap, slot] = work.table()?.fields(["length_mm", "gap_mm", "slot_width_mm"])?;
-    let length = length.positive()? / 1e3;
-    let gap = gap.number_where("a finite number not below 0", |value| value >= 0.0)? / 1e3;
-    let keys = simulation.optional(Field::table)?;
-    let keys = keys.map(|table| table.fields(["slices", "steps_per_turn", "window_s", "wall_height_mm", "cutoff_mm"]));
-    let keys = keys.transpose()?;
-    let whole = |index: usize, max, default: u64| {
-        let field = keys.as_ref().map(|keys| &keys[index]);
-        let found = field.map(|field| field.optional(|field| field.integer(1..=max))).transpose()?.flatten();
-        Ok::<_, InputError>(found.unwrap_or(default) as usize)
-    };
-    let (slices, steps) = (whole(0, 1024, SLICES)?, whole(1, 100_000, STEPS_PER_TURN)?);
-    let (tool, cut) = (Some(tool.read()?), Some(cut.read()?));
-    let root = document.root();
-    let cutting = Cutting::of(&tool, &cut, &root)?;
-    let cutting = Cutting::required(cutting.as_ref(), &root)?;
+    let setup = setup_from(&file, &at, overrides, &mut inputs)?;
+    let settings = file.simulation.unwrap_or_default();
+    let slices = settings.slices.map_or(SLICES, |slices| slices.count());
+    let steps = settings.steps_per_turn.map_or(STEPS_PER_TURN, |steps| steps.count());
+    let cutting = Cutting::new(&file.tool, &file.cut, &at);
     if steps_are_made {
         cutting.without_edge_forces()?;
     }
-    let (cutter, mut cut) = cutting.cutter_and_cut(length, slices, steps)?;
-    slot.optional(|field| fits(field, &cutter))?;
+    let (cutter, mut cut) = cutting.cutter_and_cut(file.work.length_mm.si(), slices, steps)?;
+    if let Some(width) = file.work.slot_width_mm {
+        check_slot(width, &cutter, &at.key("work").key("slot_width_mm"))?;
+    }
     if let Some(speed) = overrides.spindle_speed {
         cut.spindle_speed = speed;
     }
-    let analysis = analysis_from(&stability, &setup, &cutter, &cut)?;
+    let analysis = analysis_from(&file.stability.unwrap_or_default(), &at.key("stability"), &setup, &cutter, &cut)?;
+    let settings_at = at.key("simulation");
     if steps_are_made {
-        check_step(&setup, &cut, keys.as_ref().map_or(&simulation, |keys| &keys[1]))?;
-        check_duration(&setup, &cut, &feed)?;
+        check_step(&setup, &cut, &settings_at.key("steps_per_turn"))?;
+        check_duration(&setup, &cut, &at.key("pass").key("feed_mm_per_min"))?;
     }
-    let evaluation = look_from(&LookFields { keys: keys.as_ref().map(|keys| &keys[2..]), published }, &setup, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap, evaluation, analysis, inputs })
+    let published = file.published.map(|table| table.published(setup.variant));
+    let evaluation = evaluation_from(&settings, &settings_at, published, &setup, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap: file.work.gap_mm.si(), evaluation, analysis, inputs })
 }
 
-/// The width of the slot that the pass is part of: the cutter has to fit into it.
-fn fits(field: &Field<'_>, cutter: &Cutter) -> Result<(), InputError> {
+/// Refuses a slot into which the cutter does not fit.
+fn check_slot(width: Mm<Positive>, cutter: &Cutter, at: &Place<'_>) -> Result<(), InputError> {
     let diameter = 2e3 * cutter.largest_radius();
-    let width = field.positive()?;
-    if width >= diameter {
+    if width.written() >= diameter {
         return Ok(());
     }
     let problem = format!("is narrower than the cutter, {diameter} mm");
-    Err(field.error(problem, format!("a slot into which the cutter fits, {diameter} mm or wider")))
+    Err(at.error(problem, format!("a slot into which the cutter fits, {diameter} mm or wider")))
 }

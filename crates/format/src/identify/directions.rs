@@ -1,0 +1,81 @@
+//! Directions of a load: one of some words, or a list.
+
+use crate::quantity::{Expects, Reading, expecting};
+use crate::scalars::{Word, words};
+use crate::shapes::{List, Vector};
+use crate::units::Number;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+/// Directions that have a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NamedDirections {
+    /// Any.
+    Any,
+    /// Any horizontal one.
+    Horizontal,
+    /// Down, as a weight hangs.
+    Vertical,
+}
+
+words!(NamedDirections:
+    "any" => NamedDirections::Any,
+    "horizontal" => NamedDirections::Horizontal,
+    "vertical" => NamedDirections::Vertical,
+);
+
+/// Directions of a load: by a word, or one of a list in the base frame.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Directions {
+    /// By a word.
+    Named(Word<NamedDirections>),
+    /// One of these.
+    Listed(List<Vector<Number>>),
+}
+
+impl Expects for Directions {
+    fn expected() -> String {
+        format!("{}, or directions [x, y, z] in the base frame, not zero", Word::<NamedDirections>::expected())
+    }
+}
+
+impl<'de> Deserialize<'de> for Directions {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Reading::<Self>(PhantomData))
+    }
+}
+
+impl<'de> Visitor<'de> for Reading<Directions> {
+    type Value = Directions;
+
+    expecting!(Directions);
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<Self::Value, E> {
+        Reading::<Word<NamedDirections>>(PhantomData).visit_str(word).map(Directions::Named)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Self::Value, A::Error> {
+        let list = Reading::<List<Vector<Number>>>(PhantomData).visit_seq(values)?;
+        if list.0.is_empty() { Err(A::Error::custom("is empty")) } else { Ok(Directions::Listed(list)) }
+    }
+}
+
+impl JsonSchema for Directions {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Directions".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let word = generator.subschema_for::<Word<NamedDirections>>();
+        let list = generator.subschema_for::<List<Vector<Number>>>();
+        json_schema!({ "anyOf": [word, list] })
+    }
+}
