@@ -58,7 +58,7 @@ impl AssessmentRun {
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
         let run = &self.run;
         let published = run.published.clone().map(|published| {
-            let agreement = published.agreement(&assessment);
+            let agreement = published.figures.agreement(&assessment);
             (published, agreement)
         });
         let context = AssessmentContext {
@@ -111,7 +111,7 @@ impl Report for RobotAssessment {
     }
 
     fn warnings(&self) -> &[Warning] {
-        &[]
+        &self.assessment.warnings
     }
 }
 

@@ -28,6 +28,8 @@
 //! | [`StabilityRun`] | [`analyse`](StabilityRun::analyse) | [`StabilityAnalysis`] | `stead stability` |
 //! | [`Profile`] | [`circularity`](Profile::circularity) | [`Circularity`] | `stead circularity` |
 //!
+//! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
+//!
 //! A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
 //! number of threads does not change a result.
 //!
@@ -42,6 +44,7 @@ mod assessment;
 mod circularity;
 mod compensation;
 mod error;
+pub mod guide;
 mod identification;
 mod result;
 mod run;

@@ -150,7 +150,7 @@ impl Report for SimulatedPass {
     }
 
     fn warnings(&self) -> &[Warning] {
-        &[]
+        &self.simulation.warnings
     }
 }
 

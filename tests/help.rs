@@ -36,7 +36,7 @@ fn the_overview_groups_every_command_by_its_question() {
     assert!(listed.contains("unrecognized subcommand"), "{listed}");
     let names = commands(&bench);
     let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
-    for name in expected.into_iter().chain(["circularity", "completions", "man"]) {
+    for name in expected.into_iter().chain(["circularity", "init", "schema", "completions", "man"]) {
         assert_eq!(names.iter().filter(|command| command.last().is_some_and(|last| last == name)).count(), 1, "{name}");
     }
 }
@@ -95,4 +95,68 @@ fn a_manual_that_cannot_be_written_is_refused_at_its_folder() {
     assert_eq!(ended.code, Some(2));
     ended.assert_says(&["error: pages: results cannot be written here"]);
     assert_eq!(bench.read("pages"), "a file");
+}
+
+/// The paths that ARCHITECTURE.md names: those in its tables below a heading that is a folder, and all with a slash in them.
+#[test]
+fn the_paths_that_the_architecture_names_exist() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap();
+    let (mut base, mut checked, mut missing) = (root.to_owned(), 0, Vec::new());
+    for line in text.lines() {
+        let quoted = |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+        if line.starts_with("## ") {
+            base = quoted(line).first().map_or(root.to_owned(), |folder| root.join(folder));
+            if !base.exists() {
+                missing.push(line.to_owned());
+            }
+            continue;
+        }
+        let first_cell = line.strip_prefix('|').and_then(|row| row.split('|').next()).map(quoted).unwrap_or_default();
+        for name in quoted(line) {
+            let is_path = name.ends_with('/') || name.ends_with(".rs") || name.ends_with(".toml");
+            if is_path && !name.contains(' ') {
+                checked += 1;
+                let from = if first_cell.contains(&name) { base.as_path() } else { root };
+                if !from.join(&name).exists() {
+                    missing.push(format!("{name}, in: {line}"));
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+    assert!(checked > 40, "{checked}");
+}
+
+/// Every key of every input file, as the kept schemas have them, has its place in the guide.
+#[test]
+fn the_guide_names_every_key_of_every_input_file() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = |folder: &str, ending: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
+        entries
+            .filter(|path| path.to_string_lossy().ends_with(ending))
+            .map(|path| std::fs::read_to_string(path).unwrap())
+            .collect()
+    };
+    let guide = files("src/guide", ".md").concat();
+    let quoted: std::collections::BTreeSet<&str> = guide.split(['`', '.', ' ', '\n', '[', ']']).collect();
+    let mut missing = std::collections::BTreeSet::new();
+    let mut count = 0;
+    for text in files("configs/schema", ".json") {
+        let mut open = vec![serde_json::from_str::<serde_json::Value>(&text).unwrap()];
+        while let Some(value) = open.pop() {
+            if let Some(keys) = value.get("properties").and_then(serde_json::Value::as_object) {
+                count += keys.len();
+                missing.extend(keys.keys().filter(|key| !quoted.contains(key.as_str())).cloned());
+            }
+            match value {
+                serde_json::Value::Object(entries) => open.extend(entries.into_iter().map(|(_, value)| value)),
+                serde_json::Value::Array(elements) => open.extend(elements),
+                _ => {}
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:?}");
+    assert!(count > 100, "{count}");
 }

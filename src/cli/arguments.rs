@@ -1,13 +1,13 @@
-//! The arguments of the command line: subcommands, options, and which values are allowed.
+//! The arguments of the command line: subcommands and options.
 
 use super::help;
+use super::values::{damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
-use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE, Overrides};
+use stead_format::Overrides;
 use stead_model::robot::angles::yaw_from_q4;
 use stead_placement::problem::Placement;
-use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
@@ -349,69 +349,4 @@ impl PlaceArguments {
         };
         Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
     }
-}
-
-fn variant(text: &str) -> Result<Variant, String> {
-    let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
-    found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
-}
-
-fn damping_scale(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number from 0 to {MOST_DAMPING_SCALE}");
-    finite(text).ok().filter(|scale| (0.0..=MOST_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
-}
-
-fn rpm(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number above 0 and not above {FASTEST_RPM}");
-    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= FASTEST_RPM).ok_or_else(allowed)
-}
-
-fn finite(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("allowed: a finite decimal number".to_owned()),
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
-}
-
-/// Per cent in, a share out.
-fn gap(text: &str) -> Result<f64, String> {
-    finite(text).ok().and_then(CertificateSettings::gap).ok_or_else(|| format!("allowed: {GAPS_ALLOWED}"))
-}
-
-/// Angles count from the x axis counter-clockwise; from the first to the second the sector may pass through zero.
-fn sector(text: &str) -> Result<Sector, String> {
-    let allowed = || "allowed: two angles from -360 to 360, as in 350:10".to_owned();
-    let angle = |text: &str| finite(text.trim()).ok().filter(|angle| angle.abs() <= 360.0).ok_or_else(allowed);
-    let (from, to) = text.split_once(':').ok_or_else(allowed)?;
-    let (from, to) = (angle(from)?, angle(to)?);
-    let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
-    Ok(Sector { start: from.to_radians(), width: (to - from + 360.0 * turns).to_radians() })
-}
-
-fn quaternion(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|q| (-1.0..=1.0).contains(q)).ok_or_else(|| "allowed: a number from -1 to 1".to_owned())
-}
-
-/// Seeds are what a run file can hold too.
-fn seed(text: &str) -> Result<u64, String> {
-    const MOST: u64 = i64::MAX as u64;
-    text.parse().ok().filter(|n| *n <= MOST).ok_or_else(|| format!("allowed: a whole number from 0 to {MOST}"))
-}
-
-fn point(text: &str) -> Result<usize, String> {
-    text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
-}
-
-/// More threads than this help nobody.
-const MOST_THREADS: usize = 1024;
-
-fn threads(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|n| (1..=MOST_THREADS).contains(n))
-        .ok_or_else(|| format!("allowed: a whole number from 1 to {MOST_THREADS}"))
 }

@@ -221,8 +221,8 @@ Files written to the folder:
   simulate  simulate.toml, robot.toml (for stead stability too)
 
 Exit codes:
-  0  the files were written
-  2  one of the files is there already: nothing is written and nothing is changed";
+  0  done
+  2  wrong usage, or one of the files exists already: nothing is written and nothing is changed";
 
 pub(super) const SCHEMA: &str = "\
 Examples:
@@ -234,8 +234,8 @@ An editor that knows TOML completes and checks the keys of a file whose first li
 Files written: none; the schema goes to standard output.
 
 Exit codes:
-  0  the schema was printed
-  2  there is no schema of this name";
+  0  done
+  2  wrong usage, or there is no schema of this name";
 
 pub(super) const COMPLETIONS: &str = "\
 Examples:

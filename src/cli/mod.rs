@@ -20,6 +20,7 @@ mod schema;
 mod score;
 mod simulate;
 mod stability;
+mod values;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;

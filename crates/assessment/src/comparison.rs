@@ -4,8 +4,10 @@ use super::benchmark::{Benchmark, MAX_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
+use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{DataSheet, Robot};
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// What is to be assessed, and how.
@@ -28,7 +30,7 @@ pub struct Comparison {
 }
 
 /// Which elbow goes by which name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum ElbowNames {
     /// Up is above the line from the shoulder to the wrist centre.
     Geometric,
@@ -37,7 +39,7 @@ pub enum ElbowNames {
 }
 
 /// Under which load a circle is milled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Load {
     /// The wrench of the benchmark.
     Test,
@@ -45,8 +47,18 @@ pub enum Load {
     Rated,
 }
 
+impl Load {
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Load::Test => "test",
+            Load::Rated => "rated",
+        }
+    }
+}
+
 /// A value of a map and where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MapPoint {
     /// Centre of the circle, in the coordinates of the plane. m
     pub centre: [f64; 2],
@@ -55,7 +67,7 @@ pub struct MapPoint {
 }
 
 /// The zones of one size.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Zones {
     /// Side of the square. m
     pub side: f64,
@@ -66,7 +78,7 @@ pub struct Zones {
 }
 
 /// One robot with one elbow under one load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Configuration {
     /// The elbow, by the names of the comparison.
     pub elbow: Elbow,
@@ -89,7 +101,7 @@ pub struct Configuration {
 }
 
 /// One robot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RobotResult {
     /// Its name.
     pub name: String,
@@ -107,7 +119,7 @@ pub struct RobotResult {
 }
 
 /// What an assessment finds.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Assessment {
     /// The robots in the order of the comparison.
     pub robots: Vec<RobotResult>,
@@ -117,10 +129,12 @@ pub struct Assessment {
     pub capable: Vec<Capable>,
     /// Names of the robots, the most accurate at its best place under the test load first.
     pub order: Vec<String>,
+    /// Where a robot can mill no circle (`fits-nowhere`), or some not under one load alone (`too-soft`).
+    pub warnings: Vec<Warning>,
 }
 
 /// No robot can mill the circle anywhere on the grid.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, Serialize)]
 #[error("the circle of radius {} mm fits nowhere on the map: {}", radius * 1e3, words(limits))]
 pub struct FitsNowhere {
     /// Radius of the circle. m
@@ -141,11 +155,11 @@ pub enum AssessError {
 }
 
 /// What keeps a robot from milling circles.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Limits {
     /// Name of the robot.
     pub robot: String,
-    /// How often each obstacle stands in the way, the most frequent first.
+    /// Number of circles that each obstacle prevents, the most frequent first.
     pub obstacles: Vec<(Obstacle, usize)>,
     /// Number of circles tried.
     pub tried: usize,
@@ -199,6 +213,7 @@ pub fn assess(comparison: &Comparison, monitor: &Monitor) -> Result<Assessment, 
         accuracies: comparison.selection.accuracies(&competitors, reference),
         capable: comparison.selection.capable(&competitors, reference),
         order: order(&competitors),
+        warnings: robots.iter().flat_map(RobotResult::warnings).collect(),
         robots,
     })
 }
@@ -218,7 +233,24 @@ impl RobotResult {
         Limits { robot: self.name.clone(), obstacles: counted, tried }
     }
 
-    /// The robot as the selection sees it.
+    fn warnings(&self) -> Vec<Warning> {
+        let name = &self.name;
+        let blocked = self.maps.iter().filter(|(_, map)| map.count() == 0).map(|(elbow, map)| {
+            let why = obstacle_words(&map.obstacles(), map.nodes.len());
+            Warning::new("fits-nowhere", format!("{name}, elbow {}: the circle fits nowhere ({why})", elbow.word()))
+        });
+        let soft = self.configurations.iter().filter(|configuration| configuration.too_soft > 0).map(|configuration| {
+            let (elbow, load) = (configuration.elbow.word(), configuration.load.word());
+            let message = format!(
+                "{name}, elbow {elbow}, {load} load: {} circles left out, deflected by more than {MAX_DEFLECTION} of the radius",
+                configuration.too_soft
+            );
+            Warning::new("too-soft", message)
+        });
+        blocked.chain(soft).collect()
+    }
+
+    /// What the selection needs of the robot.
     pub fn competitor(&self) -> Competitor {
         let test = self.configurations.iter().filter(|configuration| configuration.load == Load::Test);
         let min = test.filter_map(|configuration| configuration.min.map(|spot| spot.circularity));

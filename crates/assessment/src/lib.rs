@@ -1,4 +1,4 @@
-//! How good a robot is for machining, and how good a machined or computed profile is.
+//! Machining accuracy of robots (circularity of a milled circle over the cell), and roundness of measured profiles.
 //!
 //! The measure is the circularity of a milled circle (ISO 12181), after Klimchik, Ambiehl, Garnier, Furet and Pashkevich,
 //! "Efficiency evaluation of robots in machining applications using industrial performance measure", 2017:
@@ -10,7 +10,7 @@
 //! - [`zone`]: the best and the middle square zones of a map.
 //! - [`ranking`]: which robot reaches which accuracy at which force.
 //! - [`comparison`]: all of it for several robots.
-//! - [`published`]: published tables to set beside ours.
+//! - [`published`]: published tables, and their agreement with computed ones.
 
 pub mod benchmark;
 pub mod circle;

@@ -2,11 +2,12 @@
 
 use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
+use serde::Serialize;
 use stead_model::robot::{PostureClass, Robot};
 use stead_numerics::monitor::Monitor;
 
 /// Centres of circles: the nodes of a square grid, in the coordinates of the benchmark's plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Grid {
     /// First node. m
     pub origin: [f64; 2],
@@ -39,7 +40,7 @@ impl Grid {
 }
 
 /// Which way the elbow stands, seen in the plane of the arm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Elbow {
     /// Above the line from the shoulder to the wrist centre.
     Up,
@@ -50,6 +51,14 @@ pub enum Elbow {
 impl Elbow {
     /// Both.
     pub const BOTH: [Elbow; 2] = [Elbow::Up, Elbow::Down];
+
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Elbow::Up => "up",
+            Elbow::Down => "down",
+        }
+    }
 
     /// The other one.
     pub fn other(self) -> Self {
@@ -70,7 +79,8 @@ impl Elbow {
 }
 
 /// The circularity of every circle of a grid, for one arm, one elbow and `N` loads.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(bound(serialize = "[f64; N]: Serialize"))]
 pub struct Map<const N: usize> {
     /// The centres.
     pub grid: Grid,
@@ -116,7 +126,7 @@ impl<const N: usize> Map<N> {
         self.nodes.iter().filter(|node| node.is_ok()).count()
     }
 
-    /// How often each obstacle stands in the way, the most frequent first.
+    /// Number of circles that each obstacle prevents, the most frequent first.
     pub fn obstacles(&self) -> Vec<(Obstacle, usize)> {
         let mut found: Vec<Obstacle> = self.nodes.iter().filter_map(|node| node.as_ref().err().copied()).collect();
         found.sort_unstable();

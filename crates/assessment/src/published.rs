@@ -3,12 +3,11 @@
 use super::comparison::{Assessment, Configuration, Load};
 use super::map::Elbow;
 use super::ranking::{Capable, Competitor, order};
+use serde::Serialize;
 
 /// Published tables of an assessment.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PublishedTables {
-    /// Where they were published.
-    pub source: String,
     /// Readings of single configurations.
     pub readings: Vec<Reading>,
     /// Robot, force (N) and circularity (m, `None` for a dash).
@@ -18,7 +17,7 @@ pub struct PublishedTables {
 }
 
 /// What a reading is of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Quantity {
     /// Smallest circularity of the map.
     Minimum,
@@ -33,7 +32,7 @@ pub enum Quantity {
 }
 
 /// One number of a table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reading {
     /// Name of the robot.
     pub robot: String,
@@ -48,16 +47,16 @@ pub struct Reading {
 }
 
 /// How far our results and the published ones agree.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Root mean square of ours / printed - 1 over the smallest and largest circularities and the optimal zones under the test
+    /// Root mean square of computed / published - 1 over the smallest and largest circularities and the optimal zones under the test
     /// load.
     pub rms: f64,
     /// Number of readings behind it.
     pub readings: usize,
     /// Readings of that kind where only one of the two has a value.
     pub one_sided: usize,
-    /// The printed order of the robots, the most accurate at its best place first.
+    /// The published order of the robots, the most accurate at its best place first.
     pub order: Vec<String>,
     /// Whether the most accurate of the robots in both is the same.
     pub same_best: bool,
@@ -65,9 +64,9 @@ pub struct Agreement {
     pub same_worst: bool,
     /// Whether their whole order is the same.
     pub same_order: bool,
-    /// Cells of the printed table of accuracies, and how many of ours round to the same.
+    /// Cells of the published table of accuracies, and how many of the computed ones round to the same.
     pub accuracies: (usize, usize),
-    /// Cells of the printed table of capable robots, and in how many of them ours names the same robots, those apart
+    /// Cells of the published table of capable robots, and in how many of them the computed one names the same robots, those apart
     /// that are not printed.
     pub capable: (usize, usize),
 }
@@ -80,7 +79,7 @@ const SAME_ACCURACY: f64 = 1e-9;
 const SAME_FORCE: f64 = 1e-6;
 
 impl Quantity {
-    /// The same quantity of a configuration of ours. m
+    /// The same quantity of a computed configuration. m
     pub fn of(self, configuration: &Configuration) -> Option<f64> {
         let zones = |side: f64| configuration.zones.iter().find(move |zones| (zones.side - side).abs() < SAME_SIDE);
         match self {
@@ -131,7 +130,7 @@ impl PublishedTables {
         self.capable.iter().filter(is_it).map(|(_, _, robot)| robot.as_str()).collect()
     }
 
-    /// Sets the readings beside ours.
+    /// Compares the readings with computed ones.
     pub fn agreement(&self, ours: &Assessment) -> Agreement {
         let (mut squares, mut readings, mut one_sided) = (0.0, 0, 0);
         for reading in self.readings.iter().filter(|r| r.load == Load::Test && r.quantity.is_compared()) {

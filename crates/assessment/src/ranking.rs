@@ -5,6 +5,8 @@
 //! (Table 8); compensating errors leaves a share of it (Table 9: a fifth); and no robot takes a force above the weight of its
 //! payload.
 
+use serde::Serialize;
+
 /// What is asked for, and what is assumed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
@@ -30,7 +32,7 @@ pub struct Competitor {
 }
 
 /// The robots that reach an accuracy under a force.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Capable {
     /// The wanted accuracy. m
     pub accuracy: f64,
@@ -41,7 +43,7 @@ pub struct Capable {
 }
 
 /// A robot at one force.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Accuracy {
     /// Name of the robot.
     pub robot: String,

@@ -2,12 +2,13 @@
 
 use super::circle::plane::FittedPlane;
 use super::circle::{CircleError, Circles, Fit, least_squares};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 
 /// Measured points in one unit of length.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum Measured {
     /// x and y.
     Planar(Vec<[f64; 2]>),
@@ -25,7 +26,7 @@ pub struct Sector {
 }
 
 /// A measured point as it was assessed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Assessed {
     /// Its place in the plane: x and y as measured, or in the frame of the fitted plane.
     pub place: [f64; 2],
@@ -38,7 +39,7 @@ pub struct Assessed {
 }
 
 /// What came out. Lengths are in the unit of the points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Roundness {
     /// The plane fitted to the points not left out, where they have a z.
     pub plane: Option<FittedPlane>,

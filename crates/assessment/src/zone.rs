@@ -5,10 +5,11 @@
 //! linear in the number of nodes, whatever the size.
 
 use super::map::Grid;
+use serde::Serialize;
 use std::collections::VecDeque;
 
 /// A square of nodes, all of them with a value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Zone {
     /// Centre of the square, in the coordinates of the grid. m
     pub centre: [f64; 2],

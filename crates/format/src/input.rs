@@ -17,15 +17,6 @@ pub struct InputFile {
     pub sha256: String,
 }
 
-/// Published mean deflections of the four cases, to print beside ours (Caro 2013, Table III).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Where they were published.
-    pub source: String,
-    /// Mean deflection of cases 1 to 4, as printed there. mm
-    pub case_mm: [f64; 4],
-}
-
 /// What is wrong in a file, where, what was found and what is allowed.
 ///
 /// Printed as `FILE:LINE: FIELD: PROBLEM, found VALUE; allowed: ALLOWED`, leaving out what is not known.

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
 use stead_assessment::published::{PublishedTables, Quantity, Reading};
+use stead_model::published::Published;
 
 /// Published tables. Rows by force, accuracy or side may be shorter than their head: the rest are dashes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,14 +64,14 @@ pub struct PublishedCircularities {
 /// # Errors
 /// [`InputError`] with line and field: a file that is no TOML, a missing or unknown key, a value of the wrong kind or out of
 /// range, a row longer than its head.
-pub(super) fn published_tables_from(source: &TomlFile) -> Result<PublishedTables, InputError> {
+pub(super) fn published_tables_from(source: &TomlFile) -> Result<Published<PublishedTables>, InputError> {
     let document = source.parse()?;
     let file: PublishedTablesFile = document.read()?;
-    let mut published = PublishedTables { source: file.source.clone(), ..PublishedTables::default() };
+    let mut published = PublishedTables::default();
     for (row, number) in file.robots.iter().zip(1..) {
         row.add_to(&mut published, &file, &document.root().key("robots").element(number))?;
     }
-    Ok(published)
+    Ok(Published { source: file.source, figures: published })
 }
 
 impl PublishedRobot {

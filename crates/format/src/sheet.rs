@@ -5,10 +5,10 @@ use crate::input::csv_table::{CsvTable, Row};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
-use stead_calibration::identification::rotation::{rotation_from_vector, vector_from_rotation};
 use stead_calibration::identification::{Configuration, Reading, Sheet};
 use stead_model::robot::Robot;
 use stead_model::robot::angles::ANGLE_ROUNDING;
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 const THETA: [&str; 6] = ["theta1_deg", "theta2_deg", "theta3_deg", "theta4_deg", "theta5_deg", "theta6_deg"];
 const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
@@ -169,7 +169,7 @@ fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize)
         None => None,
         Some([before, after]) => {
             let rotation = |columns| vector(row, columns).map(|v| rotation_from_vector(&v.map(f64::to_radians)));
-            Some(vector_from_rotation(&(rotation(after)? * rotation(before)?.transpose())))
+            Some(rotation_vector(&(rotation(after)? * rotation(before)?.transpose())))
         }
     };
     Ok(Reading { line: row.line(), configuration, point, unloaded, loaded, turn })

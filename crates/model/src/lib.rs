@@ -1,6 +1,7 @@
-//! What things are: the arm, the tool path, how the arm yields, and what pushes along the path.
+//! Domain model: robot, tool path, joint stiffness and deflection, cutting forces, published reference figures.
 
 pub mod cutting;
+pub mod published;
 pub mod robot;
 pub mod stiffness;
 pub mod task;

@@ -68,10 +68,13 @@ impl StopHandle {
     }
 }
 
+/// A function that takes reports, from any thread.
+type Observer = dyn Fn(&Progress) + Send + Sync;
+
 /// What a job reports to and asks whether to stop. Clones share the observer and the flag.
 #[derive(Clone, Default)]
 pub struct Monitor {
-    observer: Option<Arc<dyn Fn(&Progress) + Send + Sync>>,
+    observer: Option<Arc<Observer>>,
     stop: StopHandle,
     deadline: Option<Instant>,
 }

@@ -5,7 +5,7 @@
 
 mod measured;
 
-pub use measured::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+pub use measured::{Measured, STEP_ROUNDING, joint_steps_hold, on_joint_steps, on_joints, on_state};
 
 use super::problem::Problem;
 use serde::Serialize;
@@ -107,6 +107,8 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::batch::{BatchEvaluator, Flips};
+    use crate::lookup::LookupTable;
     use crate::testing::five_segments;
 
     #[test]
@@ -124,5 +126,15 @@ mod tests {
         let words =
             ["turns of the joints between path points", "limits of joint 4", "which yaw goes with which x and y"];
         assert_eq!(describe(&some), words);
+    }
+
+    #[test]
+    fn shortcuts_declare_what_they_relax() {
+        let mut problem = five_segments();
+        problem.constraints.max_deflection = Some(1e-3);
+        use ConstraintKind::*;
+        let batch = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
+        assert_eq!(batch.relaxed(), [JointStep, JointTurn, BetaRate, CellPosition]);
+        assert_eq!(LookupTable::new(&problem).unwrap().relaxed(), [JointStep, JointTurn]);
     }
 }

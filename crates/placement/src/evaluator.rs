@@ -1,6 +1,6 @@
-//! How the search looks at a placement: through a table where the task allows one, else by the planner.
+//! The objective of a placement: by the lookup table where the task allows one, else by the planner.
 //!
-//! Whatever goes on from the search is looked at by the planner in any case.
+//! What a search returns is evaluated by the planner in any case.
 
 use super::candidate::{Candidate, Objective, rank};
 use super::lookup::{self, BetaGrid, LookupTable};
@@ -30,47 +30,47 @@ pub struct Workspace {
 
 /// What goes on from a search.
 #[derive(Debug)]
-pub struct Settled {
+pub struct SelectedBasins {
     /// The candidates, best first by the planner.
     pub basins: Vec<Candidate>,
-    /// Placements looked at to find them.
-    pub looks: usize,
-    /// Whether the table misled the search, so that it is better repeated without.
-    pub misled: bool,
+    /// Placements evaluated to find them.
+    pub evaluations: usize,
+    /// Whether what the lookup table promised is not there, so that the search is better repeated without it.
+    pub lookup_rejected: bool,
 }
 
 /// What the table promises of a placement is believed if the planner finds it within this share.
-const BELIEVED: f64 = 1e-3;
+const LOOKUP_TOLERANCE: f64 = 1e-3;
 /// Where the best the planner finds is farther than this share from the best that the table promised, or where there is none,
-/// the table misled the search: it leaves out the steps and turns of the joints.
-const MISLED: f64 = 0.02;
+/// the table is rejected: it relaxes the steps and turns of the joints.
+const REJECTION_TOLERANCE: f64 = 0.02;
 /// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an upright
 /// tool.
-const SAME: [f64; 3] = [0.005, 0.005, 0.02];
+const SAME_PLACE: [f64; 3] = [0.005, 0.005, 0.02];
 
-/// Of polished candidates sorted from the best, those that are not the same as a better one: at most `most`.
-fn apart<'s>(
+/// Of improved candidates sorted from the best, those that are not the same as a better one: at most `max_count`.
+fn distinct<'s>(
     table: &LookupTable<'_>,
     sorted: Vec<(&'s Candidate, Candidate)>,
-    most: usize,
+    max_count: usize,
 ) -> Vec<(&'s Candidate, Candidate)> {
     let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
     for (start, end) in sorted {
         let place = about_axis_1(table.problem(), &end.placement);
         let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
             other.1.scheme == end.scheme
-                && (known[0] - place[0]).abs() < SAME[0]
-                && (known[1] - place[1]).abs() < SAME[1]
-                && wrap(known[2] - place[2]).abs() < SAME[2]
+                && (known[0] - place[0]).abs() < SAME_PLACE[0]
+                && (known[1] - place[1]).abs() < SAME_PLACE[1]
+                && wrap(known[2] - place[2]).abs() < SAME_PLACE[2]
         };
-        if kept.len() < most && !kept.iter().any(is_same) {
+        if kept.len() < max_count && !kept.iter().any(is_same) {
             kept.push((place, (start, end)));
         }
     }
     kept.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// Candidates of a search that are polished on the table and planned for every basin asked for.
+/// Candidates of a search that are improved on the table and planned for every basin asked for.
 const CANDIDATES: usize = 3;
 
 impl<'a> Evaluator<'a> {
@@ -123,24 +123,33 @@ impl<'a> Evaluator<'a> {
         self.planner.objective(placement, Sense::Min, scheme, space)
     }
 
-    /// Of candidates sorted from the best, at most `most` that go on, ranked by the planner. With a table, more of them are
-    /// polished first, those that end at the same place are taken once, and where the planner does not find what the table
+    /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of them are
+    /// improved first, those that end at the same place are taken once, and where the planner does not find what the table
     /// promised, the start may go on instead.
-    pub fn settle(&self, sorted: Vec<Candidate>, sense: Sense, most: usize, monitor: &Monitor) -> Settled {
+    pub fn select_basins(
+        &self,
+        sorted: Vec<Candidate>,
+        sense: Sense,
+        max_count: usize,
+        monitor: &Monitor,
+    ) -> SelectedBasins {
         let Some(table) = self.table else {
             let mut basins = sorted;
-            basins.truncate(most);
-            return Settled { basins, looks: 0, misled: false };
+            basins.truncate(max_count);
+            return SelectedBasins { basins, evaluations: 0, lookup_rejected: false };
         };
-        let polished: Vec<(Candidate, usize)> = sorted[..sorted.len().min(CANDIDATES * most)]
+        let improved: Vec<(Candidate, usize)> = sorted[..sorted.len().min(CANDIDATES * max_count)]
             .par_iter()
-            .map_init(|| self.workspace(), |workspace, start| self.polish(table, start, sense, monitor, workspace))
+            .map_init(
+                || self.workspace(),
+                |workspace, start| self.coordinate_search(table, start, sense, monitor, workspace),
+            )
             .collect();
-        let mut looks: usize = polished.iter().map(|(_, looks)| looks).sum();
+        let mut evaluations: usize = improved.iter().map(|(_, evaluations)| evaluations).sum();
         let mut ends: Vec<(&Candidate, Candidate)> =
-            sorted.iter().zip(polished).map(|(start, (end, _))| (start, end)).collect();
+            sorted.iter().zip(improved).map(|(start, (end, _))| (start, end)).collect();
         ends.sort_by(|a, b| rank(sense, a.1.objective, b.1.objective));
-        let ends = apart(table, ends, most);
+        let ends = distinct(table, ends, max_count);
         let promised = ends.first().and_then(|(_, end)| end.objective.mean());
         let planned: Vec<(Candidate, usize)> = ends
             .par_iter()
@@ -153,7 +162,7 @@ impl<'a> Evaluator<'a> {
                     };
                     let planned = plan(end);
                     let is_as_promised = match (planned.objective.mean(), end.objective.mean()) {
-                        (Some(found), Some(promised)) => (found - promised).abs() < BELIEVED * promised,
+                        (Some(found), Some(promised)) => (found - promised).abs() < LOOKUP_TOLERANCE * promised,
                         _ => false,
                     };
                     if is_as_promised {
@@ -164,23 +173,23 @@ impl<'a> Evaluator<'a> {
                 },
             )
             .collect();
-        looks += planned.iter().map(|(_, looks)| looks).sum::<usize>();
-        let mut settled: Vec<Candidate> = planned.into_iter().map(|(candidate, _)| candidate).collect();
-        settled.sort_by(|a, b| rank(sense, a.objective, b.objective));
+        evaluations += planned.iter().map(|(_, evaluations)| evaluations).sum::<usize>();
+        let mut selected: Vec<Candidate> = planned.into_iter().map(|(candidate, _)| candidate).collect();
+        selected.sort_by(|a, b| rank(sense, a.objective, b.objective));
         // What the planner refuses goes on only where there is nothing else.
-        if let Some(first) = settled.iter().position(|i| i.objective.mean().is_none()) {
-            settled.truncate(first.max(1));
+        if let Some(first) = selected.iter().position(|i| i.objective.mean().is_none()) {
+            selected.truncate(first.max(1));
         }
-        let found = settled.first().and_then(|candidate| candidate.objective.mean());
-        let misled = match (promised, found) {
-            (Some(promised), Some(found)) => (found - promised).abs() > MISLED * promised,
+        let found = selected.first().and_then(|candidate| candidate.objective.mean());
+        let lookup_rejected = match (promised, found) {
+            (Some(promised), Some(found)) => (found - promised).abs() > REJECTION_TOLERANCE * promised,
             _ => true,
         };
-        Settled { basins: settled, looks, misled }
+        SelectedBasins { basins: selected, evaluations, lookup_rejected }
     }
 
-    /// A candidate polished on the table, and the number of placements looked at.
-    fn polish(
+    /// A candidate improved on the table, and the number of placements evaluated.
+    fn coordinate_search(
         &self,
         table: &LookupTable<'_>,
         start: &Candidate,
@@ -191,9 +200,9 @@ impl<'a> Evaluator<'a> {
         match &mut workspace.table {
             Some(space) if !monitor.should_stop() => {
                 let scheme = start.scheme.as_deref();
-                let (placement, objective, looks) =
+                let (placement, objective, evaluations) =
                     table.coordinate_search(&start.placement, sense, scheme, &self.grid, space);
-                (Candidate { placement, objective, ..start.clone() }, looks)
+                (Candidate { placement, objective, ..start.clone() }, evaluations)
             }
             _ => (start.clone(), 0),
         }

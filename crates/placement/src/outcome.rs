@@ -7,6 +7,7 @@ use super::sense::Sense;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use stead_model::robot::Posture;
+use stead_numerics::message::Warning;
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -236,4 +237,6 @@ pub struct Outcome {
     pub states: usize,
     /// Whether the user stopped the search before its end.
     pub interrupted: bool,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
 }

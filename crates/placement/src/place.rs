@@ -5,11 +5,11 @@ use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::lookup::LookupTable;
-use super::outcome::{Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
-use super::problem::{Placement, Problem};
+use super::outcome::{CANCELLATION, Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
+use super::problem::{Criterion, Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
-use super::search::{self, Found};
+use super::search::{self, SearchResult};
 use super::sense::Sense;
 use super::settings::{SearchSettings, Tables, TransferSettings};
 use super::symmetry::Unsupported;
@@ -17,6 +17,7 @@ use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// Why a placement job has no result.
@@ -86,7 +87,7 @@ pub fn place(
     };
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.misled && !f.interrupted) && !monitor.should_stop() {
+    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
         (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
@@ -98,14 +99,14 @@ pub fn place(
         [false, true] => found[0].basins = found[1].basins.clone(),
         [false, false] => {
             let nearest = &found[0].basins[0];
-            return Err(nothing(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
+            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
         }
     }
     let planner = Planner::finer(problem);
     let (solutions, refinements) =
-        finish(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(|| {
-            nothing(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true)
-        })?;
+        refine_basins(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(
+            || infeasible(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true),
+        )?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let case = |placement_sense, solution: &Refined, plan_sense| {
@@ -123,6 +124,8 @@ pub fn place(
             cycle: cycle(problem, transfer, &plans),
         }
     };
+    let mean = best.solution.mean();
+    let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     Ok(Outcome {
         cases: Cases {
             best: case(Sense::Min, best, Sense::Min),
@@ -137,7 +140,8 @@ pub fn place(
         map_worst: deflection_map(problem, &worst.solution.placement),
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
-        interrupted: found.iter().any(|f| f.interrupted) || monitor.should_stop(),
+        interrupted,
+        warnings: cancellation(problem, mean).into_iter().chain(interrupted.then(interruption)).collect(),
     })
 }
 
@@ -150,6 +154,21 @@ pub struct Score {
     pub best: Plan,
     /// The worst plan.
     pub worst: Plan,
+    /// Why the result may not be what was wanted.
+    pub warnings: Vec<Warning>,
+}
+
+/// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
+fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
+    (mean <= CANCELLATION && problem.criterion == Criterion::default()).then(|| {
+        let message = "the best plan cancels the deflection to nothing, which no real force will; \
+                       criterion.force_uncertainty makes the score the worst case over force errors";
+        Warning::new("cancellation", message)
+    })
+}
+
+fn interruption() -> Warning {
+    Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
 /// Plans one given placement, best and worst.
@@ -163,12 +182,14 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
     let (Some(best), Ok(worst)) =
         (planned(&planner, placement, None, spacing, &mut workspace), worst_plan(&planner, placement, None))
     else {
-        return Err(nothing(&planner, placement, None, false));
+        return Err(infeasible(&planner, placement, None, false));
     };
+    let warnings = cancellation(problem, best.mean()).into_iter().collect();
     Ok(Score {
         placement: *placement,
         best: detailed(problem, placement, &best.plans),
         worst: detailed(problem, placement, &worst),
+        warnings,
     })
 }
 
@@ -183,12 +204,16 @@ struct Refined {
 const TIE: f64 = 1e-5;
 
 /// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
-/// polished on a table: refinement gains less from there.
-const HOPELESS: f64 = 0.03;
+/// improved on a lookup table: refinement gains less from there.
+const MAX_DEFICIT: f64 = 0.03;
 
 /// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
 /// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
-fn finish(evaluator: &Evaluator<'_>, found: &[Found; 2], monitor: &Monitor) -> Option<([Refined; 2], Vec<Refinement>)> {
+fn refine_basins(
+    evaluator: &Evaluator<'_>,
+    found: &[SearchResult; 2],
+    monitor: &Monitor,
+) -> Option<([Refined; 2], Vec<Refinement>)> {
     let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
@@ -206,17 +231,17 @@ fn finish(evaluator: &Evaluator<'_>, found: &[Found; 2], monitor: &Monitor) -> O
     };
     let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
     let mut results = run(&ahead, jobs.len());
-    let hopeful = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
+    let can_win = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
         let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.mean());
         match (evaluator.table(), first, candidate.objective.mean()) {
             (Some(_), Some(first), Some(mean)) => match sense {
-                Sense::Min => mean * (1.0 - HOPELESS) < first,
-                Sense::Max => mean * (1.0 + HOPELESS) > first,
+                Sense::Min => mean * (1.0 - MAX_DEFICIT) < first,
+                Sense::Max => mean * (1.0 + MAX_DEFICIT) > first,
             },
             _ => true,
         }
     };
-    let others: Vec<_> = others.into_iter().filter(hopeful).collect();
+    let others: Vec<_> = others.into_iter().filter(can_win).collect();
     let of = ahead.len() + others.len();
     results.extend(run(&others, of));
     // In the order of the searches: a stable sort.
@@ -266,7 +291,7 @@ fn worst_plan(
     planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
 }
 
-fn nothing(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
+fn infeasible(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
     let none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace());
     let findings = none.err().map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
     Infeasible { placement: *placement, searched, findings }

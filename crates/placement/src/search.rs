@@ -5,8 +5,8 @@
 //! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
 //! many points and segments fail.
 //!
-//! Candidates are looked at through a table where the task allows one ([`super::lookup`]), and then the basins that go on, and
-//! the best of every generation, are looked at by the planner: only averages are the table's.
+//! Candidates are scored by interpolating a lookup table where the task allows one ([`super::lookup`]); the basins that are refined and
+//! the best of every generation are then scored by the planner: only averages are the table's.
 //!
 //! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
@@ -27,15 +27,15 @@ use stead_numerics::monitor::{Monitor, Progress};
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct SearchResult {
     /// The best candidates of distinct basins, best first; if nothing was feasible, the one that came nearest.
     pub basins: Vec<Candidate>,
     /// Generation by generation.
     pub history: Vec<Generation>,
     /// Placements evaluated.
     pub evaluations: usize,
-    /// Whether a table misled it: what the table promised, the planner does not find.
-    pub misled: bool,
+    /// Whether the planner does not find what the lookup table promised.
+    pub lookup_rejected: bool,
     /// Whether the caller stopped it.
     pub interrupted: bool,
 }
@@ -57,7 +57,7 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 const ARCHIVE: usize = 64;
 
 /// Searches the cell.
-pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> Found {
+pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> SearchResult {
     let problem = evaluator.planner().problem();
     let cell = &problem.cell;
     let mut population = initial(problem, settings, sense);
@@ -101,9 +101,15 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
     }
     archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
     evaluator.check(&mut history, &best, sense);
-    let settled = evaluator.settle(archive, sense, settings.basins, monitor);
-    evaluations += settled.looks;
-    Found { basins: settled.basins, history, evaluations, misled: settled.misled, interrupted }
+    let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
+    evaluations += selected.evaluations;
+    SearchResult {
+        basins: selected.basins,
+        history,
+        evaluations,
+        lookup_rejected: selected.lookup_rejected,
+        interrupted,
+    }
 }
 
 /// The name of a search in reports of progress.

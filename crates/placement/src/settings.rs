@@ -9,14 +9,14 @@ pub enum PostureSearch {
     Genetic,
 }
 
-/// Whether the search looks through a table ([`super::lookup`]).
+/// Whether the search uses a lookup table ([`super::lookup`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tables {
     /// Where the task allows it and the table fits in memory.
     Auto,
     /// As a wish: a task that does not allow it is refused when it is read.
     Always,
-    /// Never: the planner looks at every candidate.
+    /// Never: the planner evaluates every candidate.
     Never,
 }
 
@@ -33,7 +33,7 @@ pub struct SearchSettings {
     pub postures: PostureSearch,
     /// Distinct basins of each search that are refined, at least 1.
     pub basins: usize,
-    /// Whether to look through a table.
+    /// Whether to use a lookup table.
     pub tables: Tables,
 }
 

@@ -3,8 +3,9 @@
 
 use crate::placement::Context;
 use std::sync::OnceLock;
-use stead_format::input::{InputFile, Reference};
+use stead_format::input::InputFile;
 use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
+use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
@@ -63,6 +64,7 @@ pub fn outcome() -> &'static Outcome {
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
+            warnings: Vec::new(),
         }
     })
 }
@@ -76,9 +78,9 @@ pub fn context() -> Context {
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),
-        reference: Some(Reference {
+        reference: Some(Published {
             source: "Caro et al. 2013, Table III".to_owned(),
-            case_mm: [0.083, 0.35, 0.82, 1.2],
+            figures: [0.083, 0.35, 0.82, 1.2],
         }),
         stability: None,
     }

@@ -1,20 +1,21 @@
 //! A robot with its spindle as a chain with drives, in one of four variants.
 
 use super::drive::Drive;
-use super::multibody::{Axis, Chain, Joint, Posed};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{SMatrix, SVector, Vector3};
+use serde::Serialize;
+use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
 
 /// How much of the arm is modelled; each adds to the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Variant {
     /// A spring and a damper about each joint axis, no gravity.
     Springs,
-    /// Gravity too, with what compensates it.
+    /// Gravity and its compensators too.
     Gravity,
     /// Springs and dampers normal to the joint axes too.
     Orthogonal,
-    /// Play in the gears too.
+    /// Backlash of the gears too.
     Backlash,
 }
 
@@ -33,8 +34,8 @@ impl Variant {
     }
 }
 
-/// What an arm would need for its motion to be computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+/// What the robot file lacks for the dynamics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize)]
 pub enum Missing {
     /// The robot has no masses.
     #[error("the robot has no masses and inertias")]
@@ -50,7 +51,7 @@ pub enum Missing {
 /// A chain of `N` joints, six of them with motors, and the drives about all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm<const N: usize> {
-    /// What moves, and its tip: the tool centre point with the tool's frame.
+    /// The chain, and its tip: the tool centre point with the tool's frame.
     pub chain: Chain<N>,
     /// Springs and dampers.
     pub drive: Drive<N>,
@@ -79,11 +80,9 @@ impl AnyArm {
     }
 }
 
-/// Everything that the two kinds of chain have in common.
+/// What the chains of six and of eighteen joints have in common.
 struct Parts<'a> {
     dynamics: &'a [JointDynamics; 6],
-    /// The frame of each row at joint angle zero, in that before it.
-    steps: [Pose<f64>; 6],
     bodies: [Inertial; 6],
     stiffness: [f64; 6],
 }
@@ -91,20 +90,12 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(robot: &'a Robot, spindle: &Spindle, theta: &[f64; 6]) -> Result<Self, Missing> {
         let dynamics = robot.dynamics().ok_or(Missing::Dynamics)?;
-        let steps = std::array::from_fn(|j| {
-            let joint = &robot.joints()[j];
-            let (sine, cosine) = robot.geometry().twist_sin_cos(j, joint.alpha);
-            Pose {
-                rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine),
-                translation: Vector3::new(joint.a, -sine * joint.d, cosine * joint.d),
-            }
-        });
         let mut bodies = dynamics.map(|joint| joint.link);
         if let Some(payload) = &spindle.payload {
             bodies[5] = bodies[5].joined(payload);
         }
         let stiffness = robot.compliances_at(theta).map(|compliance| 1.0 / compliance);
-        Ok(Self { dynamics, steps, bodies, stiffness })
+        Ok(Self { dynamics, bodies, stiffness })
     }
 
     fn felt_gravity(&self, j: usize, variant: Variant) -> f64 {
@@ -124,9 +115,8 @@ impl Arm<6> {
     /// [`Missing::Dynamics`] for a robot without masses.
     pub fn six(robot: &Robot, spindle: &Spindle, variant: Variant, theta: &[f64; 6]) -> Result<Self, Missing> {
         let parts = Parts::new(robot, spindle, theta)?;
-        let joints = std::array::from_fn(|j| Joint::new(parts.steps[j], Axis::Z, Some(parts.bodies[j])));
         Ok(Self {
-            chain: Chain::new(joints, spindle.flange_from_tool),
+            chain: robot.chain(&parts.bodies, spindle.flange_from_tool),
             drive: Drive {
                 stiffness: parts.stiffness.into(),
                 damping: parts.dynamics.map(|joint| joint.damping).into(),
@@ -153,16 +143,16 @@ impl Arm<18> {
         let bearing = |j: usize| Vector3::new(0.0, 0.0, parts.dynamics[j].bearing);
         let from_bearing = |j: usize| Pose { translation: -bearing(j), ..Pose::identity() };
         let to_bearing = |j: usize| Pose { translation: bearing(j), ..Pose::identity() };
-        let joints = std::array::from_fn(|k| {
+        let links = std::array::from_fn(|k| {
             let j = k / 3;
             match k % 3 {
                 0 => {
-                    let step = parts.steps[j].then(&to_bearing(j));
+                    let step = robot.rows()[j].then(&to_bearing(j));
                     let step = if j == 0 { step } else { from_bearing(j - 1).then(&step) };
-                    Joint::new(step, Axis::Z, None)
+                    Link::new(step, Axis::Z, None)
                 }
-                1 => Joint::new(Pose::identity(), Axis::X, None),
-                _ => Joint::new(Pose::identity(), Axis::Y, Some(parts.bodies[j].placed(&from_bearing(j)))),
+                1 => Link::new(Pose::identity(), Axis::X, None),
+                _ => Link::new(Pose::identity(), Axis::Y, Some(parts.bodies[j].placed(&from_bearing(j)))),
             }
         });
         let each = |motor: &dyn Fn(usize) -> f64, other: &dyn Fn(usize) -> f64| {
@@ -170,7 +160,7 @@ impl Arm<18> {
         };
         let gravity = f64::from(u8::from(variant != Variant::Springs));
         Ok(Self {
-            chain: Chain::new(joints, from_bearing(5).then(&spindle.flange_from_tool)),
+            chain: Chain::new(links, from_bearing(5).then(&spindle.flange_from_tool)),
             drive: Drive {
                 stiffness: each(&|j| parts.stiffness[j], &|j| normal[j].stiffness),
                 damping: each(&|j| parts.dynamics[j].damping, &|j| normal[j].damping),
@@ -209,7 +199,7 @@ impl<const N: usize> Arm<N> {
         }
     }
 
-    /// What the springs have to carry of gravity at angles `q` (rad), posed there. N m
+    /// Gravity torque that the springs carry at angles `q` (rad), posed there. N m
     pub fn felt_gravity(&self, posed: &Posed<N>, q: &SVector<f64, N>) -> SVector<f64, N> {
         posed.gravity(&self.chain) - self.not_felt(&self.planar(q).gravity(&self.chain))
     }
@@ -247,7 +237,7 @@ impl<const N: usize> Arm<N> {
         matrix
     }
 
-    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the play of each
+    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the backlash of each
     /// gear is taken up by what its joint carries. Joint angles settle to within rounding in a few repetitions, since
     /// gravity hardly changes with them.
     pub fn at_rest(&self, reference: &SVector<f64, N>) -> SVector<f64, N> {
@@ -268,11 +258,11 @@ impl<const N: usize> Arm<N> {
     }
 }
 
-/// Motors of the joints whose angles compensators do not know.
+/// Motors of the joints whose angles do not enter the compensation.
 const COMPENSATED_AS_IF_ZERO: [usize; 2] = [3, 5];
 
-/// What compensators take of gravity, near some angles: exact at them, linear about them. Made anew for angles farther off than
-/// 1 mrad, where it is wrong by some millionths of the torque.
+/// Gravity torque carried by compensators, linearised about some joint angles; linearised anew for angles farther off than 1 mrad,
+/// where it is off by some millionths of the torque.
 #[derive(Debug, Clone)]
 pub struct Compensation<const N: usize> {
     at: SVector<f64, N>,

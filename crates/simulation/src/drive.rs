@@ -1,4 +1,4 @@
-//! What drives do about the joints of a chain: springs, dampers, play, and who carries gravity.
+//! Drives about the joints of a chain: springs, dampers, backlash, and the share of gravity that the springs carry.
 
 use nalgebra::SVector;
 
@@ -9,14 +9,13 @@ pub struct Drive<const N: usize> {
     pub stiffness: SVector<f64, N>,
     /// Damping. N m s/rad
     pub damping: SVector<f64, N>,
-    /// Half the play: no spring torque within it. rad
+    /// Half the backlash: no spring torque within it. rad
     pub backlash: SVector<f64, N>,
-    /// Which share of gravity the spring has to carry: 0 where a compensator takes it or gravity is left
-    /// out, 1 elsewhere.
+    /// Share of gravity that the spring carries: 0 with a compensator or without gravity, else 1.
     pub felt_gravity: SVector<f64, N>,
 }
 
-/// Angle beyond a play of half width `gap`. rad
+/// Angle beyond a backlash of half width `gap`. rad
 fn beyond(gap: f64, angle: f64) -> f64 {
     if angle > gap {
         angle - gap
@@ -29,7 +28,7 @@ fn beyond(gap: f64, angle: f64) -> f64 {
 
 impl<const N: usize> Drive<N> {
     /// Torques on the joints (N m) at angles `q` and speeds `speed` with the motors at `reference` and `reference_speed`:
-    /// `-k (q - theta) - d (q' - theta')`, less the play of the paper's eq. 12. Both oppose the motion (eq. 7 is printed
+    /// `-k (q - theta) - d (q' - theta')`, less the backlash of the paper's eq. 12. Both oppose the motion (eq. 7 is printed
     /// with the sign of the spring turned around). rad and rad/s
     pub fn torques(
         &self,
@@ -44,7 +43,7 @@ impl<const N: usize> Drive<N> {
         })
     }
 
-    /// How stiff the springs are at angles `q`: nothing within the play. N m/rad
+    /// Stiffness of the springs at angles `q`: zero within the backlash. N m/rad
     pub fn stiffness_at(&self, q: &SVector<f64, N>, reference: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::from_fn(|j, _| {
             let free = (q[j] - reference[j]).abs() <= self.backlash[j] && self.backlash[j] > 0.0;
@@ -52,8 +51,8 @@ impl<const N: usize> Drive<N> {
         })
     }
 
-    /// By how much the springs yield under torques `load` on the joints (N m) at rest: spring and play, in the middle of the
-    /// play where there is no load. rad
+    /// By how much the springs yield under torques `load` on the joints (N m) at rest: spring and backlash, in the middle of
+    /// the backlash where there is no load. rad
     pub fn deflection(&self, load: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::from_fn(|j, _| {
             let spring = load[j] / self.stiffness[j];
@@ -68,7 +67,7 @@ impl<const N: usize> Drive<N> {
     }
 }
 
-/// A torque below this is rounding and takes up no play. N m
+/// A torque below this is rounding and takes up no backlash. N m
 const NO_LOAD: f64 = 1e-6;
 
 #[cfg(test)]

@@ -3,10 +3,11 @@
 //! With beta = 1/4 and gamma = 1/2 (mean acceleration) it is of second order and, for a linear system, keeps the energy
 //! (Newmark 1959; Géradin and Cardona 2001). The equations at the end of a step are solved by Newton's method for the
 //! accelerations, with `M + gamma h C + beta h^2 K` of some earlier step: how fast that contracts is measured, and when it
-//! becomes slow the matrix is made anew. A step that does not converge is halved, up to [`Settings::most_halvings`] times,
+//! becomes slow the matrix is made anew. A step that does not converge is halved, up to [`Settings::max_halvings`] times,
 //! and then reported.
 
 use nalgebra::{SMatrix, SVector};
+use serde::Serialize;
 
 /// Angles, speeds and accelerations of a system. rad, rad/s, rad/s^2
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +31,7 @@ pub struct Tangent<const N: usize> {
     pub stiffness: SMatrix<f64, N, N>,
 }
 
-/// What is integrated.
+/// A mechanical system to integrate.
 pub trait System<const N: usize> {
     /// Forces that are out of balance at a time (s) in a state: zero on a solution. N m
     fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N>;
@@ -42,7 +43,7 @@ pub trait System<const N: usize> {
     fn accept(&mut self, _time: f64, _state: &MotionState<N>) {}
 }
 
-/// How exactly to integrate.
+/// Settings of the integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Newmark's beta.
@@ -52,19 +53,19 @@ pub struct Settings {
     /// A step is solved when its angles will not change by more than this any more. rad
     pub tolerance: f64,
     /// Corrections before a step counts as not converging.
-    pub most_corrections: usize,
+    pub max_corrections: usize,
     /// How often a step may be halved.
-    pub most_halvings: u32,
+    pub max_halvings: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { beta: 0.25, gamma: 0.5, tolerance: 1e-10, most_corrections: 8, most_halvings: 6 }
+        Self { beta: 0.25, gamma: 0.5, tolerance: 1e-10, max_corrections: 8, max_halvings: 6 }
     }
 }
 
 /// Why a step could not be made.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
 pub enum StepError {
     /// Corrections do not become small, however short the step.
     #[error("at {time} s the motion does not converge, not even in steps of {step} s")]
@@ -82,7 +83,7 @@ pub enum StepError {
     },
 }
 
-/// How a step was made.
+/// Effort of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Effort {
     /// Evaluations of the unbalanced forces.
@@ -144,7 +145,7 @@ impl<const N: usize> Newmark<N> {
         step: f64,
         state: &mut MotionState<N>,
     ) -> Result<Effort, StepError> {
-        let parts = 1_u64 << self.settings.most_halvings;
+        let parts = 1_u64 << self.settings.max_halvings;
         let (mut done, mut width) = (0, parts);
         let mut effort = Effort::default();
         while done < parts {
@@ -211,7 +212,7 @@ impl<const N: usize> Newmark<N> {
         state: &MotionState<N>,
         evaluations: &mut usize,
     ) -> Option<MotionState<N>> {
-        let Settings { beta, gamma, tolerance, most_corrections, .. } = self.settings;
+        let Settings { beta, gamma, tolerance, max_corrections, .. } = self.settings;
         let (_, inverse) = self.inverse.as_ref()?;
         let mut next = MotionState {
             q: state.q + state.speed * step + state.acceleration * (0.5 * step * step),
@@ -219,7 +220,7 @@ impl<const N: usize> Newmark<N> {
             acceleration: state.acceleration,
         };
         let mut before = f64::INFINITY;
-        for _ in 0..most_corrections {
+        for _ in 0..max_corrections {
             let change = inverse * system.unbalanced(time + step, &next);
             *evaluations += 1;
             next.acceleration -= change;

@@ -1,7 +1,7 @@
 //! Dynamics of a robot that mills: passes in the time domain, modal analysis, and stability of the cut.
 //!
-//! - [`multibody`]: a serial chain of revolute joints with rigid bodies; [`drive`]: springs, dampers, backlash and gravity
-//!   compensation about its joints; [`arm`]: both for a robot with its spindle, in one of four [`Variant`](arm::Variant)s.
+//! - [`drive`]: springs, dampers, backlash and gravity compensation about the joints of a
+//!   [chain](stead_model::robot::chain); [`arm`]: both for a robot with its spindle, in one of four [`Variant`](arm::Variant)s.
 //! - [`motion`]: the commanded joint angles of a straight pass; [`setup`]: an arm with its motion.
 //! - [`integrator`]: Newmark's method; [`modes`]: natural frequencies, mode shapes, frequency response.
 //! - [`milling`]: the force of the teeth; [`surface`]: the workpiece as earlier teeth left it; [`roughness`]: the wall that remains.
@@ -16,7 +16,6 @@ pub mod integrator;
 pub mod milling;
 pub mod modes;
 pub mod motion;
-pub mod multibody;
 pub mod outcome;
 pub mod path_stability;
 pub mod roughness;

@@ -6,30 +6,31 @@
 
 use super::arm::Arm;
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
+use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// An arm at rest, for small motions about it.
+/// An arm linearised about a state of rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearArm<const N: usize> {
     /// kg m^2
     pub mass: SMatrix<f64, N, N>,
     /// N m s/rad
     pub damping: SMatrix<f64, N, N>,
-    /// Springs and gravity, the play of the gears taken up. N m/rad
+    /// Springs and gravity, the backlash taken up. N m/rad
     pub stiffness: SMatrix<f64, N, N>,
     /// Velocity of the tip per unit speed of each joint. m/rad
     pub tip: SMatrix<f64, 3, N>,
 }
 
-/// A way in which an arm swings by itself, or creeps back without swinging.
-#[derive(Debug, Clone, PartialEq)]
+/// A mode: a free vibration, or an overdamped motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mode {
     /// |s| / (2 pi). Hz
     pub frequency: f64,
-    /// Natural frequency of the mode of the same number without damping, a little off |s| unless damping goes with mass and
-    /// stiffness; none where the modes are not as many, since some do not swing. Hz
+    /// Undamped natural frequency of the mode with the same number, a little off |s| unless damping is proportional; `None` where
+    /// overdamped modes make the numbers differ. Hz
     pub undamped: Option<f64>,
-    /// Share of the critical damping; 1 for what does not swing, negative for what grows.
+    /// Damping ratio; 1 for overdamped motions, negative for growing ones.
     pub damping_ratio: f64,
     /// Amplitudes of the joints, the largest 1, where the largest is at its peak.
     pub joints: Vec<f64>,
@@ -38,7 +39,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// The natural frequency as it is commonly given: without damping, where that is known. Hz
+    /// The undamped natural frequency where it is known, else |s| / (2 pi). Hz
     pub fn natural_frequency(&self) -> f64 {
         self.undamped.unwrap_or(self.frequency)
     }
@@ -57,7 +58,7 @@ impl<const N: usize> LinearArm<N> {
     }
 
     /// Natural frequencies without damping, ascending: square roots of the eigenvalues of `M^-1 K`. Hz; none where the mass
-    /// matrix is not positive definite. What does not swing back, since gravity outweighs its spring, counts as 0 Hz.
+    /// matrix is not positive definite. A mode that gravity makes unstable counts as 0 Hz.
     pub fn undamped(&self) -> Option<Vec<f64>> {
         let factor = to_dynamic(&self.mass).cholesky()?;
         let half = factor.l().solve_lower_triangular(&to_dynamic(&self.stiffness))?;

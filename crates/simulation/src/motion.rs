@@ -1,4 +1,4 @@
-//! How the motors are commanded: a straight pass of the tool with a smooth start, and the joint angles that make it.
+//! Commanded motion: a straight pass of the tool with a smooth start, and its joint angles.
 
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Way (m) and speed (m/s) at a time (s) from the start.
+    /// Distance (m) and speed (m/s) at a time (s) from the start.
     pub fn at(&self, time: f64) -> (f64, f64) {
         let Self { feed, time: whole } = *self;
         if time <= 0.0 {
@@ -36,7 +36,7 @@ impl Ramp {
         }
     }
 
-    /// When a way (m) is completed. s
+    /// When a distance (m) is completed. s
     pub fn time_of(&self, distance: f64) -> f64 {
         let at_feed = self.feed * self.time / 2.0;
         if distance >= at_feed {
@@ -51,14 +51,14 @@ impl Ramp {
     }
 }
 
-/// A straight way of the tool centre point with the tool held as at the start.
+/// A straight path of the tool centre point, the orientation of the tool as at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pass {
     /// Joint angles at the start. rad
     pub start: [f64; 6],
     /// Direction of the feed in the base frame.
     pub direction: Vector3<f64>,
-    /// How far. m
+    /// Length of the pass. m
     pub length: f64,
 }
 
@@ -103,7 +103,7 @@ pub struct Motion {
     direction: Vector3<f64>,
 }
 
-/// Joint angles (rad) and their slopes over the way (rad/m).
+/// Joint angles (rad) and their derivatives along the pass (rad/m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Knot {
     angles: [f64; 6],
@@ -112,7 +112,7 @@ struct Knot {
 
 /// Distance of the knots at most. m
 const SPACING: f64 = 1e-3;
-/// A joint that turns faster than this over the way is in a singularity. rad/m
+/// A joint that turns faster than this along the pass is at a singularity. rad/m
 const STEEPEST: f64 = 1e3;
 
 impl Motion {
@@ -184,7 +184,7 @@ impl Motion {
         CutFrame::new(self.direction, -self.start.rotation.column(2), wall)
     }
 
-    /// Where the tool centre point should be (m, base frame) at a time (s), and how far on its way that is (m).
+    /// Where the tool centre point should be (m, base frame) at a time (s), and the distance from the start (m).
     pub fn tool(&self, time: f64) -> (Vector3<f64>, f64) {
         let distance = self.ramp.at(time).0;
         (self.start.translation + self.direction * distance, distance)
@@ -196,7 +196,7 @@ impl Motion {
         self.motors_at(distance, feed)
     }
 
-    /// Angles (rad) and speeds (rad/s) of the motors after a way (m) at a feed (m/s).
+    /// Angles (rad) and speeds (rad/s) of the motors at a distance (m) from the start, at a feed (m/s).
     pub fn motors_at(&self, distance: f64, feed: f64) -> ([f64; 6], [f64; 6]) {
         let index = ((distance / self.spacing).floor().max(0.0) as usize).min(self.knots.len() - 2);
         let (a, b) = (&self.knots[index], &self.knots[index + 1]);

@@ -1,29 +1,27 @@
-//! What is found out by simulating a pass.
+//! Result of a simulated pass: forces, wall roughness, modes, stability.
 
 use super::coupled::{End, Job, JobError, Run};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
 use super::stability_analysis::{StabilityError, linear_at};
+use serde::Serialize;
+use stead_numerics::message::Warning;
 
-/// How to look at a pass.
+/// How a simulated pass is evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationSettings {
-    /// Times between which forces are summed up; from a quarter to nine tenths of the work where nothing is said. s
+    /// Time window of the force statistics, from and to; by default from a quarter to nine tenths of the work. s
     pub window: Option<[f64; 2]>,
     /// Height of the wall's profile above the tip of the tool. m
     pub height: f64,
     /// Cutoff of the Gaussian filter. m
     pub cutoff: f64,
-    /// Figures to compare with.
-    pub published: Option<Published>,
 }
 
-/// Figures of others for the same pass.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Published {
-    /// Whose.
-    pub source: String,
+/// Figures of a pass that publications give.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassFigures {
     /// Forces along the feed and towards the wall, for the variant that was run.
     pub forces: Option<[Statistics; 2]>,
     /// Roughness.
@@ -31,7 +29,7 @@ pub struct Published {
 }
 
 /// A force over a time. N
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistics {
     /// Smallest.
     pub min: f64,
@@ -43,28 +41,30 @@ pub struct Statistics {
     pub root_mean_square: f64,
 }
 
-/// A simulated pass and what it tells.
-#[derive(Debug, Clone, PartialEq)]
+/// A simulated pass and its evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Simulation {
     /// Forces, places, and how it ended.
     pub run: Run,
-    /// Between which times forces are summed up. s
+    /// Time window of the force statistics, from and to. s
     pub window: [f64; 2],
-    /// On the tool along the feed, and towards the wall, which is what is printed of such passes; none if the run ended before.
+    /// Forces on the tool along the feed and towards the wall; `None` if the run ended before the window did.
     pub forces: Option<[Statistics; 2]>,
-    /// How much the force differs from that a turn before, in the second half of the window: root mean square, as a share of that
-    /// of the force; none if the run ended before.
+    /// Root mean square of the difference between the force and that one spindle turn before, over the second half of the window,
+    /// relative to the root mean square of the force; `None` if the run ended before the window did.
     pub period_variation: Option<f64>,
-    /// Small motions in the middle of the work.
+    /// Stability of small motions (semi-discretisation), linearised in the middle of the work.
     pub verdict: Verdict,
     /// All modes at the start of the pass.
     pub modes: Vec<Mode>,
-    /// The wall that was left.
+    /// The wall that remains.
     pub wall: Profile,
-    /// That without what is longer than the cutoff.
+    /// The wall after the Gaussian filter: waves longer than the cutoff removed.
     pub filtered: Profile,
-    /// How rough both are, the wall as it is and filtered; none if no wall was made.
+    /// Roughness of the wall as it is, and filtered; `None` if no wall was cut.
     pub roughness: Option<[Roughness; 2]>,
+    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled` or `slow-growth`.
+    pub warnings: Vec<Warning>,
 }
 
 /// Why a pass cannot be simulated.
@@ -73,21 +73,21 @@ pub enum SimulationError {
     /// The run cannot start.
     #[error("{0}")]
     Job(#[from] JobError),
-    /// Nothing can be said of small motions.
+    /// The arm cannot be linearised.
     #[error("{0}")]
     StabilityAnalysis(#[from] StabilityError),
 }
 
-/// Forces that differ by more than this from turn to turn are not those of a calm cut.
+/// Largest period variation of a cut without chatter.
 pub const MAX_PERIOD_VARIATION: f64 = 0.2;
 /// Distance of the points of a wall. m
 const SPACING: f64 = 10e-6;
 
 impl Simulation {
-    /// Looks at the run of a job, whether it came to its end or not.
+    /// Evaluates the run of a job, complete or not.
     ///
     /// # Errors
-    /// [`SimulationError`] where nothing can be said of small motions.
+    /// [`SimulationError`] when the arm cannot be linearised.
     pub fn of(job: &Job<'_>, settings: &EvaluationSettings, run: Run) -> Result<Self, SimulationError> {
         let distance = |share: f64| {
             let distance = job.cutter.radius() + job.gap + share * job.cut.length;
@@ -101,7 +101,7 @@ impl Simulation {
         let wall = wall(job, settings, &run);
         let filtered = wall.filtered(settings.cutoff);
         let roughness = wall.roughness().zip(filtered.roughness()).map(|(raw, filtered)| [raw, filtered]);
-        Ok(Self {
+        let mut found = Self {
             forces: statistics(&run, window),
             period_variation: period_variation(
                 &run,
@@ -115,10 +115,37 @@ impl Simulation {
             filtered,
             roughness,
             run,
-        })
+            warnings: Vec::new(),
+        };
+        found.warnings = found.judge();
+        Ok(found)
     }
 
-    /// Whether the cut stayed calm: it came to its end, with forces that hardly change from turn to turn.
+    /// Reasons not to take the figures for those of a steady cut.
+    fn judge(&self) -> Vec<Warning> {
+        let reason = match &self.run.end {
+            End::Complete => None,
+            End::Limit(limit) => Some(limit.to_string()),
+            End::Step(error) => Some(error.to_string()),
+        };
+        if let Some(reason) = reason {
+            return vec![Warning::new("ended-early", format!("the run ended before the pass: {reason}"))];
+        }
+        match (self.verdict.is_stable(), self.is_stable()) {
+            (true, false) => vec![Warning::new(
+                "not-settled",
+                "small motions die out, but the forces still change from turn to turn: a longer ramp or pass tells whether the \
+                 start is still felt",
+            )],
+            (false, true) => vec![Warning::new(
+                "slow-growth",
+                "small motions grow, but have not become large by the end of the pass",
+            )],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether the cut was free of chatter: the pass was completed, and the forces hardly vary from turn to turn.
     pub fn is_stable(&self) -> bool {
         self.run.end == End::Complete
             && self.period_variation.is_none_or(|period_variation| period_variation < MAX_PERIOD_VARIATION)
@@ -150,7 +177,7 @@ pub fn statistics(run: &Run, window: [f64; 2]) -> Option<[Statistics; 2]> {
     }))
 }
 
-/// How much forces differ from those a turn (in steps) before, between two times (s), as a share of themselves.
+/// Root mean square of the difference between forces one turn (in steps) apart, between two times (s), relative to that of the forces.
 pub fn period_variation(run: &Run, window: [f64; 2], turn: usize) -> Option<f64> {
     let range = steps(run, window)?;
     let (mut changes, mut squares) = (0.0, 0.0);
@@ -164,7 +191,7 @@ pub fn period_variation(run: &Run, window: [f64; 2], turn: usize) -> Option<f64>
     (squares > 0.0).then(|| (changes / squares).sqrt())
 }
 
-/// The wall as far as the tool came.
+/// The wall up to where the tool came.
 fn wall(job: &Job<'_>, settings: &EvaluationSettings, run: &Run) -> Profile {
     let reached = run.trail.nodes().last().map_or(0.0, |node| node.place[0]);
     let end = reached.min(job.cut.length);

@@ -8,22 +8,22 @@ use rayon::prelude::*;
 use stead_model::cutting::{CutFrame, Cutter};
 use stead_model::robot::{Robot, Spindle};
 
-/// What is to be cut along a path.
+/// The cut along a tool path, and how stability is analysed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathStabilityAnalysis {
     /// How much of the arm is modelled.
     pub variant: Variant,
-    /// What all damping is multiplied with.
+    /// Factor on all damping.
     pub damping_scale: f64,
     /// The cutter.
     pub cutter: Cutter,
-    /// The cut, at every point of the path alike.
+    /// The cut, the same at every path point.
     pub cut: PassCut,
     /// Largest depth of cut that is examined. m
     pub max_depth: f64,
 }
 
-/// An arm somewhere on a path.
+/// The arm at a path point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathConfiguration {
     /// Joint angles. rad

@@ -1,12 +1,13 @@
-//! The wall that a pass leaves, and how rough it is (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
+//! Profile of the wall that a pass leaves, and its roughness (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
 
 use super::milling::PassCut;
 use super::surface::Trail;
+use serde::Serialize;
 use std::f64::consts::{LN_2, PI, TAU};
 use stead_model::cutting::Cutter;
 
 /// Heights of a wall at equal distances along the feed, y over x.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Profile {
     /// Where it starts. m
     pub start: f64,
@@ -16,8 +17,8 @@ pub struct Profile {
     pub heights: Vec<f64>,
 }
 
-/// How rough a profile is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Height parameters of a profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Roughness {
     /// Arithmetic mean height R_a. m
     pub mean: f64,

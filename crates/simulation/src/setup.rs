@@ -9,13 +9,13 @@ use stead_model::robot::{Robot, Spindle};
 pub struct Setup {
     /// The arm, with masses.
     pub robot: Robot,
-    /// What it carries.
+    /// The spindle on its flange.
     pub spindle: Spindle,
     /// How much is modelled.
     pub variant: Variant,
-    /// What all damping is multiplied with.
+    /// Factor on all damping.
     pub damping_scale: f64,
-    /// How the motors are commanded.
+    /// The commanded motion.
     pub motion: Motion,
 }
 

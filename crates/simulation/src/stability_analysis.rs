@@ -6,17 +6,18 @@ use super::modes::{LinearArm, Mode};
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
+use serde::Serialize;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::robot::{Robot, Spindle};
 
-/// What is to be found out.
+/// Settings of a stability analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalysisSettings {
-    /// Where on the pass the arm stands. m
+    /// Distance along the pass at which the arm is linearised. m
     pub distance: f64,
     /// Spindle speeds of the lobes, from and to. rad/s
     pub speeds: [f64; 2],
-    /// Spindle speeds between and at both.
+    /// Number of spindle speeds, both ends included.
     pub points: usize,
     /// Largest depth of cut that is examined. m
     pub max_depth: f64,
@@ -25,7 +26,7 @@ pub struct AnalysisSettings {
 }
 
 /// Frequency response of the tool tip at one frequency, in the plane of the cut.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FrequencyResponse {
     /// Frequency of the force. Hz
     pub frequency: f64,
@@ -37,19 +38,19 @@ pub struct FrequencyResponse {
     pub cross: Complex<f64>,
 }
 
-/// How deep may be cut, and whether the cut at hand is calm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Critical depths of cut, and the stability of the cut at its own depth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CutStability {
     /// By semi-discretisation; none where all depths up to the largest are stable. m
     pub semi_discretisation: Option<f64>,
     /// By the zero-order solution. m
     pub zero_order: Option<f64>,
-    /// Of the cut at hand.
+    /// Largest Floquet multiplier at the depth of the cut.
     pub verdict: Verdict,
 }
 
 /// Result of a stability analysis.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityAnalysis {
     /// All modes, by natural frequency.
     pub modes: Vec<Mode>,
@@ -91,7 +92,7 @@ pub fn analyse(
     })
 }
 
-/// Critical depths up to `most` (m), and the verdict on the cut.
+/// Critical depths up to `max_depth` (m), and the stability of the cut.
 ///
 /// # Errors
 /// [`EngagementError`] for a cut without width.
@@ -99,17 +100,17 @@ pub fn cut_stability(
     plant: &Plant,
     cutter: &Cutter,
     cut: &PassCut,
-    most: f64,
+    max_depth: f64,
 ) -> Result<CutStability, EngagementError> {
     let motion = SemiDiscretisation::new(plant, cutter, cut)?;
     Ok(CutStability {
-        semi_discretisation: motion.critical_depth(most),
-        zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, most)?,
+        semi_discretisation: motion.critical_depth(max_depth),
+        zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, max_depth)?,
         verdict: motion.verdict(cut.section.axial_depth),
     })
 }
 
-/// Why there is nothing to be said.
+/// Why a stability analysis is not possible.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StabilityError {
     /// The robot file says too little.
@@ -123,7 +124,7 @@ pub enum StabilityError {
     Engagement(#[from] EngagementError),
 }
 
-/// The arm of a setup, for small motions about where it stands after a way (m) of its pass.
+/// The arm of a setup, linearised at a distance (m) along its pass.
 ///
 /// # Errors
 /// [`StabilityError::Missing`] when the robot says too little for the variant.
@@ -132,7 +133,7 @@ pub fn linear_at(setup: &Setup, distance: f64) -> Result<AnyLinearArm, Stability
     linear_of(&setup.robot, &setup.spindle, setup.variant, setup.damping_scale, &motors)
 }
 
-/// The arm with its drives at joint angles `theta` (rad), for small motions about its rest.
+/// The arm linearised about its rest, with its motors at joint angles `theta` (rad).
 ///
 /// # Errors
 /// [`StabilityError::Missing`] when the robot says too little for the variant.

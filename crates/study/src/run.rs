@@ -4,9 +4,9 @@ use super::PathStability;
 use stead_format::Run;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
-use stead_placement::outcome::{CANCELLATION, Cases, Outcome, Plan};
+use stead_placement::outcome::{Cases, Outcome, Plan};
 use stead_placement::place::{self, Infeasible, Score};
-use stead_placement::problem::{Criterion, Placement};
+use stead_placement::problem::Placement;
 use stead_simulation::stability_analysis::StabilityError;
 
 /// Why a run ends without a result.
@@ -52,11 +52,7 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
     let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
     let Cases { best, worst, .. } = &outcome.cases;
     let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
-    let mut warnings: Vec<Warning> = cancellation(run, best.plan.mean).into_iter().collect();
-    if outcome.interrupted {
-        let message = "interrupted: the results are the best found so far, not the end of the search";
-        warnings.push(Warning::new("interrupted", message));
-    }
+    let warnings = outcome.warnings.clone();
     Ok(Placed { outcome, stability, warnings })
 }
 
@@ -68,7 +64,7 @@ pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
     let score = place::score(&run.problem, placement)?;
     let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
     let notes = outside_cell(run, placement).into_iter().collect();
-    let warnings = cancellation(run, score.best.mean).into_iter().collect();
+    let warnings = score.warnings.clone();
     Ok(Scored { score, stability, notes, warnings })
 }
 
@@ -76,14 +72,6 @@ pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
 pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
     let is_outside = !run.problem.cell.contains(placement);
     is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
-}
-
-/// A plan that balances the deflection to nothing is a result of the criterion, not of the robot.
-fn cancellation(run: &Run, mean: f64) -> Option<Warning> {
-    let message = "the best plan cancels the deflection to nothing, which no real force will; criterion.force_uncertainty \
-                   makes the score the worst case over force errors";
-    let is_cancelled = mean <= CANCELLATION && run.problem.criterion == Criterion::default();
-    is_cancelled.then(|| Warning::new("cancellation", message))
 }
 
 fn stability(run: &Run, plans: [(&Placement, &Plan); 2]) -> Result<Option<PathStability>, StabilityError> {

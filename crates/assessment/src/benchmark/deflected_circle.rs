@@ -71,7 +71,7 @@ impl<'a> DeflectedCircle<'a> {
     /// [`Obstacle::Buckling`]). `profile` is left with the points of the last load. m
     ///
     /// # Errors
-    /// The first [`Obstacle`] met on the way round, or that of the first load where the arm is too soft for all.
+    /// The first [`Obstacle`] around the circle, or that of the first load where the arm is too soft for all.
     pub fn circularity<const N: usize>(
         &self,
         centre: [f64; 2],

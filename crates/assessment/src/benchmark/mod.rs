@@ -16,6 +16,7 @@ mod tests;
 pub use deflected_circle::{DeflectedCircle, Profile};
 
 use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
 use std::f64::consts::PI;
 use stead_model::robot::Pose;
 use stead_model::stiffness::loaded::Buckled;
@@ -48,7 +49,7 @@ impl Plane {
     }
 }
 
-/// Which way the wrench turns as the tool goes round the circle.
+/// Sense in which the wrench turns as the tool follows the circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turning {
     /// By the polar angle, as the tool and its feed do (eq. 34 as written).
@@ -97,9 +98,9 @@ pub struct Benchmark {
     pub wrench: Wrench,
     /// Which way the wrench turns.
     pub turning: Turning,
-    /// Orientation of the tool frame, kept all the way round.
+    /// Orientation of the tool frame, constant around the circle.
     pub base_from_tool: Matrix3<f64>,
-    /// The tool frame, its origin at the point that goes round, in the flange frame. `None`: the wrist centre goes round, with
+    /// The tool frame, its origin at the point that follows the circle, in the flange frame. `None`: the wrist centre follows it, with
     /// the flange frame's own orientation.
     pub flange_from_tool: Option<Pose<f64>>,
     /// Which joints yield; the others count as rigid.
@@ -111,7 +112,7 @@ pub struct Benchmark {
 }
 
 /// Why a circle cannot be milled at a place in a posture class.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Obstacle {
     /// Part of the circle is out of the arm's geometric reach.
     Reach,

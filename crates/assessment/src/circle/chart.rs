@@ -70,7 +70,7 @@ impl Chart for Centre {
 }
 
 /// Far centres `n / curvature` with `n = (cos, sin)` of an angle. Coordinates are angle and curvature, the latter within
-/// [`Far::MOST`] on either side of zero. The reach is distance less `1 / curvature`, without the cancellation:
+/// [`Far::MAX`] on either side of zero. The reach is distance less `1 / curvature`, without the cancellation:
 /// `(k |p|^2 - 2 p.n) / (|k p - n| + 1)`. It runs smoothly through curvature zero, where it is the distance from a line;
 /// behind, centre and sign have changed sides.
 pub(super) struct Far;
@@ -83,7 +83,7 @@ pub(super) struct FarAt {
 
 impl Far {
     /// Largest curvature on this chart.
-    pub const MOST: f64 = 1.0 / 3.0;
+    pub const MAX: f64 = 1.0 / 3.0;
     /// Bound of the second derivatives of the reach in any direction, see the test.
     const BEND: f64 = 1.6;
 }
@@ -145,7 +145,7 @@ impl Middle {
     /// The centre `x / w, y / w`, at infinity for a weight of zero.
     pub fn from_homogeneous([x, y]: Point, weight: f64) -> Self {
         let length = libm::hypot(x, y);
-        if length <= weight.abs() / Far::MOST {
+        if length <= weight.abs() / Far::MAX {
             return if length > 0.0 { Self::Near([x / weight, y / weight]) } else { Self::Near([0.0, 0.0]) };
         }
         Self::Far([libm::atan2(y, x), weight / length])
@@ -154,8 +154,8 @@ impl Middle {
     /// The same centre on the chart that suits it; both are good for centres near their common border.
     pub fn recharted(self) -> Self {
         match self {
-            Self::Near([x, y]) if libm::hypot(x, y) > 1.2 / Far::MOST => Self::from_homogeneous([x, y], 1.0),
-            Self::Far([angle, curvature]) if curvature.abs() > 1.2 * Far::MOST => {
+            Self::Near([x, y]) if libm::hypot(x, y) > 1.2 / Far::MAX => Self::from_homogeneous([x, y], 1.0),
+            Self::Far([angle, curvature]) if curvature.abs() > 1.2 * Far::MAX => {
                 let (sine, cosine) = libm::sincos(angle);
                 Self::Near([cosine / curvature, sine / curvature])
             }
@@ -167,7 +167,7 @@ impl Middle {
     pub fn moved(self, [dx, dy]: Point) -> Self {
         match self {
             Self::Near([x, y]) => Self::Near([x + dx, y + dy]),
-            Self::Far([x, y]) => Self::Far([x + dx, (y + dy).clamp(-2.0 * Far::MOST, 2.0 * Far::MOST)]),
+            Self::Far([x, y]) => Self::Far([x + dx, (y + dy).clamp(-2.0 * Far::MAX, 2.0 * Far::MAX)]),
         }
     }
 
@@ -241,7 +241,7 @@ mod tests {
     proptest! {
         #[test]
         fn far_reach_is_the_distance_less_that_of_the_origin(
-            angle in 0.0..6.3_f64, curvature in 0.01..Far::MOST, direction in 0.0..6.3_f64, length in 0.0..1.0_f64,
+            angle in 0.0..6.3_f64, curvature in 0.01..Far::MAX, direction in 0.0..6.3_f64, length in 0.0..1.0_f64,
         ) {
             let p = [length * libm::cos(direction), length * libm::sin(direction)];
             let c = Middle::Far([angle, curvature]).place();
@@ -253,7 +253,7 @@ mod tests {
 
         #[test]
         fn far_derivatives_are_those_of_the_reach(
-            angle in 0.0..6.3_f64, curvature in -Far::MOST..Far::MOST, direction in 0.0..6.3_f64, length in 0.0..1.0_f64,
+            angle in 0.0..6.3_f64, curvature in -Far::MAX..Far::MAX, direction in 0.0..6.3_f64, length in 0.0..1.0_f64,
         ) {
             let p = [length * libm::cos(direction), length * libm::sin(direction)];
             let (_, gradient, [aa, ak, kk]) = Far::derivatives(&Far::at([angle, curvature]), &p);
@@ -277,7 +277,7 @@ mod tests {
                     let (sine, cosine) = libm::sincos(f64::from(turn).to_radians());
                     let length = f64::from(step) / 200.0;
                     let (_, [g, h], [aa, ak, kk]) =
-                        Far::derivatives(&Far::at([0.0, curvature * Far::MOST]), &[length * cosine, length * sine]);
+                        Far::derivatives(&Far::at([0.0, curvature * Far::MAX]), &[length * cosine, length * sine]);
                     steepest = steepest.max(libm::hypot(g, h));
                     // The larger eigenvalue in absolute terms.
                     bend = bend.max((aa + kk).abs() / 2.0 + libm::hypot((aa - kk) / 2.0, ak));

@@ -48,9 +48,10 @@ pub use lsc::least_squares;
 use chart::Middle;
 use frame::Frame;
 use hull::Hull;
+use serde::Serialize;
 
 /// A circle in the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Circle {
     /// Centre, in the frame and unit of the points.
     pub center: [f64; 2],
@@ -59,7 +60,7 @@ pub struct Circle {
 }
 
 /// A reference circle and how far the points depart from it. Lengths are in the unit of the points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Fit {
     /// The reference circle.
     pub circle: Circle,
@@ -73,7 +74,7 @@ pub struct Fit {
 }
 
 /// All four reference circles of the same points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Circles {
     /// Least-squares circle.
     pub lsc: Fit,

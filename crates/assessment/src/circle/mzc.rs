@@ -7,7 +7,7 @@ use super::search::CentreSearch;
 use std::f64::consts::TAU;
 
 /// Half the side of the square of near centres; farther ones are on the other chart.
-const NEAR: f64 = 1.0 / Far::MOST;
+const NEAR: f64 = 1.0 / Far::MAX;
 /// How much closer two lines may seem than the best circles before that is more than rounding: of the width, and of the
 /// unit.
 const ROUNDING: [f64; 2] = [1e-12, 8.0 * f64::EPSILON];
@@ -29,7 +29,7 @@ pub(super) fn minimum_zone(points: &[Point], hull: &Hull, starts: &[Point]) -> R
     if let Some(found) = search.best::<Centre>([-NEAR, -NEAR], [NEAR, NEAR], best.1) {
         best = (Middle::Near(found.coordinates), found.objective);
     }
-    if let Some(found) = search.best::<Far>([0.0, 0.0], [TAU, Far::MOST], best.1) {
+    if let Some(found) = search.best::<Far>([0.0, 0.0], [TAU, Far::MAX], best.1) {
         best = (Middle::Far(found.coordinates), found.objective);
     }
     let [relative, absolute] = ROUNDING;

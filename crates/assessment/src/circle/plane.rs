@@ -2,6 +2,7 @@
 
 use super::CircleError;
 use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
 
 /// Part of the largest coordinate within which points count as equal, and as on one line.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -11,7 +12,7 @@ const LARGEST: f64 = 1e60;
 const NEARLY_NORMAL: f64 = 0.9;
 
 /// A plane with a frame in it. Lengths are in the unit of the points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FittedPlane {
     /// The mean of the points, origin of the plane's frame.
     pub center: Vector3<f64>,

@@ -4,8 +4,8 @@ use super::{CompensatedPoint, CompensationProblem, Deflection, DeflectionModel, 
 use std::f64::consts::TAU;
 use stead_model::robot::{Frames, Pose, Robot, angles::ANGLE_ROUNDING};
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
-use stead_model::stiffness::rotation::{rotation_from_vector, rotation_vector};
 use stead_model::stiffness::{Displacement, displacement};
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// A commanded pose.
 struct Command {

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stead_model::robot::Frames;
 use stead_model::robot::testing::{kr270, odd_arms, spindle};
 use stead_model::stiffness::equilibrium::{Load, displaced, equilibrium};
-use stead_model::stiffness::rotation::rotation_vector;
+use stead_numerics::rotation::rotation_vector;
 
 /// The station at which an arm stands with joint angles `theta`, under a wrench.
 fn path_point(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> PathPoint {

@@ -26,7 +26,6 @@ pub mod normal_equations;
 pub mod outcome;
 pub mod outliers;
 mod problem;
-pub mod rotation;
 pub mod setup;
 pub mod sheet;
 pub mod spring;

@@ -5,11 +5,11 @@
 //! `R_j^T dp` (Klimchik et al. 2017, eq. 24, where `D^T D` is the identity). Here R is sought along with them: Gauss-Newton
 //! with steps halved until they help, to the least sum of squares over all of them.
 
-use super::rotation::rotation_from_vector;
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use serde::Serialize;
 use stead_model::robot::Pose;
+use stead_numerics::rotation::rotation_from_vector;
 
 /// Pose of the tracker and positions of the reference points.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,10 +1,10 @@
 //! Sheets that an arm of known compliances would give: for examples and for tests of the identification.
 
 use super::model::Response;
-use super::rotation::{rotation_from_vector, vector_from_rotation};
 use super::sheet::{Configuration, LoadCase, Reading, Sheet};
 use nalgebra::{Vector3, Vector6};
 use stead_model::robot::{Pose, Robot};
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// The measuring cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub fn sheet(
                 let turned = cell.tracker_from_base.rotation * (response.angular * compliances);
                 let mut noisy = || rotation_from_vector(&Vector3::from_fn(|_, _| orientation_error()));
                 let (before, after) = (noisy(), noisy());
-                vector_from_rotation(&(after * rotation_from_vector(&turned) * before.transpose()))
+                rotation_vector(&(after * rotation_from_vector(&turned) * before.transpose()))
             });
             let line = sheet.readings.len() + 2;
             sheet.readings.push(Reading { line, configuration: index, point, unloaded, loaded, turn });

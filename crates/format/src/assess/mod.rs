@@ -25,6 +25,7 @@ use stead_assessment::map::Grid;
 use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
 use stead_model::cutting::ForceHistory;
+use stead_model::published::Published;
 use stead_model::robot::{Compliance, Pose, Robot};
 
 /// An assessment file and the files it names, read and checked.
@@ -37,7 +38,7 @@ pub struct AssessRun {
     /// The cutting forces behind the load, where the file computes them.
     pub force_history: Option<ForceHistory>,
     /// Published tables to set beside ours.
-    pub published: Option<PublishedTables>,
+    pub published: Option<Published<PublishedTables>>,
     /// The files that were read: config, robots, reference.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.

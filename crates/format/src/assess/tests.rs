@@ -124,7 +124,7 @@ fn the_shipped_files_are_the_published_case_and_its_tables() {
     {
         let run = read_assessment(&root().join("configs").join(name)).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!((run.comparison.robots.len(), run.comparison.benchmark.turning), (5, turning));
-        let published = run.published.unwrap();
+        let published = run.published.unwrap().figures;
         // 5 robots x 2 elbows x (3 + 3 of Table 5, 4 of Table 6, 4 of Table 7).
         assert_eq!(published.readings.len(), 140);
         let dashes = published.readings.iter().filter(|reading| reading.value.is_none()).count();

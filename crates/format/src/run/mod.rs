@@ -13,7 +13,7 @@ pub use tables::{
     CellTable, ConstraintsTable, CriterionTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable,
 };
 
-use crate::input::{InputError, InputFile, Reference, input_file};
+use crate::input::{InputError, InputFile, input_file};
 use crate::place::{NamedFile, Place};
 use crate::robot::{moving_robot_from, robot_from};
 use crate::spindle::SpindleTable;
@@ -25,6 +25,7 @@ use notes::{density_note, direction_note, speed_note, tilt_note};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use stead_model::published::Published;
 use stead_model::task::Task;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
@@ -81,7 +82,7 @@ pub struct Run {
     /// The files that were read, in the order config, robot, task.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
-    pub reference: Option<Reference>,
+    pub reference: Option<Published<[f64; 4]>>,
     /// What is to be cut along the path, where its stability is asked for.
     pub path_stability: Option<PathStabilityAnalysis>,
     /// What the user should know about the input though it is not wrong, in sentences.

@@ -1,6 +1,6 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
-use crate::input::{InputError, Reference};
+use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
@@ -9,6 +9,7 @@ use crate::units::{Deg, DegPerMm, Mm, MmPerS, Number, Positive, S, ZeroToTen, ra
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
+use stead_model::published::Published;
 use stead_model::robot::{Robot, angles::yaw_from_q4};
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::{self, Cell, Constraints, Criterion, Problem, Redundancy};
@@ -211,8 +212,8 @@ pub struct ReferenceTable {
 }
 
 impl ReferenceTable {
-    pub(super) fn reference(self) -> Reference {
-        Reference { source: self.source, case_mm: self.case_mm.0.map(Quantity::written) }
+    pub(super) fn reference(self) -> Published<[f64; 4]> {
+        Published { source: self.source, figures: self.case_mm.0.map(Quantity::written) }
     }
 }
 

@@ -29,7 +29,7 @@ fn shipped_runs_are_the_published_case() {
     assert_eq!(run.transfer, TransferSettings::default());
     let reference = run.reference.unwrap();
     assert_eq!(reference.source, "Caro et al. 2013, Table III");
-    assert_eq!(reference.case_mm[1], 0.35);
+    assert_eq!(reference.figures[1], 0.35);
     assert_eq!(run.notes, Vec::<String>::new());
 
     let softer = shipped("caro-2013-k1-0.8.toml");

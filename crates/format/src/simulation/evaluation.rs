@@ -7,9 +7,10 @@ use crate::quantity::Quantity;
 use crate::shapes::Span;
 use crate::units::ranges;
 use std::ops::Bound::Included;
+use stead_model::published::Published;
 use stead_simulation::arm::Variant;
 use stead_simulation::milling::PassCut;
-use stead_simulation::outcome::{EvaluationSettings, Published, Statistics};
+use stead_simulation::outcome::{EvaluationSettings, PassFigures, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::linear_at;
@@ -33,7 +34,6 @@ const DAMPED: f64 = 0.5;
 pub(super) fn evaluation_from(
     table: &SettingsTable,
     at: &Place<'_>,
-    published: Option<Published>,
     setup: &Setup,
     cut: &PassCut,
 ) -> Result<EvaluationSettings, InputError> {
@@ -52,24 +52,23 @@ pub(super) fn evaluation_from(
         window,
         height: table.wall_height_mm.map_or(cut.section.axial_depth / 2.0, Quantity::si),
         cutoff: table.cutoff_mm.map_or(CUTOFF, Quantity::si),
-        published,
     })
 }
 
 impl PublishedTable {
     /// The figures of a variant.
-    pub(super) fn published(self, variant: Variant) -> Published {
+    pub(super) fn published(self, variant: Variant) -> Published<PassFigures> {
         let forces = match variant {
             Variant::Springs => self.springs,
             Variant::Gravity => self.gravity,
             Variant::Orthogonal => self.orthogonal,
             Variant::Backlash => self.backlash,
         };
-        Published {
-            source: self.source,
+        let figures = PassFigures {
             forces: forces.map(|forces| forces.statistics()),
             roughness: self.profile.map(|profile| profile.roughness()),
-        }
+        };
+        Published { source: self.source, figures }
     }
 }
 

@@ -22,8 +22,9 @@ use stability::analysis_from;
 pub(crate) use stability::max_depth;
 use std::path::Path;
 use stead_model::cutting::Cutter;
+use stead_model::published::Published;
 use stead_simulation::milling::PassCut;
-use stead_simulation::outcome::EvaluationSettings;
+use stead_simulation::outcome::{EvaluationSettings, PassFigures};
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
 
@@ -42,6 +43,8 @@ pub struct SimulationRun {
     pub evaluation: EvaluationSettings,
     /// What is to be found out of its stability.
     pub analysis: AnalysisSettings,
+    /// Published figures to set beside those of the simulated pass.
+    pub published: Option<Published<PassFigures>>,
     /// The files that were read: config, robot.
     pub inputs: Vec<InputFile>,
 }
@@ -96,8 +99,8 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
         check_duration(&setup, &cut, &at.key("pass").key("feed_mm_per_min"))?;
     }
     let published = file.published.map(|table| table.published(setup.variant));
-    let evaluation = evaluation_from(&settings, &settings_at, published, &setup, &cut)?;
-    Ok(SimulationRun { setup, cutter, cut, gap: file.work.gap_mm.si(), evaluation, analysis, inputs })
+    let evaluation = evaluation_from(&settings, &settings_at, &setup, &cut)?;
+    Ok(SimulationRun { setup, cutter, cut, gap: file.work.gap_mm.si(), evaluation, analysis, published, inputs })
 }
 
 /// Refuses a slot into which the cutter does not fit.

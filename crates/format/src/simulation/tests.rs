@@ -90,7 +90,7 @@ fn optional_tables_override_the_defaults() {
         (1.2e-3, 0.8e-3, Some([0.4, 1.4]))
     );
     // The figures of the variant that is run, which is the first where none is named.
-    let published = run.evaluation.published.unwrap();
+    let published = run.published.unwrap().figures;
     assert_eq!(published.forces.unwrap()[1].min, -111.39);
     assert_eq!(published.roughness.unwrap().total, 13.5e-6);
     assert_eq!((run.analysis.distance, run.analysis.points, run.analysis.max_depth), (0.02, 10, 0.005));

@@ -41,9 +41,10 @@
 //! and F_z negative.
 
 use nalgebra::{Matrix3, Vector3, vector};
+use serde::Serialize;
 
 /// Coefficients of the linear cutting force law with edge forces (see the [module](self)).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Coefficients {
     /// K_t, against the motion of the tooth. Pa
     pub tangential: f64,

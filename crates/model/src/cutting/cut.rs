@@ -3,9 +3,10 @@
 use super::cutter::Cutter;
 use super::rotation::Rotation;
 use nalgebra::Vector3;
+use serde::Serialize;
 
 /// A side of the path, seen in the feed direction with the tool axis pointing up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Side {
     /// Towards `axis x feed`.
     Left,
@@ -24,7 +25,7 @@ impl Side {
 }
 
 /// How the teeth meet the work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum MillingDirection {
     /// Up milling: the chip starts at zero thickness.
     Conventional,
@@ -43,7 +44,7 @@ impl MillingDirection {
 }
 
 /// The cross section of a cut along a wall.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cut {
     /// Conventional (up) or climb (down) milling; with the rotation of the cutter this says on which side the wall is.
     pub direction: MillingDirection,

@@ -2,10 +2,11 @@
 
 use super::coefficients::Coefficients;
 use super::rotation::Rotation;
+use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// One tooth of a cutter.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Tooth {
     /// How far it follows the tooth before it; the first follows the last of the turn before. rad
     pub pitch: f64,
@@ -14,7 +15,7 @@ pub struct Tooth {
 }
 
 /// An end mill with straight sides.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cutter {
     teeth: Vec<Tooth>,
     helix: f64,

@@ -1,10 +1,11 @@
-//! Over which part of a turn a tooth cuts (Klimchik 2017, Fig. 3 and eq. 4 to 7).
+//! Engagement: the arcs of a turn over which a tooth cuts (Klimchik 2017, Fig. 3 and eq. 4 to 7).
 
 use super::cut::MillingDirection;
+use serde::Serialize;
 use std::f64::consts::PI;
 
 /// A part of a turn from `entry` to `exit`, angles phi as of [`Engagement`]. rad
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Arc {
     /// Where a tooth enters the work.
     pub entry: f64,
@@ -21,7 +22,7 @@ pub struct Arc {
 /// thickness, down milling ends at phi = pi, and a full slot does both.
 ///
 /// Lengths are measured across the feed. Fig. 3 of the paper shows such cases; which, its text does not say.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Engagement {
     /// Ascending, without overlap, all within 0 to pi.
     arcs: Vec<Arc>,

@@ -3,10 +3,11 @@
 use super::engagement::{Arc, Engagement, Integrals};
 use super::force::CuttingForce;
 use crate::task::Wrench;
+use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
 /// The wrench at an angle, in the frame of [this room](crate::cutting).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// The angle phi as of [`Engagement`]. rad
     pub phi: f64,
@@ -15,7 +16,7 @@ pub struct Sample {
 }
 
 /// The wrench of a milling tool: its mean, how the mean grows as the tool moves into the work, and how it goes over a turn.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ForceHistory {
     /// Where a tooth cuts.
     pub engagement: Engagement,

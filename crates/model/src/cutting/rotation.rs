@@ -1,9 +1,10 @@
 //! The sense in which a cutter turns, and where a tooth is and moves at an angle of the turn.
 
 use nalgebra::{Vector3, vector};
+use serde::Serialize;
 
 /// Sense of rotation of the cutter, seen from the spindle along the tool axis down to the work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Rotation {
     /// As an ordinary right-hand cutter turns.
     Clockwise,

@@ -1,9 +1,10 @@
-//! What a maker's data sheet says of an arm, beside its kinematics.
+//! Figures of the maker's data sheet other than the kinematics.
 
 use super::{Robot, RobotError};
+use serde::Serialize;
 
 /// Figures of the data sheet, where known; no computation of stiffness or kinematics depends on them.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct DataSheet {
     /// Rated payload. kg
     pub payload: Option<f64>,

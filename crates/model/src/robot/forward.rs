@@ -1,56 +1,9 @@
 //! Forward kinematics: where the joint axes and the flange are for given joint angles, and the geometric Jacobian.
 
 use super::Robot;
+use super::pose::{Pose, cast};
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use serde::Serialize;
 use stead_numerics::scalar::Scalar;
-
-/// A rigid transform `a_from_b`: takes coordinates in b to coordinates in a.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Pose<T: Scalar> {
-    /// Rotation from b to a.
-    pub rotation: Matrix3<T>,
-    /// Origin of b in a. m
-    pub translation: Vector3<T>,
-}
-
-impl<T: Scalar> Pose<T> {
-    /// The transform that leaves everything where it is.
-    pub fn identity() -> Self {
-        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
-    }
-
-    /// `a_from_b.then(b_from_c)` is `a_from_c`.
-    pub fn then(&self, other: &Self) -> Self {
-        Self {
-            rotation: self.rotation * other.rotation,
-            translation: self.rotation * other.translation + self.translation,
-        }
-    }
-
-    /// The inverse transform, `b_from_a`.
-    pub fn inverse(&self) -> Self {
-        let rotation = self.rotation.transpose();
-        Self { rotation, translation: -(rotation * self.translation) }
-    }
-
-    /// Coordinates in a of a point given in b. m
-    pub fn point(&self, point: &Vector3<T>) -> Vector3<T> {
-        self.rotation * point + self.translation
-    }
-}
-
-impl Pose<f64> {
-    /// The same transform in another number type, with derivatives of zero.
-    pub fn cast<T: Scalar>(&self) -> Pose<T> {
-        Pose { rotation: self.rotation.map(T::constant), translation: cast(&self.translation) }
-    }
-}
-
-/// A vector in another number type, with derivatives of zero.
-pub fn cast<T: Scalar>(vector: &Vector3<f64>) -> Vector3<T> {
-    vector.map(T::constant)
-}
 
 /// The joint frames of an arm in one configuration, in base coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,14 +22,12 @@ impl<T: Scalar> Frames<T> {
         let mut pose = Pose::<T>::identity();
         let mut axes = [Vector3::zeros(); 6];
         let mut origins = [Vector3::zeros(); 6];
-        for (j, joint) in robot.joints().iter().enumerate() {
-            let (sa, ca) = robot.geometry().twist_sin_cos(j, joint.alpha);
-            let (sa, ca) = (T::constant(sa), T::constant(ca));
+        for (j, row) in robot.rows().iter().enumerate() {
+            // Rx(alpha) Rz(theta), with the translation of the row.
+            let (sa, ca) = (T::constant(row.rotation[(2, 1)]), T::constant(row.rotation[(1, 1)]));
             let (st, ct) = theta[j].sin_cos();
             let rotation = Matrix3::new(ct, -st, T::zero(), st * ca, ct * ca, -sa, st * sa, ct * sa, ca);
-            let d = T::constant(joint.d);
-            let step = Pose { rotation, translation: Vector3::new(T::constant(joint.a), -sa * d, ca * d) };
-            pose = pose.then(&step);
+            pose = pose.then(&Pose { rotation, translation: cast(&row.translation) });
             axes[j] = pose.rotation.column(2).into_owned();
             origins[j] = pose.translation;
         }

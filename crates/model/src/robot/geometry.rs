@@ -1,5 +1,6 @@
 //! The shape of an elbow arm with a spherical wrist, reduced to what its closed-form inverse needs.
 
+use super::pose::Pose;
 use super::{Joint, RobotError};
 use nalgebra::{Matrix3, Vector3};
 
@@ -96,14 +97,22 @@ impl Geometry {
         libm::hypot(self.shoulder_radius.abs() + self.upper_arm + self.forearm, self.lateral)
     }
 
-    /// The exact sine and cosine of the twist before joint `index` (from 0), as the closed form takes it.
-    pub fn twist_sin_cos(&self, index: usize, alpha: f64) -> (f64, f64) {
-        match index {
-            1 => (self.lift, 0.0),
-            2 => (0.0, self.fold),
-            3..=5 => (self.twist[index - 3], 0.0),
-            _ => libm::sincos(alpha),
-        }
+    /// The frame of every row at joint angle zero, in that before it: `Rx(alpha_i) Tx(a_i) Tz(d_i)`, right and straight twists
+    /// taken as exact.
+    pub(super) fn rows(&self, joints: &[Joint; 6]) -> [Pose<f64>; 6] {
+        std::array::from_fn(|j| {
+            let Joint { alpha, a, d, .. } = joints[j];
+            let (sine, cosine) = match j {
+                1 => (self.lift, 0.0),
+                2 => (0.0, self.fold),
+                3..=5 => (self.twist[j - 3], 0.0),
+                _ => libm::sincos(alpha),
+            };
+            Pose {
+                rotation: Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine),
+                translation: Vector3::new(a, -sine * d, cosine * d),
+            }
+        })
     }
 }
 

@@ -4,11 +4,9 @@
 //! theta_2, and the rest of the orientation fixes the wrist (two ways). Where a joint angle is undetermined (wrist centre
 //! on axis 1, axes 4 and 6 in line, wrist centre on axis 2) it is set to zero, and the others follow from it.
 
-use super::{
-    Robot,
-    forward::{Pose, cast},
-    posture::Posture,
-};
+use super::Robot;
+use super::pose::{Pose, cast};
+use super::posture::Posture;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_numerics::scalar::Scalar;

@@ -1,4 +1,4 @@
-//! What the arm is: geometry, kinematics, Jacobian, conditioning, joint limits and turns.
+//! The robot: geometry, kinematics, Jacobian, conditioning, joint limits and turns.
 //!
 //! A [`Robot`] is six revolute joints given by modified Denavit-Hartenberg rows,
 //! `T_(i-1,i) = Rx(alpha_i) Tx(a_i) Rz(theta_i) Tz(d_i)` (Khalil and Dombre 2002), whose last three axes meet in one
@@ -24,13 +24,16 @@
 //! ```
 
 pub mod angles;
+pub mod chain;
 mod compliance;
 pub mod conditioning;
 mod data_sheet;
 mod dynamics;
 mod forward;
 mod geometry;
+mod inertial;
 mod inverse;
+mod pose;
 pub mod posture;
 mod spindle;
 pub mod turns;
@@ -38,13 +41,17 @@ mod uncertainty;
 
 pub use compliance::{Compensator, Compliance};
 pub use data_sheet::DataSheet;
-pub use dynamics::{Inertial, InertialError, JointDynamics, Orthogonal};
-pub use forward::{Frames, Pose, cast};
+pub use dynamics::{JointDynamics, Orthogonal};
+pub use forward::Frames;
 pub use geometry::Geometry;
+pub use inertial::{Inertial, InertialError};
 pub use inverse::Unreachable;
+pub use pose::{Pose, cast};
 pub use posture::{Posture, PostureClass};
 pub use spindle::{Spindle, point_from_tool};
 pub use uncertainty::{Parameter, Uncertainty, UncertaintyError};
+
+use chain::{Axis, Chain, Link};
 
 /// One row of the arm, base first: modified Denavit-Hartenberg parameters, limits, compliance.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +82,7 @@ pub struct Robot {
     name: String,
     joints: [Joint; 6],
     geometry: Geometry,
+    rows: [Pose<f64>; 6],
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
@@ -177,6 +185,7 @@ impl Robot {
         let geometry = Geometry::new(&joints)?;
         Ok(Self {
             name: name.into(),
+            rows: geometry.rows(&joints),
             joints,
             geometry,
             data_sheet: DataSheet::default(),
@@ -195,7 +204,18 @@ impl Robot {
         &self.joints
     }
 
-    /// The arm's shape as the closed-form inverse sees it.
+    /// The frame of every row at joint angle zero, in that before it (the base frame for the first).
+    pub fn rows(&self) -> &[Pose<f64>; 6] {
+        &self.rows
+    }
+
+    /// The arm as a [`Chain`] with a body behind every joint, given in the frame of its row, and a tip in the flange frame.
+    pub fn chain(&self, bodies: &[Inertial; 6], flange_from_tip: Pose<f64>) -> Chain<6> {
+        let links = std::array::from_fn(|j| Link::new(self.rows[j], Axis::Z, Some(bodies[j])));
+        Chain::new(links, flange_from_tip)
+    }
+
+    /// The geometry of the arm, as the closed-form inverse uses it.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }

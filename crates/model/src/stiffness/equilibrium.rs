@@ -7,9 +7,9 @@
 
 use super::Displacement;
 use super::loaded::{inverse_tangent, load_hessian, roots};
-use super::rotation::rotation_vector;
 use crate::robot::{Frames, Robot};
 use nalgebra::{Vector3, Vector6};
+use stead_numerics::rotation::rotation_vector;
 
 /// A load acting at a point of the tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ pub fn equilibrium(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<[f64;
     Ok(turned(theta, &roots, &deflection))
 }
 
-/// How far the point of a load moves, and how the tool turns, from the commanded configuration `theta` (rad) to the
+/// Displacement of the point of a load and rotation of the tool, from the commanded configuration `theta` (rad) to the
 /// equilibrium, in the base frame. The rotation must be below half a turn.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! How the arm yields: joint compliances seen at the tool centre point.
+//! Deflection of the arm: joint compliances mapped to the tool centre point.
 //!
 //! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as corrected: no
 //! complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
@@ -7,7 +7,6 @@
 
 pub mod equilibrium;
 pub mod loaded;
-pub mod rotation;
 
 use crate::robot::Frames;
 use nalgebra::Vector3;

@@ -4,6 +4,7 @@
 //! the file or computed by a cutting model (see [`crate::cutting`]).
 
 use nalgebra::{Matrix3, Vector3};
+use serde::Serialize;
 use std::ops::Range;
 
 /// One point of a tool path.
@@ -38,7 +39,7 @@ impl PathPoint {
 }
 
 /// What the workpiece does to the tool at the tool centre point, in the workpiece frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Wrench {
     /// Force. N
     pub force: Vector3<f64>,

@@ -159,7 +159,7 @@ impl BranchAndBound {
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
     ///
     /// `nodes` is the number of boxes bounded before; `parts` gives those of a box, `None` where it is not to be cut further.
-    /// Where bounds are the same, the younger box comes first: what cannot be told apart is found by going down, not by cutting
+    /// Where bounds are the same, the younger box comes first: boxes that tables cannot distinguish are found by going down, not by cutting
     /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
     /// The result does not depend on the number of threads.
     pub fn explore<T: Send + Sync>(

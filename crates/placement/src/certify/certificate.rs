@@ -167,7 +167,7 @@ impl Proof {
         describe(&self.relaxed)
     }
 
-    /// Whether the bound is worth a sentence.
+    /// Whether the bound says anything of use: it is above zero, and the gap no wider than [`MAX_GAP_PERCENT`].
     pub fn is_of_use(&self) -> bool {
         self.bound_mm() > 0.0 && self.gap_percent() <= MAX_GAP_PERCENT
     }

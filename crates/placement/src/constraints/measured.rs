@@ -157,7 +157,56 @@ pub fn on_state(problem: &Problem, state: &State<f64>) -> impl Iterator<Item = M
     [Some(conditioning), deflection].into_iter().flatten()
 }
 
+/// Whether the steps of all real joint angles (rad) between neighbouring path points are within their limits: the same as
+/// that every constraint of [`on_joint_steps`] holds, for loops over many pairs.
+#[inline]
+pub fn joint_steps_hold(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
+    (0..6).all(|j| (to[j] - from[j]).abs() <= limits[j] + STEP_ROUNDING)
+}
+
 /// The constraints on the steps of the real joint angles (rad) between neighbouring path points.
 pub fn on_joint_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> [Measured; 6] {
     std::array::from_fn(|j| Measured::JointStep { joint: j as u8 + 1, step: (to[j] - from[j]).abs(), limit: limits[j] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn margins_are_positive_inside_and_negative_outside() {
+        let problem = five_segments();
+        let joints = problem.robot.joints();
+        let middle = joints.each_ref().map(|joint| (joint.min + joint.max) / 2.0);
+        assert!(on_joints(&problem, &middle).iter().all(|measured| measured.holds() && measured.margin() > 0.0));
+        for j in 0..6 {
+            for (limit, side) in [(joints[j].min, -1.0), (joints[j].max, 1.0)] {
+                let mut angles = middle;
+                angles[j] = limit + side * 0.01;
+                let broken: Vec<_> = on_joints(&problem, &angles).into_iter().filter(|m| !m.holds()).collect();
+                assert_eq!(
+                    broken.iter().map(Measured::kind).collect::<Vec<_>>(),
+                    [ConstraintKind::JointLimit(j as u8 + 1)]
+                );
+                assert!((broken[0].margin() + 0.01).abs() < 1e-12 && (broken[0].severity() - 0.1).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn the_fast_form_of_steps_agrees() {
+        let (from, limits) = ([0.3; 6], [0.1, 0.2, 0.3, 0.4, 0.5, PI]);
+        for j in 0..6 {
+            for (excess, holds) in [(-1e-6, true), (0.0, true), (1e-6, false)] {
+                for side in [-1.0, 1.0] {
+                    let mut to = from;
+                    to[j] += side * (limits[j] + excess);
+                    assert_eq!(joint_steps_hold(&from, &to, &limits), holds);
+                    assert_eq!(on_joint_steps(&from, &to, &limits).iter().all(Measured::holds), holds);
+                }
+            }
+        }
+    }
 }

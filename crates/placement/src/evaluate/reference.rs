@@ -1,7 +1,7 @@
 //! The score of one state: one path point, one placement, one beta, one posture.
 //!
 //! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
-//! batch evaluator of [`super::evaluate::batch`], which is tested against this one.
+//! batch evaluator of [`super::batch`], which is tested against this one.
 
 use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::Vector3;

@@ -35,7 +35,7 @@ impl LookupTable<'_> {
         workspace: &mut Workspace,
     ) -> (Placement, Objective, usize) {
         let mut best = *start;
-        let mut worth = self.objective(start, grid, scheme, workspace);
+        let mut objective = self.objective(start, grid, scheme, workspace);
         let mut evaluations = 1;
         let mut steps = FIRST;
         while evaluations < MAX_EVALUATIONS && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
@@ -47,9 +47,9 @@ impl LookupTable<'_> {
                     }
                     evaluations += 1;
                     let there = self.objective(&placement, grid, scheme, workspace);
-                    let better = rank(sense, there, worth) == Ordering::Less;
+                    let better = rank(sense, there, objective) == Ordering::Less;
                     if better {
-                        (best, worth) = (placement, there);
+                        (best, objective) = (placement, there);
                         // The next step goes the same way first.
                         steps[k] *= side;
                     }
@@ -58,7 +58,7 @@ impl LookupTable<'_> {
                 steps[k] = if found { steps[k] * GROWTH } else { steps[k] / SHRINK };
             }
         }
-        (best, worth, evaluations)
+        (best, objective, evaluations)
     }
 
     /// A placement moved along one direction, inside the cell.

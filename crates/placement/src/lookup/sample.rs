@@ -23,7 +23,7 @@ pub(super) mod field {
 
 /// The smallest bound on 1/kappa that room is measured in units of.
 const LEAST_SLOPE: f64 = 0.05;
-/// More room than this is not told apart.
+/// Room is cut off at this.
 const MOST_ROOM: f64 = 0.5;
 
 /// All rows, and which of them (height, radius, posture class) have an allowed state.

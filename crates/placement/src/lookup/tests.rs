@@ -148,7 +148,7 @@ fn drawn_poses(problem: &Problem, count: usize) -> Vec<Placement> {
 }
 
 #[test]
-fn worth_agrees_with_the_planner() {
+fn objective_agrees_with_the_planner() {
     // The workpiece that hangs is where limits bind all over: there the table errs at their edges.
     for (problem, close_share, most_above) in [(five_segments(), 8, 0), (robust(), 8, 0), (hanging(), 6, 5)] {
         let planner = Planner::new(&problem);
@@ -244,7 +244,7 @@ fn steps_of_beta_are_the_planners() {
 }
 
 #[test]
-fn polishing_gets_better_inside_the_cell() {
+fn coordinate_search_gets_better_inside_the_cell() {
     let mut problem = five_segments();
     problem.cell.yaw = Interval { min: 0.2, max: 2.4 };
     let table = LookupTable::new(&problem).unwrap();
@@ -253,9 +253,9 @@ fn polishing_gets_better_inside_the_cell() {
     for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let start = Placement::from(start);
         let before = table.objective(&start, &grid, None, &mut workspace);
-        let (end, worth, evaluations) = table.coordinate_search(&start, sense, None, &grid, &mut workspace);
-        assert!(rank(sense, worth, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {worth:?}");
-        assert_eq!(worth, table.objective(&end, &grid, None, &mut workspace));
+        let (end, objective, evaluations) = table.coordinate_search(&start, sense, None, &grid, &mut workspace);
+        assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
+        assert_eq!(objective, table.objective(&end, &grid, None, &mut workspace));
         assert!(problem.cell.contains(&end), "{end:?}");
     }
 }

@@ -73,15 +73,15 @@ fn a_search_notices_that_its_table_misleads() {
     let weaker = Problem { task: weaker, ..problem.clone() };
     let wrong = LookupTable::new(&weaker).unwrap();
     let planner = Planner::new(&problem);
-    let misled = |table: Option<&LookupTable<'_>>| {
+    let is_rejected = |table: Option<&LookupTable<'_>>| {
         let found = search::search(&Evaluator::new(&planner, table), &small(), Sense::Min, &Monitor::silent());
         assert_eq!(found.basins[0].objective.mean(), {
             let (placement, scheme) = (&found.basins[0].placement, found.basins[0].scheme.as_deref());
             planner.objective(placement, Sense::Min, scheme, &mut planner.workspace()).mean()
         });
-        found.misled
+        found.lookup_rejected
     };
-    assert_eq!([misled(None), misled(Some(&sound)), misled(Some(&wrong))], [false, false, true]);
+    assert_eq!([is_rejected(None), is_rejected(Some(&sound)), is_rejected(Some(&wrong))], [false, false, true]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The dynamic programming of [`super::transition`] along a segment.
 //!
-//! Point by point: the evaluator fills a fresh set of states, and each state takes its cheapest predecessor. Only the last two
+//! Point by point: the batch evaluator fills a fresh set of states, and each state takes its cheapest predecessor. Only the last two
 //! points are kept, and for each state the way it came: of a long segment only for a block of points, since the joint_paths of
 //! the others can be found again from the costs at the start of their block. So memory grows with the square root of the
 //! number of points, and time with their number.
@@ -54,12 +54,12 @@ const MAX_WAYS: usize = 1 << 25;
 impl Record {
     /// Room for segments of up to `longest` points with `count` values of beta.
     pub fn new(longest: usize, count: usize) -> Self {
-        Self::with_most(longest, count, MAX_WAYS)
+        Self::with_capacity_of(longest, count, MAX_WAYS)
     }
 
     /// The same with at most so many numbers kept, if a block may be that short.
-    pub fn with_most(longest: usize, count: usize, most: usize) -> Self {
-        let block = (most / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
+    pub fn with_capacity_of(longest: usize, count: usize, max_numbers: usize) -> Self {
+        let block = (max_numbers / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
         Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new() }
     }
 

@@ -1,7 +1,7 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
 use super::SegmentPlan;
-use crate::constraints::{Measured, STEP_ROUNDING, on_joint_steps, on_joints, on_state};
+use crate::constraints::{Measured, STEP_ROUNDING, on_joints, on_state};
 use crate::evaluate::reference::State;
 use crate::problem::{Placement, Problem};
 use std::ops::Range as Span;
@@ -185,11 +185,6 @@ pub(super) fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
     on_joints(problem, joints).iter().all(Measured::holds)
-}
-
-/// Whether every joint's step is within its limit. rad
-pub(super) fn inside_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
-    on_joint_steps(from, to, limits).iter().all(Measured::holds)
 }
 
 /// Whether a state satisfies everything but joint limits and steps.

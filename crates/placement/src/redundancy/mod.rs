@@ -218,7 +218,7 @@ impl<'a> Planner<'a> {
         spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(placement, sense, scheme, workspace, CLOSE)?;
+        let choices = self.choices(placement, sense, scheme, workspace, REFINED_EXCESS)?;
         let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
@@ -231,7 +231,7 @@ impl<'a> Planner<'a> {
             // The refined betas may be driven in other flips and turns just as well.
             let postures = match only {
                 Some(posture) => vec![posture],
-                None => self.alike(plan.posture),
+                None => self.equivalent_postures(plan.posture),
             };
             let span = plan.points.clone();
             let again =
@@ -274,7 +274,7 @@ const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
 const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
 
 /// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.
-const CLOSE: f64 = 0.2;
+const REFINED_EXCESS: f64 = 0.2;
 
 #[cfg(test)]
 mod tests;

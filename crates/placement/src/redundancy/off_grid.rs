@@ -6,9 +6,9 @@
 
 use super::super::evaluate::reference;
 use super::super::problem::{Placement, Problem, Redundancy};
-use super::joint_turns::{inside_limits, inside_steps, is_allowed, nearest_turns};
+use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
-use crate::constraints::STEP_ROUNDING;
+use crate::constraints::{STEP_ROUNDING, joint_steps_hold};
 use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
@@ -88,7 +88,7 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
         replayed.cost += node.score;
         if place > 0 {
             let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
-            let steps = inside_steps(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
+            let steps = joint_steps_hold(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
             if turned > problem.beta_step_limit(point) + STEP_ROUNDING || !steps {
                 return None;
             }
@@ -151,7 +151,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
                     .filter(|(_, old)| {
                         old.cost.is_finite()
                             && (node.beta - old.beta).abs() <= beta_limit
-                            && inside_steps(&old.joints, &node.joints, &joint_limits)
+                            && joint_steps_hold(&old.joints, &node.joints, &joint_limits)
                     })
                     .map(|(index, old)| (old.cost, index))
                     .min_by(|a, b| a.0.total_cmp(&b.0)),

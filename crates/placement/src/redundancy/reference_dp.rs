@@ -5,8 +5,9 @@
 //! tests use it as the judge of the fast planner.
 
 use super::super::evaluate::reference;
-use super::joint_turns::{JointPath, SegmentChoice, inside_steps, is_allowed};
+use super::joint_turns::{JointPath, SegmentChoice, is_allowed};
 use super::{Planner, Sense, Workspace};
+use crate::constraints::joint_steps_hold;
 use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
@@ -141,7 +142,7 @@ fn nodes(
     space: &mut Workspace,
 ) -> Vec<Node> {
     let problem = planner.problem;
-    // The evaluator says which grid values are worth a closer look.
+    // The batch evaluator says which grid values are worth a closer look.
     let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
         return Vec::new();
     };
@@ -197,7 +198,7 @@ fn connect(before: &[Node], layer: &mut [Node], reach: usize, count: usize, limi
             let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
             let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
             for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
-                if old.cost < node.cost && inside_steps(&old.joints, &node.joints, limits) {
+                if old.cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
                     node.cost = old.cost;
                     node.from = index;
                 }

@@ -9,7 +9,7 @@ use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
 
 /// What a segment offers.
-pub(super) struct Found {
+pub(super) struct SegmentOptions {
     /// The cheapest plans.
     pub choices: Vec<joint_turns::SegmentChoice>,
     /// Points without an allowed state in any posture asked for.
@@ -29,8 +29,8 @@ impl Planner<'_> {
         only: Option<Posture>,
         workspace: &mut Workspace,
         margin: Option<f64>,
-    ) -> Found {
-        let mut found = Found { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
+    ) -> SegmentOptions {
+        let mut found = SegmentOptions { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
         let is_spread = margin.is_some() && self.rate_limit.is_spread(&span);
         for evaluator in
             self.evaluators.iter().filter(|evaluator| only.is_none_or(|posture| evaluator.flips().contains(posture)))
@@ -53,7 +53,7 @@ impl Planner<'_> {
     }
 
     /// The postures of a class that yield like the given one, itself among them.
-    pub(super) fn alike(&self, posture: Posture) -> Vec<Posture> {
+    pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
         let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));
         let postures = posture.class().postures().into_iter();
         postures.filter(|p| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p))).collect()
@@ -73,7 +73,7 @@ impl Planner<'_> {
     ) -> bool {
         let Pass { span, placement, sense, is_accumulated, .. } = pass;
         let mut has_all = outcome.ends.iter().any(Option::is_some);
-        // The classes by rising cost; what `exact` finds for a class can only cost more than its relaxation.
+        // The classes by rising cost; what `reference_dp` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
@@ -96,7 +96,7 @@ impl Planner<'_> {
             let unwound =
                 joint_turns::unwind(self.problem, span, placement, &path, &postures, cost * sign, &self.steps);
             let choice = if is_accumulated {
-                unwound.and_then(|choice| self.repriced(placement, choice))
+                unwound.and_then(|choice| self.recosted(placement, choice))
             } else {
                 unwound.or_else(|| reference_dp::plan(self, span, placement, sense, &postures, workspace))
             };
@@ -112,7 +112,7 @@ impl Planner<'_> {
     }
 
     /// A plan with its own cost, where all its states are allowed.
-    fn repriced(
+    fn recosted(
         &self,
         placement: &Placement,
         mut choice: joint_turns::SegmentChoice,

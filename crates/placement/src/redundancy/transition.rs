@@ -38,9 +38,9 @@ pub enum JointStep {
     /// other leads through the gap outside its range, the step goes the long way round.
     Around {
         /// Largest chord, squared, of a step that does not go past the gap.
-        most: f64,
+        max: f64,
         /// Smallest chord, squared, of a step that goes the long way round.
-        least: f64,
+        min: f64,
         /// Sine and cosine of the middle of the range.
         middle: (f64, f64),
     },
@@ -63,8 +63,8 @@ impl JointStep {
             Self::Chord(chord)
         } else {
             let half = libm::sin(limit / 2.0);
-            let (most, least) = if limit >= PI { (f64::INFINITY, 4.0 * half * half) } else { (chord, f64::INFINITY) };
-            Self::Around { most, least, middle: libm::sincos((range.min + range.max) / 2.0) }
+            let (max, min) = if limit >= PI { (f64::INFINITY, 4.0 * half * half) } else { (chord, f64::INFINITY) };
+            Self::Around { max, min, middle: libm::sincos((range.min + range.max) / 2.0) }
         }
     }
 
@@ -78,15 +78,15 @@ impl JointStep {
         let chord = s * s + c * c;
         match *self {
             Self::Any => Mask::splat(simd, true),
-            Self::Chord(most) => chord.at_most(Lanes::splat(simd, most)),
-            Self::Around { most, least, middle: (sine, cosine) } => {
+            Self::Chord(max) => chord.at_most(Lanes::splat(simd, max)),
+            Self::Around { max, min, middle: (sine, cosine) } => {
                 // Seen from the middle of the range: where on the circle's axis through the gap the chord crosses it.
                 let zero = Lanes::splat(simd, 0.0);
                 let (s0, c0) = (old[0] * cosine - old[1] * sine, old[1] * cosine + old[0] * sine);
                 let (s1, c1) = (new[0] * cosine - new[1] * sine, new[1] * cosine + new[0] * sine);
                 let past = (s0 * s1).less(zero) & (c0 * s1.abs() + c1 * s0.abs()).less(zero);
-                let long = past & Lanes::splat(simd, least).at_most(chord);
-                chord.at_most(Lanes::splat(simd, most)).and_not(past) | long
+                let long = past & Lanes::splat(simd, min).at_most(chord);
+                chord.at_most(Lanes::splat(simd, max)).and_not(past) | long
             }
         }
     }
@@ -266,7 +266,7 @@ impl<'s, R: Rules> Joints<'s, R> {
             limits[j] = joints[(j + R::OTHER_JOINT) % 6];
             match limits[j] {
                 JointStep::Any => chords[j] = f64::INFINITY,
-                JointStep::Chord(most) => chords[j] = most,
+                JointStep::Chord(max) => chords[j] = max,
                 JointStep::Around { .. } => are_all = false,
             }
         }

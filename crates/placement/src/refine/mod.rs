@@ -76,7 +76,7 @@ pub fn refine(
     let planner = evaluator.planner();
     let problem = planner.problem();
     let mut workspace = planner.workspace();
-    let mut looks = evaluator.workspace();
+    let mut space = evaluator.workspace();
     let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = planned(planner, start, scheme, spacing, &mut workspace)?;
     let mut report = Refinement {
@@ -123,7 +123,7 @@ pub fn refine(
         let gained = (before - best.mean()).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
-            match poll(evaluator, &best, sense, scheme, &mut workspace, &mut looks) {
+            match poll(evaluator, &best, sense, scheme, &mut workspace, &mut space) {
                 Some(better) => best = better,
                 None => break,
             }
@@ -149,7 +149,7 @@ fn poll(
     sense: Sense,
     scheme: Option<&[Posture]>,
     workspace: &mut Workspace,
-    looks: &mut evaluator::Workspace,
+    space: &mut evaluator::Workspace,
 ) -> Option<Solution> {
     let planner = evaluator.planner();
     let problem = planner.problem();
@@ -159,7 +159,7 @@ fn poll(
         Sense::Max => -1.0,
     };
     let mut look =
-        |placement: &Placement| evaluator.table().and_then(|_| evaluator.objective(placement, scheme, looks).mean());
+        |placement: &Placement| evaluator.table().and_then(|_| evaluator.objective(placement, scheme, space).mean());
     let here = look(&centre.placement);
     let mut best: Option<Solution> = None;
     for distance in POLLS {

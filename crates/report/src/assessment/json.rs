@@ -1,6 +1,6 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
-use super::{AssessmentContext, elbow, load};
+use super::AssessmentContext;
 use crate::document::{Document, Timing};
 use crate::units::Unit;
 use nalgebra::Vector3;
@@ -14,18 +14,18 @@ pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing:
     let mut entries = common(assessment, context);
     entries.insert("threads".to_owned(), json!(timing.threads));
     entries.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
-    document(context, entries)
+    document(assessment, context, entries)
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs.
 pub fn summary_json(comparison: &Comparison, assessment: &Assessment, context: &AssessmentContext) -> Value {
     let mut entries = common(assessment, context);
     entries.insert("benchmark".to_owned(), benchmark(comparison, context.range_share));
-    document(context, entries)
+    document(assessment, context, entries)
 }
 
-fn document(context: &AssessmentContext, entries: Map<String, Value>) -> Value {
-    Document::new(&context.inputs).notes(&context.notes).with(Value::Object(entries))
+fn document(assessment: &Assessment, context: &AssessmentContext, entries: Map<String, Value>) -> Value {
+    Document::new(&context.inputs).notes(&context.notes).warnings(&assessment.warnings).with(Value::Object(entries))
 }
 
 fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {
@@ -68,8 +68,8 @@ fn configuration(configuration: &Configuration) -> Value {
     let value = |spot: Option<MapPoint>| optional(spot.map(|spot| spot.circularity));
     let place = |spot: Option<MapPoint>| spot.map_or(Value::Null, |spot| centre(spot.centre));
     json!({
-        "elbow": elbow(configuration.elbow),
-        "load": load(configuration.load),
+        "elbow": configuration.elbow.word(),
+        "load": configuration.load.word(),
         "force_n": Unit::FORCE_N.number(configuration.force),
         "circles": configuration.circles,
         "circles_too_soft": configuration.too_soft,

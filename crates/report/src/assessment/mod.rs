@@ -10,11 +10,11 @@ pub use text::assessment_text;
 use super::output::{Folder, ReportError};
 use super::{cutting, document as documents, picture};
 use std::path::PathBuf;
-use stead_assessment::comparison::{Assessment, Comparison, Load};
-use stead_assessment::map::Elbow;
+use stead_assessment::comparison::{Assessment, Comparison};
 use stead_assessment::published::{Agreement, PublishedTables};
 use stead_format::input::InputFile;
 use stead_model::cutting::ForceHistory;
+use stead_model::published::Published;
 
 /// What the reports of an assessment state besides the comparison and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ pub struct AssessmentContext {
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.
-    pub published: Option<(PublishedTables, Agreement)>,
+    pub published: Option<(Published<PublishedTables>, Agreement)>,
     /// The cutting forces behind the load, where they were computed.
     pub force_history: Option<ForceHistory>,
 }
@@ -50,7 +50,7 @@ pub fn write_assessment(
         files.push((format!("{name}.csv"), tables::map(robot)?));
         files.push((format!("{name}.svg"), picture::circularity_map(comparison, robot).into_bytes()));
     }
-    let published = context.published.as_ref().map(|(published, _)| published);
+    let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
     add("circularity.csv", tables::circularity(assessment, published)?);
     add("optimal-zones.csv", tables::optimal_zones(assessment, published)?);
@@ -81,22 +81,6 @@ fn file_name(assessment: &Assessment, index: usize) -> String {
     let name = plain(index);
     let taken = name.is_empty() || (0..index).any(|earlier| plain(earlier) == name);
     if taken { format!("{name}-{}", index + 1).trim_start_matches('-').to_owned() } else { name }
-}
-
-/// `up` or `down`.
-fn elbow(elbow: Elbow) -> &'static str {
-    match elbow {
-        Elbow::Up => "up",
-        Elbow::Down => "down",
-    }
-}
-
-/// `test` or `rated`.
-fn load(load: Load) -> &'static str {
-    match load {
-        Load::Test => "test",
-        Load::Rated => "rated",
-    }
 }
 
 #[cfg(test)]

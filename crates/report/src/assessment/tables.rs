@@ -3,7 +3,6 @@
 //! is published.
 
 use super::super::output::ReportError;
-use super::{elbow, load};
 use crate::csv_file::table;
 use crate::units::Unit;
 use stead_assessment::comparison::{Assessment, Configuration, MapPoint, RobotResult, Zones};
@@ -16,7 +15,7 @@ pub(super) fn map(robot: &RobotResult) -> Result<Vec<u8>, ReportError> {
     let rows = robot.maps.iter().flat_map(|(name, map)| {
         map.nodes.iter().enumerate().filter_map(move |(index, node)| {
             let [test, rated] = (*node).ok()?;
-            let mut row = vec![elbow(*name).to_owned()];
+            let mut row = vec![name.word().to_owned()];
             row.extend(map.grid.place(index).map(|place| Unit::PLACE_MM.text(place)));
             let cells = [Some(test), robot.rated_load.map(|_| rated)];
             row.extend(cells.map(|cell| Unit::DEFLECTION_MM.text_or_empty(cell.filter(|value| value.is_finite()))));
@@ -33,7 +32,7 @@ fn configurations(assessment: &Assessment) -> impl Iterator<Item = (&RobotResult
 
 /// The fields that tell a configuration.
 fn key(robot: &RobotResult, configuration: &Configuration) -> Vec<String> {
-    let (elbow, load) = (elbow(configuration.elbow), load(configuration.load));
+    let (elbow, load) = (configuration.elbow.word(), configuration.load.word());
     vec![robot.name.clone(), elbow.to_owned(), load.to_owned(), Unit::FORCE_N.text(configuration.force)]
 }
 

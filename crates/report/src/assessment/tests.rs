@@ -21,7 +21,7 @@ fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
     let run = read_assessment(&file).unwrap_or_else(|e| panic!("{e}"));
     let assessment = assess(&run.comparison, &Monitor::silent()).unwrap();
     let published = run.published.map(|published| {
-        let agreement = published.agreement(&assessment);
+        let agreement = published.figures.agreement(&assessment);
         (published, agreement)
     });
     (
@@ -44,7 +44,7 @@ fn rows(csv: &[u8]) -> Vec<csv::StringRecord> {
 fn tables_and_documents_tell_the_same() {
     let (comparison, context) = comparison("radius_mm", "radius_mm");
     let assessment = assess(&comparison, &Monitor::silent()).unwrap();
-    let published = context.published.as_ref().map(|(published, _)| published);
+    let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let document = assess_json(&assessment, &context, &Timing { wall: 1.5, threads: 2 });
     let table = rows(&tables::circularity(&assessment, published).unwrap());
     assert_eq!(table.len(), 20);

@@ -1,33 +1,19 @@
 //! The short tables for people.
 
-use super::{AssessmentContext, elbow, load};
+use super::AssessmentContext;
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
-use stead_assessment::benchmark::MAX_DEFLECTION;
-use stead_assessment::comparison::{Assessment, Configuration, RobotResult, obstacle_words};
+use stead_assessment::comparison::{Assessment, Configuration, RobotResult};
 use stead_assessment::published::{PublishedTables, Quantity};
 
 /// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published values
 /// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
 /// tables agree.
 pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
-    let published = context.published.as_ref().map(|(published, _)| published);
+    let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut text = aligned(&configuration_rows(assessment, published), &[0, 1, 2]);
-    for robot in assessment.robots.iter().filter(|robot| robot.maps.iter().any(|(_, map)| map.count() == 0)) {
-        for (name, map) in robot.maps.iter().filter(|(_, map)| map.count() == 0) {
-            let why = obstacle_words(&map.obstacles(), map.nodes.len());
-            text += &format!("{}, elbow {}: the circle fits nowhere ({why})\n", robot.name, elbow(*name));
-        }
-    }
-    let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
-    for (robot, configuration) in every.filter(|(_, configuration)| configuration.too_soft > 0) {
-        text += &format!(
-            "{}, elbow {}, {} load: {} circles left out, deflected by more than {MAX_DEFLECTION} of the radius\n",
-            robot.name,
-            elbow(configuration.elbow),
-            load(configuration.load),
-            configuration.too_soft
-        );
+    for warning in &assessment.warnings {
+        text += &format!("warning: {warning}\n");
     }
     if !assessment.capable.is_empty() {
         let mut forces: Vec<f64> = assessment.capable.iter().map(|cell| cell.force).collect();
@@ -66,7 +52,7 @@ fn configuration_rows(assessment: &Assessment, published: Option<&PublishedTable
     let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
     for (robot, configuration) in every {
         let mut row =
-            vec![robot.name.clone(), elbow(configuration.elbow).to_owned(), load(configuration.load).to_owned()];
+            vec![robot.name.clone(), configuration.elbow.word().to_owned(), configuration.load.word().to_owned()];
         row.push(fixed(configuration.force, 0));
         let zones = sides.iter().map(|side| Quantity::OptimalZone(*side));
         let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().chain(zones);

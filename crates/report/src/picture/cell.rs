@@ -1,6 +1,6 @@
 //! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
 
-use super::axes::{Panel, Scale, Ticks};
+use super::axes::{Panel, Scale};
 use super::canvas::{Canvas, Pixel, TextStyle, exact, picture};
 use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
@@ -145,7 +145,6 @@ impl Region {
     fn panel(&self, left: i32, top: i32) -> Panel {
         let x = Scale::new(self.from[0], self.to[0], left, left + SIDE);
         let y = Scale::new(self.from[1], self.to[1], top + SIDE, top);
-        let (x_ticks, y_ticks) = (Ticks::round(&x, 8), Ticks::round(&y, 8));
-        Panel { x, y, x_ticks, y_ticks, x_label: "x (mm)", y_label: "y (mm)" }
+        Panel::new(x, y, [8, 8], ["x (mm)", "y (mm)"])
     }
 }

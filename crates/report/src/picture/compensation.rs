@@ -69,8 +69,8 @@ fn draw(
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::assert_well_formed;
     use super::*;
+    use crate::testing::assert_well_formed;
     use std::path::Path;
     use stead_calibration::compensation::compensate;
     use stead_format::read_compensation;

@@ -34,13 +34,17 @@ pub fn cutting(force_history: &ForceHistory) -> String {
         head(canvas, force_history);
         for (quantity, rows) in QUANTITIES.iter().zip(ROWS) {
             let entering = &force_history.entering;
-            let mut chart = quantity.chart(force_history, entering, (COLUMNS[0], rows), (180.0, 30.0));
-            chart.panel.x_label = "engagement angle (deg)";
+            let mut chart =
+                quantity.chart(force_history, entering, (COLUMNS[0], rows), (180.0, 30.0, "engagement angle (deg)"));
             quantity.curves(&mut chart, entering);
             chart.draw(canvas);
             let turn = &force_history.turn;
-            let mut chart = quantity.chart(force_history, turn, (COLUMNS[1], rows), (360.0, 60.0));
-            chart.panel.x_label = "angle of the first tooth (deg)";
+            let mut chart = quantity.chart(
+                force_history,
+                turn,
+                (COLUMNS[1], rows),
+                (360.0, 60.0, "angle of the first tooth (deg)"),
+            );
             let mean = (quantity.of)(&force_history.mean);
             let axes = COMPONENTS.into_iter().enumerate();
             chart.marks.extend(axes.map(|(axis, colour)| Mark::Dashed(mean[axis], colour)));
@@ -107,7 +111,7 @@ impl Quantity {
         force_history: &ForceHistory,
         samples: &[Sample],
         ((left, right), (bottom, top)): (Pixel, Pixel),
-        (last, tick): (f64, f64),
+        (last, tick, x_label): (f64, f64, &'static str),
     ) -> LineChart {
         let vectors = || samples.iter().map(|sample| (self.of)(&sample.wrench));
         let low = vectors().map(|vector| vector.min()).fold(0.0, f64::min);
@@ -115,8 +119,7 @@ impl Quantity {
         let margin = 0.06 * (high - low);
         let x = Scale::new(0.0, last, left, right);
         let y = Scale::new(low - margin, high + margin, bottom, top);
-        let (x_ticks, y_ticks) = (Ticks::every(&x, tick, 0), Ticks::round(&y, 8));
-        let panel = Panel { x, y, x_ticks, y_ticks, x_label: "", y_label: self.label };
+        let panel = Panel { x_ticks: Ticks::every(&x, tick, 0), ..Panel::new(x, y, [1, 8], [x_label, self.label]) };
         let arcs = force_history.engagement.arcs().iter();
         let shades = arcs.map(|arc| [arc.entry, arc.exit].map(f64::to_degrees)).collect();
         LineChart { panel, shades, marks: vec![Mark::Horizontal(0.0, INK)] }
@@ -134,8 +137,8 @@ impl Quantity {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::{assert_well_formed, force_history};
     use super::*;
+    use crate::testing::{assert_well_formed, force_history};
 
     #[test]
     fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {

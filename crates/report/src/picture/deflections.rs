@@ -1,6 +1,6 @@
 //! Deflections read beside those of the identified arm.
 
-use super::axes::{Panel, Scale, Ticks};
+use super::axes::{Panel, Scale};
 use super::canvas::{Canvas, TextStyle, nearest, picture};
 use super::colour::{COMPONENTS, GREY, INK, RED, WHITE};
 use crate::units::fixed;
@@ -28,8 +28,8 @@ pub fn deflections(found: &Identified) -> String {
 const SIDES: (i32, i32) = (85, 790);
 
 fn panel(x: Scale, y: Scale, y_label: &'static str) -> Panel {
-    let (x_ticks, y_ticks) = (Ticks::round(&x, 9), Ticks::round(&y, if y.start - y.end > 400 { 9 } else { 6 }));
-    Panel { x, y, x_ticks, y_ticks, x_label: "predicted component (mm)", y_label }
+    let ticks = [9, if y.start - y.end > 400 { 9 } else { 6 }];
+    Panel::new(x, y, ticks, ["predicted component (mm)", y_label])
 }
 
 /// Predicted and measured components in mm, whether they are of an outlier, and which axis.

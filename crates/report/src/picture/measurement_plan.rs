@@ -63,9 +63,8 @@ fn draw_bars(canvas: &mut Canvas, plan: &Design) {
     let most = plan.compliances.iter().flat_map(percents).flatten().fold(0.0, f64::max);
     let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.compliances.len().max(1) as f64, LEFT, RIGHT);
-    let y_ticks = Ticks::round(&y, 7);
-    let x_ticks = Ticks::none();
-    let panel = Panel { x, y, x_ticks, y_ticks, x_label: "compliance", y_label: "standard deviation (%)" };
+    let panel = Panel::new(x, y, [1, 7], ["compliance", "standard deviation (%)"]);
+    let panel = Panel { x_ticks: Ticks::none(), ..panel };
     panel.draw_grid(canvas);
     for (index, bar) in plan.compliances.iter().enumerate() {
         let (from, to) = (panel.x.pixel(index as f64 + 0.12), panel.x.pixel(index as f64 + 0.88));
@@ -134,9 +133,8 @@ fn view(canvas: &mut Canvas, poses: &[Posed], left: i32, from_above: bool) {
     let (middle, half) = ((low + high) / 2.0, 0.56 * (high - low).amax().max(0.1));
     let x = Scale::new((middle.x - half) * 1e3, (middle.x + half) * 1e3, left, left + side);
     let y = Scale::new((middle.y - half) * 1e3, (middle.y + half) * 1e3, top + side, top);
-    let (x_ticks, y_ticks) = (Ticks::round(&x, 6), Ticks::round(&y, 8));
     let labels = if from_above { ["x (mm)", "y (mm)"] } else { ["out from axis 1 (mm)", "z (mm)"] };
-    let panel = Panel { x, y, x_ticks, y_ticks, x_label: labels[0], y_label: labels[1] };
+    let panel = Panel::new(x, y, [6, 8], labels);
     panel.draw_grid(canvas);
     let place = |v: &Vector2<f64>| -> Place { panel.place(v.x * 1e3, v.y * 1e3) };
     for pose in poses {

@@ -1,6 +1,6 @@
 //! What a certificate leaves open, over the cell.
 
-use super::axes::{Panel, Scale, Ticks};
+use super::axes::{Panel, Scale};
 use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, RED, viridis};
@@ -120,9 +120,9 @@ fn widened(from: f64, to: f64) -> [f64; 2] {
     [from - more, to + more]
 }
 
-fn panel(left: i32, x: [f64; 2], y: [f64; 2], [x_label, y_label]: [&'static str; 2]) -> Panel {
+fn panel(left: i32, x: [f64; 2], y: [f64; 2], labels: [&'static str; 2]) -> Panel {
     let (x, y) = (Scale::new(x[0], x[1], left, left + SIDE), Scale::new(y[0], y[1], TOP + SIDE, TOP));
-    Panel { x_ticks: Ticks::round(&x, 8), y_ticks: Ticks::round(&y, 8), x, y, x_label, y_label }
+    Panel::new(x, y, [8, 8], labels)
 }
 
 fn more_promising(sense: Sense, a: f64, b: f64) -> f64 {

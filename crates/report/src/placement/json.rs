@@ -48,7 +48,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
     let reference = context
         .reference
         .as_ref()
-        .map_or(Value::Null, |reference| json!({ "source": reference.source, "case_mm": reference.case_mm }));
+        .map_or(Value::Null, |reference| json!({ "source": reference.source, "case_mm": reference.figures }));
     let refinements: Vec<Value> = outcome.refinements.iter().map(refinement).collect();
     let mut document = Map::from_iter([
         ("evaluations".to_owned(), json!(outcome.evaluations)),

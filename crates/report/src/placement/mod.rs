@@ -15,7 +15,8 @@ use crate::output::{Folder, ReportError};
 use crate::picture;
 use std::path::PathBuf;
 use stead_format::Run;
-use stead_format::input::{InputFile, Reference};
+use stead_format::input::InputFile;
+use stead_model::published::Published;
 use stead_numerics::message::Warning;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::problem::Problem;
@@ -36,7 +37,7 @@ pub struct Context {
     /// The assumptions behind the times of the moves.
     pub transfer: TransferSettings,
     /// Figures to compare with, where there are any.
-    pub reference: Option<Reference>,
+    pub reference: Option<Published<[f64; 4]>>,
     /// How deep may be cut along the path, where that was asked for.
     pub stability: Option<PathStability>,
 }

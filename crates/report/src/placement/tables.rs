@@ -4,7 +4,7 @@ use crate::csv_file::{table, vector};
 use crate::names;
 use crate::output::ReportError;
 use crate::units::{Unit, fixed};
-use stead_format::input::Reference;
+use stead_model::published::Published;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
 use stead_placement::feasibility::DeflectionMap;
@@ -74,7 +74,7 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn placements(cases: &Cases, reference: Option<&Reference>) -> Result<Vec<u8>, ReportError> {
+pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Result<Vec<u8>, ReportError> {
     let mut header = vec![
         "case",
         "x_mm",
@@ -98,7 +98,7 @@ pub fn placements(cases: &Cases, reference: Option<&Reference>) -> Result<Vec<u8
         row.push(names::postures(&case.plan.postures));
         row.extend([case.plan.mean, case.plan.max].map(|value| Unit::DEFLECTION_MM.text(value)));
         row.push(Unit::PLAIN.text_or_empty(cases.ratio(case)));
-        row.push(reference.map_or_else(String::new, |reference| reference.case_mm[index].to_string()));
+        row.push(reference.map_or_else(String::new, |reference| reference.figures[index].to_string()));
         row.push(Unit::TIME_S.text(case.cycle.cutting));
         let total = case.cycle.total();
         row.push(Unit::TIME_S.text_or_empty(total.map(|total| total - case.cycle.cutting)));

@@ -4,7 +4,7 @@ use super::Context;
 use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
-use stead_format::input::Reference;
+use stead_model::published::Published;
 use stead_placement::outcome::Outcome;
 use stead_placement::problem::Problem;
 use stead_placement::symmetry::Unsupported;
@@ -71,7 +71,7 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
     rows
 }
 
-fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<String>> {
+fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> Vec<Vec<String>> {
     let mut header = vec!["case", "mean mm", "max mm"];
     header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));
     header.push("ratio");
@@ -85,7 +85,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Reference>) -> Vec<Vec<
         row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
         row.extend(case.plan.mean_deviation.map(|value| fixed(value * 1e3, 4)));
         row.push(outcome.cases.ratio(case).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
-        if let Some(Reference { case_mm, .. }) = reference {
+        if let Some(Published { figures: case_mm, .. }) = reference {
             row.extend([case_mm[index].to_string(), fixed(case_mm[index] / case_mm[0], 2)]);
         }
         let total = case.cycle.total();

@@ -1,6 +1,6 @@
 //! The JSON documents of a simulated pass.
 
-use super::super::stability::{HERTZ, RATE, RPM, SHARE, kind_word};
+use super::super::stability::{HERTZ, RATE, RPM, SHARE};
 use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
 use crate::document::Document;
 use crate::units::Unit;
@@ -14,7 +14,7 @@ use stead_simulation::roughness::Roughness;
 pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
     let (end, reason) = end_words(&found.run.end);
     let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
-    Document::new(&run.inputs).with(json!({
+    Document::new(&run.inputs).warnings(&found.warnings).with(json!({
         "robot": run.setup.robot.name(),
         "variant": run.setup.variant.word(),
         "damping_scale": run.setup.damping_scale,
@@ -30,7 +30,7 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
         "stable": found.is_stable(),
         "unrest": found.period_variation.map(|period_variation| SHARE.number(period_variation)),
         "small_motions": {
-            "kind": kind_word(found.verdict.kind()),
+            "kind": found.verdict.kind().word(),
             "growth_rate_per_s": RATE.number(found.verdict.growth_rate()),
         },
         "window_s": found.window.map(|time| MOMENT_S.number(time)),
@@ -44,11 +44,11 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
             profile
         }),
         "modes": found.modes.iter().map(mode).collect::<Vec<_>>(),
-        "published": run.evaluation.published.as_ref().map(|published| json!({
+        "published": run.published.as_ref().map(|published| json!({
             "source": published.source,
-            "force_x": published.forces.as_ref().map(|forces| statistics(&forces[0])),
-            "force_y": published.forces.as_ref().map(|forces| statistics(&forces[1])),
-            "profile": published.roughness.as_ref().map(roughness),
+            "force_x": published.figures.forces.as_ref().map(|forces| statistics(&forces[0])),
+            "force_y": published.figures.forces.as_ref().map(|forces| statistics(&forces[1])),
+            "profile": published.figures.roughness.as_ref().map(roughness),
         })),
     }))
 }

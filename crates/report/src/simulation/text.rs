@@ -1,6 +1,5 @@
 //! The text for people.
 
-use super::super::stability::kind_word;
 use super::{Making, end_words};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
@@ -44,7 +43,7 @@ fn forces(run: &SimulationRun, found: &Simulation) -> String {
         row.extend([min, max, mean, root_mean_square].map(|force| fixed(*force, 2)));
         row
     };
-    let published = run.evaluation.published.as_ref().and_then(|published| published.forces.as_ref());
+    let published = run.published.as_ref().and_then(|published| published.figures.forces.as_ref());
     for (axis, name) in ["along the feed", "towards the wall"].into_iter().enumerate() {
         rows.push(row(name.to_owned(), &forces[axis]));
         rows.extend(published.map(|published| row("  published".to_owned(), &published[axis])));
@@ -64,7 +63,7 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
     };
     let mut rows = vec![header, row("wall".to_owned(), raw)];
     rows.push(row(format!("filtered, {} mm", figures(run.evaluation.cutoff * 1e3)), filtered));
-    let published = run.evaluation.published.as_ref().and_then(|published| published.roughness.as_ref());
+    let published = run.published.as_ref().and_then(|published| published.figures.roughness.as_ref());
     rows.extend(published.map(|published| row("  published".to_owned(), published)));
     format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
 }
@@ -80,13 +79,10 @@ fn verdict(found: &Simulation) -> String {
         (None, None) => format!("The cut is {calm}.\n"),
     };
     let rate = figures(found.verdict.growth_rate().abs());
-    text.push_str(&if found.verdict.is_stable() && found.run.end == End::Complete && !found.is_stable() {
-        format!("Small motions die out, at {rate} per second: a longer ramp or pass tells whether the start is still felt.\n")
-    } else if found.verdict.is_stable() {
+    text.push_str(&if found.verdict.is_stable() {
         format!("Small motions die out, at {rate} per second.\n")
     } else {
-        let bounded = if found.is_stable() { ", but have not become large by the end of the pass" } else { "" };
-        format!("Small motions grow ({}), at {rate} per second{bounded}.\n", kind_word(found.verdict.kind()))
+        format!("Small motions grow ({}), at {rate} per second.\n", found.verdict.kind().word())
     });
     text
 }

@@ -1,6 +1,6 @@
 //! The JSON document of a stability analysis.
 
-use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE, kind_word};
+use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE};
 use crate::document::Document;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
@@ -42,7 +42,7 @@ pub(crate) fn verdict(depths: &CutStability) -> Map<String, Value> {
             }),
         ),
         ("stable", json!(verdict.is_stable())),
-        ("kind", json!(kind_word(verdict.kind()))),
+        ("kind", json!(verdict.kind().word())),
         ("growth_rate_per_s", json!(RATE.number(verdict.growth_rate()))),
     ];
     pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()

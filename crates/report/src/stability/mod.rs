@@ -17,7 +17,6 @@ use super::picture;
 use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
-use stead_simulation::stability::Kind;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Frequencies in Hz.
@@ -52,13 +51,4 @@ pub fn write_stability(
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
     ];
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
-}
-
-/// The word for a kind of growth.
-pub(super) fn kind_word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::None => "none",
-        Kind::Flip => "flip",
-        Kind::Hopf => "hopf",
-    }
 }

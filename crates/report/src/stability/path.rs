@@ -3,7 +3,7 @@
 use super::super::output::ReportError;
 use super::super::picture;
 use super::json::verdict;
-use super::{DEPTH_MM, RATE, RPM, kind_word};
+use super::{DEPTH_MM, RATE, RPM};
 use crate::csv_file::table;
 use crate::units::fixed;
 use serde_json::{Value, json};
@@ -82,7 +82,7 @@ fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
         let mut row = vec![point.point.to_string(), point.segment.to_string()];
         row.extend([at.semi_discretisation, at.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth)));
         row.push(at.verdict.is_stable().to_string());
-        row.extend([kind_word(at.verdict.kind()).to_owned(), RATE.text(at.verdict.growth_rate())]);
+        row.extend([at.verdict.kind().word().to_owned(), RATE.text(at.verdict.growth_rate())]);
         row
     });
     table("the table of critical depths", &HEADER, rows)

@@ -1,7 +1,7 @@
 use super::testing::{massless, spindle, start, tx200};
 use super::*;
-use crate::multibody::GRAVITY;
 use proptest::prelude::*;
+use stead_model::robot::chain::GRAVITY;
 
 fn six(variant: Variant) -> Arm<6> {
     Arm::six(&tx200(), &spindle(), variant, &start()).unwrap()

@@ -1,13 +1,13 @@
-//! The fast model: mass matrix and Jacobian frozen along the way, each step condensed to the two unknowns of the tip.
+//! The fast model: mass matrix and Jacobian frozen along the pass, each step condensed to the two unknowns of the tip.
 //!
 //! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is what gravity
-//! and the commanded motion ask for. Stations every few millimetres have M, the slope of gravity and J; between
+//! and the commanded motion ask for. Intervals of a few millimetres have M, the slope of gravity and J; between
 //! two, M is that of the middle and J is interpolated. A step of Newmark's method is then linear but for the force, and the tip
 //! moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows (and three columns: the force along the tool axis moves the tip in
 //! the plane of the cut as well), so that the force alone is iterated on, and an arm of eighteen
 //! joints costs little more than one of six.
 //!
-//! Play makes springs act or not. For every set of springs that act the step is linear as well; its matrices are made when it
+//! With backlash springs act or not. For every set of springs that act the step is linear as well; its matrices are made when it
 //! first occurs, and a step is repeated until the springs that it assumes to act are those that do.
 
 use super::{CutPlane, End, Job, JobError, Process, Run};
@@ -17,7 +17,7 @@ use crate::milling::Force;
 use crate::motion::Motion;
 use nalgebra::{Matrix2x3, SMatrix, SVector, Vector2, Vector3};
 
-/// Stations are at most so far apart. m
+/// Longest interval. m
 const SPACING: f64 = 5e-3;
 /// What the commanded motion asks for is known at times at most so far apart. s
 const TICK: f64 = 4e-3;
@@ -72,7 +72,7 @@ struct Frozen<'a, const N: usize> {
     tick: f64,
     /// r at every tick. N m
     asked: Vec<SVector<f64, N>>,
-    /// Joints with play: their numbers.
+    /// Numbers of the joints with backlash.
     loose: Vec<usize>,
 }
 
@@ -185,7 +185,7 @@ struct Yielded<const N: usize> {
     acceleration: SVector<f64, N>,
 }
 
-/// On which side of its play a joint is: -1, 0 or 1.
+/// On which side of its backlash a joint is: -1, 0 or 1.
 fn side(angle: f64, gap: f64) -> f64 {
     if angle > gap {
         1.0
@@ -253,7 +253,7 @@ fn stepped<const N: usize>(
     if let Some(gravity) = &frozen.intervals[index].gravity {
         free -= gravity * u;
     }
-    // Springs with play are put in below, by the side on which they act.
+    // Springs with backlash are put in below, by the side on which they act.
     free -= arm.drive.stiffness.component_mul(&u);
     let mut sides = SVector::<f64, N>::zeros();
     for joint in &frozen.loose {

@@ -1,8 +1,8 @@
-//! A pass: the arm and the milling, each acting on the other.
+//! Coupled simulation of a pass: the arm under the milling force, which depends on the motion of its tip.
 //!
-//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the way and condenses each
+//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the pass and condenses each
 //! step to the two unknowns of the tip. Both give a [`Run`]: forces and places over time, the work that was left, and how
-//! it ended. What is no longer represented ends a run, with the reason.
+//! it ended. Where the milling model is no longer valid the run ends, with the reason.
 
 pub mod condensed;
 pub mod full;
@@ -16,6 +16,7 @@ use super::motion::Motion;
 use super::setup::Setup;
 use super::surface::{Node, Trail};
 use nalgebra::Vector3;
+use serde::Serialize;
 use stead_model::cutting::{CutFrame, Cutter};
 
 /// What is to be simulated.
@@ -32,7 +33,7 @@ pub struct Job<'a> {
 }
 
 /// One moment of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sample {
     /// On the tool: along the feed, the outward normal of the wall, the tool axis. N
     pub force: [f64; 3],
@@ -41,24 +42,25 @@ pub struct Sample {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum End {
     /// With the pass.
     Complete,
-    /// Where the milling is no longer represented.
+    /// Where the milling model is no longer valid.
     Limit(Limit),
     /// Where a step could not be made.
     Step(StepError),
 }
 
 /// A simulated pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Run {
     /// The length of a step. s
     pub step: f64,
     /// One sample a step, the first at time 0.
     pub samples: Vec<Sample>,
     /// Where the tool centre was.
+    #[serde(skip)]
     pub trail: Trail,
     /// How it ended.
     pub end: End,
@@ -143,13 +145,13 @@ impl CutPlane {
         self.feed * feed + self.normal * normal + self.axis * axis
     }
 
-    /// Where the tool centre should be after a way (m).
+    /// Nominal place of the tool centre at a distance (m) along the pass.
     fn nominal(&self, motion: &Motion, distance: f64) -> [f64; 2] {
         self.place(&(motion.start().translation + motion.direction() * distance))
     }
 }
 
-/// The milling of a run and what is written down of it.
+/// The milling of a run, and its samples.
 #[derive(Debug)]
 struct Process<'a> {
     motion: &'a Motion,
@@ -191,7 +193,7 @@ impl<'a> Process<'a> {
         self.removal.force(steps, place)
     }
 
-    /// Writes down the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
+    /// Records the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
     fn keep(&mut self, place: [f64; 2], velocity: [f64; 2], force: Force) -> Result<(), Limit> {
         let time = self.samples.len() as f64 * self.step;
         let (distance, feed) = self.motion.ramp().at(time);

@@ -190,7 +190,7 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), PassCut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
-    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, published: None };
+    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3 };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
     let frame = setup.motion.cut_frame(cut.wall(&cutter));
     let verdict_at = |distance: f64| {

@@ -52,7 +52,7 @@ fn at_rest<const N: usize>(q: SVector<f64, N>) -> MotionState<N> {
     MotionState { q, speed: SVector::zeros(), acceleration: SVector::zeros() }
 }
 
-const EXACT: Settings = Settings { beta: 0.25, gamma: 0.5, tolerance: 1e-16, most_corrections: 30, most_halvings: 0 };
+const EXACT: Settings = Settings { beta: 0.25, gamma: 0.5, tolerance: 1e-16, max_corrections: 30, max_halvings: 0 };
 
 /// The state after `time` s in steps of `step` s, and the largest change of energy on the way.
 fn run<const N: usize>(system: &mut Free<N>, from: &MotionState<N>, step: f64, time: f64) -> (MotionState<N>, f64) {
@@ -183,7 +183,7 @@ impl System<1> for Wall {
 #[test]
 fn a_step_that_does_not_converge_is_halved_and_then_reported() {
     let start = |wall: &mut Wall| Newmark::started(wall, 0.0, &at_rest(SVector::from([1.0]))).unwrap();
-    let settings = Settings { most_corrections: 40, ..Settings::default() };
+    let settings = Settings { max_corrections: 40, ..Settings::default() };
     let mut wall = Wall { stiffness: 6.0, kept: vec![] };
     let mut state = start(&mut wall);
     let effort = Newmark::new(settings).step(&mut wall, 10.0, 1.0, &mut state).unwrap();

@@ -1,7 +1,9 @@
-//! Where milling stops to be what is represented here.
+//! Validity limits of the milling model.
 
-/// What is no longer represented: stated, never extrapolated.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+use serde::Serialize;
+
+/// Why the model is no longer valid: the run ends there and is not extrapolated.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
 pub enum Limit {
     /// A chip deeper than a gullet: beyond this the body of the cutter would be in the work.
     #[error("at {time} s a chip is {chip} m thick, more than half the radius of the cutter, {radius} m")]
@@ -35,7 +37,7 @@ pub enum Limit {
     },
 }
 
-/// How far what is represented reaches.
+/// The figures that the limits of validity depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Radius of the cutter. m
@@ -45,7 +47,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Whether a moment (s) is represented: the thickest chip (m), how far the tool is off its path (m) and how fast it moves
+    /// Whether the model is valid at a time (s): the thickest chip (m), how far the tool is off its path (m) and how fast it moves
     /// (m/s).
     ///
     /// # Errors

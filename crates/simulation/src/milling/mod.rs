@@ -1,4 +1,4 @@
-//! The force of milling, from the chips that the teeth really meet.
+//! Milling force from the actual chip thickness at every tooth and slice.
 //!
 //! The cutter is cut into slices along its axis. In every slice a tooth at psi (0 towards the wall, a quarter turn along the
 //! feed) cuts what its ray has of the work between the surface left by earlier teeth and its own edge, h thick. The force on
@@ -27,7 +27,7 @@ use stead_numerics::simd::{Instructions, Lanes};
 /// Turns in a stretch of the trail.
 const STRETCH: usize = 6;
 
-/// Milling under way: the cutter in the work that it has milled so far.
+/// Material removal in progress: the cutter, and the workpiece as it has cut it so far.
 #[derive(Debug, Clone)]
 pub struct MaterialRemoval {
     teeth: Vec<Edge>,

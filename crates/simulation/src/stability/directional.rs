@@ -1,4 +1,4 @@
-//! How the force of milling follows the motion of the tip, at each part of a turn.
+//! Directional coefficients: derivative of the milling force with respect to the motion of the tip, over each part of a turn.
 
 use crate::milling::PassCut;
 use nalgebra::Matrix3x2;

@@ -4,14 +4,15 @@ use super::directional::{Directional, exit};
 use super::plant::Plant;
 use crate::milling::PassCut;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
-/// How small motions become large ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Kind of instability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Kind {
-    /// They do not.
+    /// Stable.
     None,
     /// A motion that changes sign from period to period: each tooth cuts what the one before left (period doubling).
     Flip,
@@ -19,10 +20,21 @@ pub enum Kind {
     Hopf,
 }
 
+impl Kind {
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::None => "none",
+            Kind::Flip => "flip",
+            Kind::Hopf => "hopf",
+        }
+    }
+}
+
 /// The largest Floquet multiplier of a cut.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Verdict {
-    /// By what small motions are multiplied in one period.
+    /// Factor on small motions in one period.
     pub multiplier: Complex<f64>,
     /// The period: a turn, or that part of it after which the teeth repeat. s
     pub period: f64,
@@ -134,19 +146,19 @@ impl<'a> SemiDiscretisation<'a> {
         Verdict { multiplier: map.largest_multiplier(), period }
     }
 
-    /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to `most`. m
+    /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to `max_depth`. m
     ///
-    /// Depths are examined from a thousandth of `most` up, each a fifth larger than the one before, so a narrow island of
+    /// Depths are examined from a thousandth of `max_depth` up, each a fifth larger than the one before, so a narrow island of
     /// instability may be missed.
-    pub fn critical_depth(&self, most: f64) -> Option<f64> {
-        let [mut low, mut high] = [0.0, most / 1000.0];
+    pub fn critical_depth(&self, max_depth: f64) -> Option<f64> {
+        let [mut low, mut high] = [0.0, max_depth / 1000.0];
         while self.verdict(high).is_stable() {
-            if high >= most {
+            if high >= max_depth {
                 return None;
             }
-            (low, high) = (high, (1.2 * high).min(most));
+            (low, high) = (high, (1.2 * high).min(max_depth));
         }
-        while high - low > 1e-3 * high && high > most * 1e-9 {
+        while high - low > 1e-3 * high && high > max_depth * 1e-9 {
             let middle = (low + high) / 2.0;
             if self.verdict(middle).is_stable() { low = middle } else { high = middle }
         }

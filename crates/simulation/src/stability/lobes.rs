@@ -5,11 +5,12 @@ use super::plant::Plant;
 use super::zero_order::ZeroOrder;
 use crate::milling::PassCut;
 use rayon::prelude::*;
+use serde::Serialize;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
-/// How deep can be cut at a spindle speed; `None` where all depths up to the largest are stable.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Critical depths of cut at a spindle speed; `None` where all depths up to the largest are stable.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Lobe {
     /// Angular speed of the spindle. rad/s
     pub spindle_speed: f64,
@@ -19,7 +20,7 @@ pub struct Lobe {
     pub zero_order: Option<f64>,
 }
 
-/// Critical depths up to `most` (m) at spindle speeds (rad/s), in their order, for the cut at hand otherwise.
+/// Critical depths up to `max_depth` (m) at spindle speeds (rad/s), in their order, for the cut at hand otherwise.
 ///
 /// # Errors
 /// [`EngagementError`] for a width of cut that is none.
@@ -28,15 +29,15 @@ pub fn lobes(
     cutter: &Cutter,
     cut: &PassCut,
     spindle_speeds: &[f64],
-    most: f64,
+    max_depth: f64,
 ) -> Result<Vec<Lobe>, EngagementError> {
     let zero_order = ZeroOrder::new(plant);
     let lobe = |&spindle_speed: &f64| {
         let cut = PassCut { spindle_speed, ..*cut };
         Ok(Lobe {
             spindle_speed,
-            semi_discretisation: SemiDiscretisation::new(plant, cutter, &cut)?.critical_depth(most),
-            zero_order: zero_order.critical_depth(cutter, &cut, most)?,
+            semi_discretisation: SemiDiscretisation::new(plant, cutter, &cut)?.critical_depth(max_depth),
+            zero_order: zero_order.critical_depth(cutter, &cut, max_depth)?,
         })
     };
     spindle_speeds.par_iter().map(lobe).collect()

@@ -1,4 +1,4 @@
-//! Whether a cut stays calm: stability of milling with a flexible tool tip.
+//! Stability of milling (chatter) with a flexible tool tip.
 //!
 //! The tip moves as `x' = A x + B F`, `u = C x` ([`Plant`]), and the force of milling follows the chip, which is what the tip
 //! has moved since the tooth before it passed: `F = b sum_j K_j(t) (u(t) - u(t - tau_j))` for a depth of cut b. The

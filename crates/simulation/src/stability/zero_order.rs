@@ -46,16 +46,21 @@ impl ZeroOrder {
         Self { responses: responses.collect() }
     }
 
-    /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `most`. m
+    /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `max_depth`. m
     ///
     /// # Errors
     /// [`EngagementError`] for a width of cut that is none.
-    pub fn critical_depth(&self, cutter: &Cutter, cut: &PassCut, most: f64) -> Result<Option<f64>, EngagementError> {
+    pub fn critical_depth(
+        &self,
+        cutter: &Cutter,
+        cut: &PassCut,
+        max_depth: f64,
+    ) -> Result<Option<f64>, EngagementError> {
         let teeth = cutter.teeth();
         let coefficients = mean(cutter, cut, exit(cutter, cut)?).map(Complex::from);
         let delays: Vec<f64> = teeth.iter().map(|tooth| tooth.pitch / cut.spindle_speed).collect();
         let longest = delays.iter().fold(0.0_f64, |most, delay| most.max(*delay));
-        let mut best = most;
+        let mut best = max_depth;
         let mut last = None::<[Complex<f64>; 2]>;
         for pair in self.responses.windows(2) {
             let [(from, first), (to, second)] = pair else { continue };
@@ -76,7 +81,7 @@ impl ZeroOrder {
                 last = Some(found);
             }
         }
-        Ok((best < most).then_some(best))
+        Ok((best < max_depth).then_some(best))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The work as earlier teeth left it, exactly ("eraser of matter").
+//! The workpiece surface as earlier teeth left it, exactly (the "eraser of matter" method).
 //!
 //! Frame: x along the feed, y along the outward normal of the wall that is made. The nominal wall is y = 0, the stock reaches
 //! from there up to y = a_e, and from x = 0 to its length. Below y = 0 it goes on.

@@ -16,7 +16,7 @@ pub struct Predecessor {
     pub radius: f64,
 }
 
-/// What is constant while one tooth looks along its rays.
+/// What is constant for all rays of one tooth at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct ToothQuery<'a> {
     /// Where the centre was.

@@ -1,4 +1,4 @@
-//! Where the tool centre has been: the only memory of the work that is needed.
+//! Trajectory of the tool centre, from which the cut surface follows.
 
 /// The tool centre at the end of a step, in the plane of the cut: x along the feed, y along the wall's outward normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Node {
     pub motion: [f64; 2],
 }
 
-/// What all of the way up to a node has in common: bounds of it.
+/// Bounds of the trajectory up to a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// At least the largest x so far. m
@@ -29,10 +29,10 @@ impl Extent {
     }
 }
 
-/// Bounds of the way up to a node, in two parts.
+/// Bounds of the trajectory up to a node, in two parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extents {
-    /// Of the way in the last one to two stretches.
+    /// Over the last one to two stretches.
     pub recent: Extent,
     /// Of all before that; none at the beginning.
     pub before: Option<Extent>,
@@ -47,7 +47,7 @@ pub(super) struct Leg {
     third: [f64; 2],
 }
 
-/// The way of the tool centre, one node a step; between nodes a cubic through places and motions (Hermite).
+/// The trajectory of the tool centre, one node a step; between nodes a cubic through places and motions (Hermite).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trail {
     /// Nodes in a stretch.

@@ -36,7 +36,7 @@ pub(super) fn cell(points: usize) -> MeasuringCell {
     let places = [Vector3::new(0.1, 0.05, 0.2), Vector3::new(-0.12, 0.08, 0.25), Vector3::new(0.02, -0.15, 0.3)];
     MeasuringCell {
         tracker_from_base: Pose {
-            rotation: rotation::rotation_from_vector(&Vector3::new(0.7, -1.9, 1.2)),
+            rotation: stead_numerics::rotation::rotation_from_vector(&Vector3::new(0.7, -1.9, 1.2)),
             translation: Vector3::new(3.1, -2.2, 0.7),
         },
         load_point: Vector3::new(0.25, 0.0, 0.18),

@@ -1,4 +1,4 @@
-//! How a joint yields: its compliance, which may change with the joint angle.
+//! Joint compliance, which may change with the joint angle.
 //!
 //! Most joints have one compliance. A gravity compensator adds stiffness that changes with the angle of its joint (Klimchik
 //! et al. 2017, eq. 12 to 14): known by its [`Compensator`], or, where only the smallest and the largest compliance of the

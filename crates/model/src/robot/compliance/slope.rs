@@ -1,4 +1,4 @@
-//! Derivatives of the compliance of a joint with respect to the parameters of its law: exact derivatives, for uncertainties.
+//! Exact derivatives of the compliance of a joint with respect to the parameters of its law.
 
 use super::{Compensator, Compliance, Joint};
 use crate::robot::Parameter;

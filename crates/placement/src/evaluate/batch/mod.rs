@@ -20,6 +20,7 @@ mod wrist;
 
 pub use states::StateGrid;
 
+use crate::constraints::{ConstraintKind, relaxed};
 use crate::problem::{Placement, Problem, Redundancy};
 use laws::Laws;
 use limit::Limit;
@@ -126,6 +127,15 @@ impl<'a> BatchEvaluator<'a> {
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
             instructions: Instructions::best(),
         }
+    }
+
+    /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint limits are
+    /// seen joint by joint, in either flip of the wrist.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, Conditioning, MaxDeflection];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
     }
 
     /// Which of the two postures of a class are evaluated.

@@ -1,8 +1,8 @@
-//! Rotation vectors: along the axis of a rotation, as long as its angle.
+//! Rotation vectors, the logarithms of rotations (SO(3)): along the axis of a rotation, as long as its angle.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// The vector of a rotation by less than half a turn. rad
+/// The vector of a rotation by less than half a turn, its logarithm. rad
 pub fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let sine =
         Vector3::new(rotation.m32 - rotation.m23, rotation.m13 - rotation.m31, rotation.m21 - rotation.m12) * 0.5;
@@ -11,7 +11,7 @@ pub fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     if length > 0.0 { sine * (angle / length) } else { sine }
 }
 
-/// The rotation of a vector (rad): the formula of Rodrigues.
+/// The rotation of a vector (rad), its exponential: the formula of Rodrigues.
 pub fn rotation_from_vector(vector: &Vector3<f64>) -> Matrix3<f64> {
     let angle = vector.norm();
     if angle <= 0.0 {
@@ -46,5 +46,22 @@ mod tests {
                 prop_assert!((rotation_vector(&found) - v).norm() < 1e-14, "{}", v);
             }
         }
+    }
+
+    proptest! {
+        #[test]
+        fn there_and_back(x in -1.7..1.7_f64, y in -1.7..1.7_f64, z in -1.7..1.7_f64, power in 0..9_i32) {
+            let vector = Vector3::new(x, y, z) * libm::pow(10.0, -f64::from(power));
+            let rotation = rotation_from_vector(&vector);
+            prop_assert!((rotation * rotation.transpose() - Matrix3::identity()).norm() < 1e-14);
+            prop_assert!((rotation * vector - vector).norm() < 1e-14);
+            prop_assert!((rotation_vector(&rotation) - vector).norm() < 1e-14 + 1e-13 * vector.norm());
+        }
+    }
+
+    #[test]
+    fn a_quarter_turn_about_z_takes_x_to_y() {
+        let rotation = rotation_from_vector(&Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+        assert!((rotation * Vector3::x() - Vector3::y()).norm() < 1e-15);
     }
 }

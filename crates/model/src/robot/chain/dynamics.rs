@@ -37,7 +37,7 @@ impl<const N: usize> Posed<N> {
     }
 
     fn spatial_inertia(&self, chain: &Chain<N>, j: usize, pole: &Vector3<f64>) -> Option<SpatialInertia> {
-        let body = chain.joints[j].body.as_ref()?;
+        let body = chain.links[j].body.as_ref()?;
         let rotation = &self.rotations[j];
         let mass = body.mass();
         let centre = self.origins[j] - pole + rotation * body.centre();
@@ -122,7 +122,7 @@ impl<const N: usize> Posed<N> {
         let (mut mass, mut moment) = (0.0, Vector3::zeros());
         let mut torques = SVector::zeros();
         for j in (0..N).rev() {
-            if let Some(body) = &chain.joints[j].body {
+            if let Some(body) = &chain.links[j].body {
                 mass += body.mass();
                 moment += (self.origins[j] - pole + self.rotations[j] * body.centre()) * body.mass();
             }
@@ -138,7 +138,7 @@ impl<const N: usize> Posed<N> {
         let (mut mass, mut moment) = (0.0, Vector3::zeros());
         let mut stiffness = SMatrix::zeros();
         for j in (0..N).rev() {
-            if let Some(body) = &chain.joints[j].body {
+            if let Some(body) = &chain.links[j].body {
                 mass += body.mass();
                 moment += (self.origins[j] - pole + self.rotations[j] * body.centre()) * body.mass();
             }
@@ -154,10 +154,10 @@ impl<const N: usize> Posed<N> {
 
     /// Potential energy in the field of gravity, from the base's origin up. J
     pub fn potential(&self, chain: &Chain<N>) -> f64 {
-        let bodies = chain.joints.iter().zip(self.origins.iter().zip(&self.rotations));
+        let bodies = chain.links.iter().zip(self.origins.iter().zip(&self.rotations));
         bodies
-            .filter_map(|(joint, (origin, rotation))| {
-                let body = joint.body.as_ref()?;
+            .filter_map(|(link, (origin, rotation))| {
+                let body = link.body.as_ref()?;
                 Some(-body.mass() * chain.gravity.dot(&(origin + rotation * body.centre())))
             })
             .sum()

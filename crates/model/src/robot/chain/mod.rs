@@ -8,11 +8,11 @@
 //! ```
 //! use nalgebra::{Matrix3, SVector, vector};
 //! use stead_model::robot::{Inertial, Pose};
-//! use stead_simulation::multibody::{Axis, Chain, Joint};
+//! use stead_model::robot::chain::{Axis, Chain, Link};
 //! # fn main() -> Result<(), stead_model::robot::InertialError> {
 //! // A pendulum about x: a rod of 3 kg and 2 m, hanging down.
 //! let rod = Inertial::new(3.0, vector![0.0, 0.0, -1.0], Matrix3::from_diagonal(&vector![1.0, 1.0, 0.01]))?;
-//! let chain = Chain::new([Joint::new(Pose::identity(), Axis::X, Some(rod))], Pose::identity());
+//! let chain = Chain::new([Link::new(Pose::identity(), Axis::X, Some(rod))], Pose::identity());
 //! let posed = chain.at(&SVector::from([0.1]));
 //! assert!((posed.mass_matrix(&chain)[(0, 0)] - 4.0).abs() < 1e-12);
 //! assert!((posed.gravity(&chain)[0] - 3.0 * 9.81 * 0.1_f64.sin()).abs() < 1e-12);
@@ -22,8 +22,9 @@
 
 mod dynamics;
 
+use super::inertial::Inertial;
+use super::pose::Pose;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use stead_model::robot::{Inertial, Pose};
 
 /// The axis of its frame about which a joint turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,14 +39,14 @@ pub enum Axis {
 
 /// A revolute joint and the body fixed behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Joint {
+pub struct Link {
     turn: Option<Matrix3<f64>>,
     shift: Vector3<f64>,
     axis: Axis,
     body: Option<Inertial>,
 }
 
-impl Joint {
+impl Link {
     /// A joint whose frame at angle zero is `previous_from_joint` (the base frame for the first), turning about an axis of
     /// its own frame; `body` is given in the joint's frame, which turns with it.
     pub fn new(previous_from_joint: Pose<f64>, axis: Axis, body: Option<Inertial>) -> Self {
@@ -73,7 +74,7 @@ impl Joint {
 /// A serial chain of `N` revolute joints, base first, and a tip fixed to the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain<const N: usize> {
-    joints: [Joint; N],
+    links: [Link; N],
     last_from_tip: Pose<f64>,
     gravity: Vector3<f64>,
 }
@@ -82,9 +83,9 @@ pub struct Chain<const N: usize> {
 pub const GRAVITY: f64 = 9.81;
 
 impl<const N: usize> Chain<N> {
-    /// Puts the joints together; `last_from_tip` is the tip in the frame of the last joint. Gravity is 9.81 m/s^2 along -z.
-    pub fn new(joints: [Joint; N], last_from_tip: Pose<f64>) -> Self {
-        Self { joints, last_from_tip, gravity: Vector3::new(0.0, 0.0, -GRAVITY) }
+    /// Joins links, base first; `last_from_tip` is the tip in the frame of the last joint. Gravity is 9.81 m/s^2 along -z.
+    pub fn new(links: [Link; N], last_from_tip: Pose<f64>) -> Self {
+        Self { links, last_from_tip, gravity: Vector3::new(0.0, 0.0, -GRAVITY) }
     }
 
     /// The same chain in another field of gravity: acceleration of free fall in base coordinates, m/s^2.
@@ -93,9 +94,9 @@ impl<const N: usize> Chain<N> {
         self
     }
 
-    /// The joints, base first.
-    pub fn joints(&self) -> &[Joint; N] {
-        &self.joints
+    /// The joints with their bodies, base first.
+    pub fn links(&self) -> &[Link; N] {
+        &self.links
     }
 
     /// The tip in the frame of the last joint.
@@ -118,13 +119,13 @@ impl<const N: usize> Chain<N> {
             rotations: [Matrix3::identity(); N],
             base_from_tip: Pose::identity(),
         };
-        for (j, joint) in self.joints.iter().enumerate() {
-            origin += rotation * joint.shift;
-            if let Some(turn) = &joint.turn {
+        for (j, link) in self.links.iter().enumerate() {
+            origin += rotation * link.shift;
+            if let Some(turn) = &link.turn {
                 rotation *= turn;
             }
             let (sine, cosine) = sine_cosine(q[j]);
-            let (kept, first, second) = match joint.axis {
+            let (kept, first, second) = match link.axis {
                 Axis::X => (0, 1, 2),
                 Axis::Y => (1, 2, 0),
                 Axis::Z => (2, 0, 1),
@@ -145,6 +146,7 @@ impl<const N: usize> Chain<N> {
 const SMALL: f64 = 0.02;
 
 /// Sine and cosine; of the small angles of springs by their series.
+#[inline]
 fn sine_cosine(angle: f64) -> (f64, f64) {
     if angle.abs() > SMALL {
         return libm::sincos(angle);

@@ -24,7 +24,7 @@ pub fn motion_histories<const N: usize>(
 ) -> Vec<MotionHistory> {
     let mut course = MotionHistory([Matrix4::identity(), Matrix4::zeros(), Matrix4::zeros()]);
     let mut all = vec![];
-    for (j, joint) in chain.joints().iter().enumerate() {
+    for (j, joint) in chain.links().iter().enumerate() {
         let axis = match joint.axis() {
             Axis::X => Vector3::x(),
             Axis::Y => Vector3::y(),
@@ -55,7 +55,7 @@ pub fn torques_by_bodies<const N: usize>(
     let zero = SVector::zeros();
     let motion_histories = motion_histories(chain, q, speed, acceleration);
     let mut torques = SVector::zeros();
-    for (b, joint) in chain.joints().iter().enumerate() {
+    for (b, joint) in chain.links().iter().enumerate() {
         let Some(body) = joint.body() else { continue };
         let [_, _, dd] = motion_histories[b].0;
         let [rotation, rate, rate2] = motion_histories[b].0.map(|m| m.fixed_view::<3, 3>(0, 0).into_owned());
@@ -84,7 +84,7 @@ fn of_cross(matrix: &Matrix3<f64>) -> Vector3<f64> {
 pub fn mass_by_bodies<const N: usize>(chain: &Chain<N>, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let zero = SVector::zeros();
     let mut matrix = SMatrix::zeros();
-    for (b, joint) in chain.joints().iter().enumerate() {
+    for (b, joint) in chain.links().iter().enumerate() {
         let Some(body) = joint.body() else { continue };
         let (mut linear, mut angular) = (SMatrix::<f64, 3, N>::zeros(), SMatrix::<f64, 3, N>::zeros());
         let mut rotation = Matrix3::identity();
@@ -119,7 +119,7 @@ pub fn chain<const N: usize>() -> impl Strategy<Value = Chain<N>> {
         let [a, b, c] = moments;
         let inertia = tilt * Matrix3::from_diagonal(&vector![b + c, c + a, a + b]) * tilt.transpose();
         let body = body.map(|(mass, centre)| Inertial::new(mass, centre.into(), inertia).unwrap());
-        Joint::new(Pose { rotation, translation: shift.into() }, [Axis::X, Axis::Y, Axis::Z][axis], body)
+        Link::new(Pose { rotation, translation: shift.into() }, [Axis::X, Axis::Y, Axis::Z][axis], body)
     });
     prop::collection::vec(joint, N).prop_map(|joints| {
         let tip = Pose { translation: vector![0.1, -0.2, 0.3], ..Pose::identity() };

@@ -1,0 +1,71 @@
+//! The values of options: how each is read from its text, and what is allowed.
+
+use stead_assessment::roundness::Sector;
+use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE};
+use stead_placement::settings::CertificateSettings;
+use stead_simulation::arm::Variant;
+
+pub(super) fn variant(text: &str) -> Result<Variant, String> {
+    let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
+    found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+}
+
+pub(super) fn damping_scale(text: &str) -> Result<f64, String> {
+    let allowed = || format!("allowed: a number from 0 to {MOST_DAMPING_SCALE}");
+    finite(text).ok().filter(|scale| (0.0..=MOST_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
+}
+
+pub(super) fn rpm(text: &str) -> Result<f64, String> {
+    let allowed = || format!("allowed: a number above 0 and not above {FASTEST_RPM}");
+    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= FASTEST_RPM).ok_or_else(allowed)
+}
+
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("allowed: a finite decimal number".to_owned()),
+    }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
+}
+
+/// Per cent in, a share out.
+pub(super) fn gap(text: &str) -> Result<f64, String> {
+    finite(text).ok().and_then(CertificateSettings::gap).ok_or_else(|| format!("allowed: {GAPS_ALLOWED}"))
+}
+
+/// Angles count from the x axis counter-clockwise; from the first to the second the sector may pass through zero.
+pub(super) fn sector(text: &str) -> Result<Sector, String> {
+    let allowed = || "allowed: two angles from -360 to 360, as in 350:10".to_owned();
+    let angle = |text: &str| finite(text.trim()).ok().filter(|angle| angle.abs() <= 360.0).ok_or_else(allowed);
+    let (from, to) = text.split_once(':').ok_or_else(allowed)?;
+    let (from, to) = (angle(from)?, angle(to)?);
+    let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
+    Ok(Sector { start: from.to_radians(), width: (to - from + 360.0 * turns).to_radians() })
+}
+
+pub(super) fn quaternion(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|q| (-1.0..=1.0).contains(q)).ok_or_else(|| "allowed: a number from -1 to 1".to_owned())
+}
+
+/// Seeds are what a run file can hold too.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    const MOST: u64 = i64::MAX as u64;
+    text.parse().ok().filter(|n| *n <= MOST).ok_or_else(|| format!("allowed: a whole number from 0 to {MOST}"))
+}
+
+pub(super) fn point(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
+}
+
+/// More threads than this help nobody.
+const MOST_THREADS: usize = 1024;
+
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=MOST_THREADS).contains(n))
+        .ok_or_else(|| format!("allowed: a whole number from 1 to {MOST_THREADS}"))
+}
