@@ -44,7 +44,7 @@ pub struct AssessmentFile {
     /// Asks which robots reach an accuracy under a force.
     pub selection: Option<SelectionTable>,
     /// Published tables to print beside ours.
-    pub reference: Option<PublishedTablesTable>,
+    pub reference: Option<ReferenceFileTable>,
 }
 
 /// The circle and its load.
@@ -159,7 +159,7 @@ pub struct SelectionTable {
 /// Published tables to print beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PublishedTablesTable {
+pub struct ReferenceFileTable {
     /// The file of published tables, relative to the folder of this file.
     pub tables: String,
 }

@@ -22,7 +22,7 @@ pub fn relaxed_value(problem: &Problem, placement: &Placement) -> Option<f64> {
     let points = problem.task.points().len();
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
-        .map(|point| PostureClass::ALL.map(|class| least(&|beta| score(problem, &placement, point, class, beta))))
+        .map(|point| PostureClass::ALL.map(|class| least(&|beta| score(problem, placement, point, class, beta))))
         .collect();
     let mut sum = 0.0;
     for span in problem.task.segments() {
