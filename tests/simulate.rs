@@ -132,7 +132,7 @@ fn bad_input_names_line_field_value_and_what_is_allowed() {
         (
             "springs = { force_x_n = [-7.63, ",
             "springs = { force_x_n = [",
-            &["published.springs.force_x_n", "four numbers"],
+            &["published.springs.force_x_n", "four finite numbers"],
         ),
     ] {
         let bench = bench();

@@ -181,6 +181,6 @@ fn a_run_that_asks_for_stability_needs_a_robot_with_masses() {
     ]);
     let line = bench.replace(PATH, "teeth = 4", "tooth = 4");
     let ended = bench.stead(&[&["score", PATH][..], &SPOT].concat());
-    let place = format!("tx200-stability.toml:{line}: stability.tooth: ");
+    let place = format!("tx200-stability.toml:{line}: tool.tooth: ");
     assert!(ended.code == Some(2) && ended.stderr.contains(&place), "{}", ended.stderr);
 }
