@@ -381,7 +381,7 @@ mod interrupt {
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let said = "interrupted: the results are the best found so far, not the end of the search\n";
+        let said = "warning: interrupted: the results are the best found so far, not the end of the search\n";
         assert_eq!(ended.stderr, said);
         assert_eq!(names(&bench, "out"), FILES);
         let document = ended.json();
