@@ -209,7 +209,7 @@ pub enum RefinementStatus {
 
 /// What a search looked through.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tabled {
+pub struct LookupSummary {
     /// What was sampled where.
     pub shape: Shape,
     /// How far it is from the ordinary evaluator.
@@ -222,7 +222,7 @@ pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
     /// The table that the searches looked through, or why there is none; `None` where none was asked for.
-    pub tabled: Option<Result<Tabled, Unsupported>>,
+    pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.

@@ -5,7 +5,7 @@ use super::evaluate::reference::{normal_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::lookup::LookupTable;
-use super::outcome::{CANCELLATION, Case, Cases, Outcome, Plan, PlanPoint, Refinement, Tabled};
+use super::outcome::{CANCELLATION, Case, Cases, LookupSummary, Outcome, Plan, PlanPoint, Refinement};
 use super::problem::{Criterion, Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
@@ -76,8 +76,8 @@ pub fn place(
         Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
         Tables::Never => None,
     };
-    let mut tabled = table.as_ref().map(|table| match table {
-        Ok(table) => Ok(Tabled { shape: *table.shape(), accuracy: table.accuracy() }),
+    let mut lookup_summary = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
         Err(unsuited) => Err(unsuited.clone()),
     });
     let mut table = table.and_then(Result::ok);
@@ -88,7 +88,7 @@ pub fn place(
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
     if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
-        (table, tabled) = (None, Some(Err(Unsupported::Rejected)));
+        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }
@@ -133,7 +133,7 @@ pub fn place(
             worst: case(Sense::Max, worst, Sense::Min),
             worst_worst_plan: case(Sense::Max, worst, Sense::Max),
         },
-        tabled,
+        lookup_summary,
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         map_best: deflection_map(problem, &best.solution.placement),

@@ -56,7 +56,7 @@ pub fn outcome() -> &'static Outcome {
         let (map_best, map_worst) = (best.map(), worst.map());
         Outcome {
             cases,
-            tabled: None,
+            lookup_summary: None,
             convergence,
             refinements,
             map_best,

@@ -50,8 +50,12 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
         place(problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap()
     };
     let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
-    assert!(matches!(with.tabled, Some(Ok(tabled)) if tabled.accuracy.rms < 1e-3), "{:?}", with.tabled);
-    assert_eq!(without.tabled, None);
+    assert!(
+        matches!(with.lookup_summary, Some(Ok(lookup_summary)) if lookup_summary.accuracy.rms < 1e-3),
+        "{:?}",
+        with.lookup_summary
+    );
+    assert_eq!(without.lookup_summary, None);
     // The ordinary evaluator has the last word, and the table never costs more than it finds.
     assert!(with.cases.best.plan.mean <= without.cases.best.plan.mean * 1.001);
     assert!(with.cases.worst.plan.mean >= without.cases.worst.plan.mean * 0.999);
@@ -59,7 +63,7 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     let mut wrenches = tilted.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
     tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(run(&tilted, Tables::Auto).tabled, Some(Err(Unsupported::Moment { point: 3 })));
+    assert_eq!(run(&tilted, Tables::Auto).lookup_summary, Some(Err(Unsupported::Moment { point: 3 })));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_placement::lookup::Axis;
-use stead_placement::outcome::{Case, Outcome, PlanPoint, Refinement, Tabled, Transfer};
+use stead_placement::outcome::{Case, LookupSummary, Outcome, PlanPoint, Refinement, Transfer};
 use stead_placement::problem::{Interval, Problem};
 use stead_placement::settings::{PostureSearch, Tables};
 use stead_placement::symmetry::Unsupported;
@@ -53,7 +53,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
     let mut document = Map::from_iter([
         ("evaluations".to_owned(), json!(outcome.evaluations)),
         ("states".to_owned(), json!(outcome.states)),
-        ("table".to_owned(), outcome.tabled.as_ref().map_or(Value::Null, tabled)),
+        ("table".to_owned(), outcome.lookup_summary.as_ref().map_or(Value::Null, lookup_summary)),
         ("interrupted".to_owned(), json!(outcome.interrupted)),
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
@@ -71,10 +71,10 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
 const TABLE_ERROR: Unit = Unit { factor: 1.0, decimals: 8 };
 
 /// The lookup table that the search used, or why there is none.
-fn tabled(tabled: &Result<Tabled, Unsupported>) -> Value {
-    match tabled {
+fn lookup_summary(lookup_summary: &Result<LookupSummary, Unsupported>) -> Value {
+    match lookup_summary {
         Err(unsuited) => json!({ "used": false, "reason": unsuited.to_string() }),
-        Ok(Tabled { shape, accuracy }) => {
+        Ok(LookupSummary { shape, accuracy }) => {
             let axis = |axis: &Axis| {
                 json!({
                     "first_mm": number(Unit::PLACE_MM, axis.first),

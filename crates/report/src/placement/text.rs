@@ -32,10 +32,10 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
-    match &outcome.tabled {
-        Some(Ok(tabled)) => {
-            let (states, megabytes) = (tabled.shape.states(), tabled.shape.bytes() as f64 / 1e6);
-            let error = figures(tabled.accuracy.rms * 100.0);
+    match &outcome.lookup_summary {
+        Some(Ok(lookup_summary)) => {
+            let (states, megabytes) = (lookup_summary.shape.states(), lookup_summary.shape.bytes() as f64 / 1e6);
+            let error = figures(lookup_summary.accuracy.rms * 100.0);
             line(
                 &mut text,
                 &format!(
