@@ -10,6 +10,7 @@ mod common;
 mod compensate;
 mod discretisation;
 mod documents;
+mod facade;
 mod help;
 mod identify;
 mod identify_plan;

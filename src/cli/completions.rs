@@ -1,11 +1,11 @@
 //! `stead completions`: the completion script of a shell, to standard output.
 
 use super::arguments::CompletionsOptions;
-use super::{Failure, help, print};
+use super::{Failure, print};
 
 pub(super) fn run(options: &CompletionsOptions) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(clap_complete::Shell::from(options.shell), &mut help::command(), "stead", &mut script);
+    clap_complete::generate(clap_complete::Shell::from(options.shell), &mut super::command(), "stead", &mut script);
     print(&script);
     Ok(())
 }

@@ -1,9 +1,6 @@
 //! The words of the long help: examples, files written and exit codes of each command, and the overview of all commands by
 //! the question that they answer.
 
-use super::arguments::Arguments;
-use clap::CommandFactory;
-
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
@@ -13,17 +10,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Input files, shell and manual", &[]),
 ];
 
-/// The command line with its overview. Every command is described by its own one-line summary.
-pub(super) fn command() -> clap::Command {
-    let command = Arguments::command();
-    let overview = overview(&command);
-    // The texts are laid out by hand: no wrapping.
-    command.term_width(0).help_template(format!(
-        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"
-    ))
-}
-
-fn overview(command: &clap::Command) -> String {
+/// The overview of all commands by the question that they answer.
+pub(super) fn overview(command: &clap::Command) -> String {
     let line = |command: &clap::Command| {
         let about = command.get_about().map(ToString::to_string).unwrap_or_default();
         format!("  {:<12} {about}\n", command.get_name())

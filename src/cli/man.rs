@@ -1,12 +1,12 @@
 //! `stead man`: the manual, one page for the command line and one for each command.
 
 use super::arguments::ManOptions;
-use super::{Failure, files_written, help, print};
+use super::{Failure, files_written, print};
 use clap_mangen::Man;
 use stead_report::output::Folder;
 
 pub(super) fn run(options: &ManOptions) -> Result<(), Failure> {
-    let mut command = help::command();
+    let mut command = super::command();
     command.build();
     let folder = Folder::create(&options.folder).map_err(Failure::Output)?;
     let mut names = Vec::new();

@@ -23,7 +23,7 @@ mod stability;
 mod values;
 
 use arguments::{Arguments, Command};
-use clap::FromArgMatches;
+use clap::{CommandFactory, FromArgMatches};
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::Write;
@@ -68,9 +68,19 @@ impl Failure {
     }
 }
 
+/// The command line with its overview. Every command is described by its own one-line summary.
+fn command() -> clap::Command {
+    let command = Arguments::command();
+    let overview = help::overview(&command);
+    // The texts are laid out by hand: no wrapping.
+    command.term_width(0).help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"
+    ))
+}
+
 /// Parses the command line, runs the command, and says how it went.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::from_arg_matches(&help::command().get_matches()).unwrap_or_else(|error| error.exit());
+    let arguments = Arguments::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     let result = match arguments.command {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),

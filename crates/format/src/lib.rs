@@ -20,6 +20,7 @@
 pub mod assess;
 pub mod compensate;
 mod deserialize;
+pub mod document;
 pub mod identify;
 pub mod inertial;
 pub mod init;

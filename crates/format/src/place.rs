@@ -1,11 +1,8 @@
 //! A place in a TOML file where a value is, or would be: what errors are located by.
 
-use crate::deserialize::Node;
 use crate::input::InputError;
 use crate::quantity::Expects;
 use crate::toml_file::TomlFile;
-use serde::de::DeserializeOwned;
-use std::path::PathBuf;
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -18,17 +15,6 @@ pub struct Place<'a> {
     /// Line of the table or array that the value is in, or would be in.
     pub(crate) parent_line: usize,
     pub(crate) value: Option<&'a Spanned<DeValue<'a>>>,
-}
-
-/// A file that another one names, read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NamedFile {
-    /// The name as given in the naming file, with forward slashes.
-    pub name: String,
-    /// The name with the folder of the naming file before it.
-    pub file: PathBuf,
-    /// What is in it.
-    pub bytes: Vec<u8>,
 }
 
 impl<'a> Place<'a> {
@@ -94,31 +80,6 @@ impl<'a> Place<'a> {
     /// An error about a number that is here, but not among those that the rest of the file allows.
     pub fn out_of_range(&self, allowed: impl Into<String>) -> InputError {
         self.error("is out of range", allowed)
-    }
-
-    /// What is here, as the type that declares it.
-    ///
-    /// # Errors
-    /// [`InputError`] at the first value that is unknown, missing, of the wrong kind or out of range.
-    pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        T::deserialize(Node::new(self.clone())).map_err(|problem| problem.located(self, "another value"))
-    }
-
-    /// The file named here, by a path relative to the folder of this one, read.
-    ///
-    /// # Errors
-    /// [`InputError`] here when there is no name, or the file cannot be read.
-    pub fn named_file(&self) -> Result<NamedFile, InputError> {
-        let name: String = self.read()?;
-        let file = match self.file.file().parent() {
-            Some(folder) => folder.join(&name),
-            None => PathBuf::from(&name),
-        };
-        let bytes = std::fs::read(&file).map_err(|e| {
-            let problem = format!("names a file that cannot be read, {}: {e}", file.display());
-            self.error(problem, "a readable file, its path relative to the folder of the file that names it")
-        })?;
-        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
     }
 }
 

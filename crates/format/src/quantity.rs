@@ -1,6 +1,5 @@
 //! Numbers of a file, with their unit and the range they may be in: one declaration that reads, checks, writes and documents.
 
-use crate::units::Finite;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -160,6 +159,25 @@ impl<U: Unit, R: Range> JsonSchema for Quantity<U, R> {
         value.map(|value| schema.insert(key.to_owned(), value.into()));
         schema
     }
+}
+
+/// Declares ranges of numbers.
+macro_rules! ranges {
+    ($($(#[$doc:meta])* $name:ident: $from:expr, $to:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name;
+
+        impl $crate::quantity::Range for $name {
+            const ENDS: (std::ops::Bound<f64>, std::ops::Bound<f64>) = ($from, $to);
+        }
+    )*};
+}
+pub(crate) use ranges;
+
+ranges! {
+    /// Any finite number.
+    Finite: Bound::Unbounded, Bound::Unbounded;
 }
 
 #[cfg(test)]

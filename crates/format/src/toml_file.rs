@@ -1,51 +1,14 @@
-//! The text of one TOML file: where its lines are, and how it parses.
-//!
-//! ```
-//! use serde::Deserialize;
-//! use stead_format::shapes::Interval;
-//! use stead_format::toml_file::TomlFile;
-//! use stead_format::units::{Mm, Positive};
-//! # fn main() -> Result<(), stead_format::input::InputError> {
-//! #[derive(Deserialize)]
-//! #[serde(deny_unknown_fields)]
-//! struct Cell {
-//!     x_mm: Interval<Mm>,
-//!     wall_mm: Mm<Positive>,
-//!     gap_mm: Option<Mm>,
-//! }
-//!
-//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = 20".to_vec())?;
-//! let cell: Cell = source.parse()?.read()?;
-//! assert_eq!((cell.x_mm.si(), cell.wall_mm.si(), cell.gap_mm), ([-0.3, 0.3], 0.02, None));
-//!
-//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
-//! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
-//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0";
-//! assert_eq!(error.as_deref(), Some(expected));
-//! # Ok(())
-//! # }
-//! ```
+//! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
 use crate::input::{InputError, InputFile, input_file};
-use crate::place::Place;
-use serde::de::DeserializeOwned;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 /// A TOML file read into memory, with its name for messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlFile {
     file: PathBuf,
     text: String,
-}
-
-/// The parse tree of a [`TomlFile`], every value with its place in the text.
-#[derive(Debug, Clone)]
-pub struct Document<'a> {
-    file: &'a TomlFile,
-    root: Spanned<DeValue<'a>>,
 }
 
 /// Longest piece of a file that is quoted in a message, in characters.
@@ -85,6 +48,11 @@ impl TomlFile {
         &self.file
     }
 
+    /// The text, exactly as read.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The text as bytes, exactly as read.
     pub fn bytes(&self) -> &[u8] {
         self.text.as_bytes()
@@ -98,23 +66,6 @@ impl TomlFile {
     /// The entry of a config among the files that a result came from: its name alone, wherever it lies.
     pub fn as_config(&self) -> InputFile {
         input_file("config", self.file.file_name().unwrap_or_default().to_string_lossy(), self.bytes())
-    }
-
-    /// Parses the text.
-    ///
-    /// # Errors
-    /// [`InputError`] at the line where the text stops being TOML.
-    pub fn parse(&self) -> Result<Document<'_>, InputError> {
-        let tree = DeTable::parse(&self.text).map_err(|e| {
-            let span = e.span().unwrap_or(0..0);
-            let line = self.line(span.start);
-            InputError::new(&self.file, format!("is not readable as TOML: {}", e.message().trim()))
-                .at_line(line)
-                .found(format!("'{}'", shorten(self.text.lines().nth(line - 1).unwrap_or_default())))
-                .allowed("a TOML file")
-        })?;
-        let span = tree.span();
-        Ok(Document { file: self, root: Spanned::new(span, DeValue::Table(tree.into_inner())) })
     }
 
     /// The line, from 1, in which a byte of the text stands.
@@ -138,34 +89,11 @@ fn line_after(text: &[u8]) -> usize {
     1 + text.iter().filter(|byte| **byte == b'\n').count()
 }
 
-fn shorten(text: &str) -> String {
+pub(crate) fn shorten(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.char_indices().nth(QUOTE) {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
-    }
-}
-
-impl<'a> Document<'a> {
-    /// What the file says, as the type that declares its keys.
-    ///
-    /// # Errors
-    /// [`InputError`] at the first key that is unknown or missing, or whose value is of the wrong kind or out of range.
-    pub fn read<T: DeserializeOwned>(&'a self) -> Result<T, InputError> {
-        self.root().read()
-    }
-
-    /// The place of a value, for an error there: `cell.x_mm`, `joints[3].min_deg`; array elements are counted from 1.
-    pub fn at(&'a self, path: &str) -> Place<'a> {
-        path.split(['.', '[']).fold(self.root(), |place, step| match step.strip_suffix(']') {
-            Some(number) => place.element(number.parse().unwrap_or(0)),
-            None => place.key(step),
-        })
-    }
-
-    /// The table that the whole file is.
-    pub fn root(&'a self) -> Place<'a> {
-        Place::root(self.file, &self.root)
     }
 }
 
@@ -175,21 +103,6 @@ mod tests {
 
     fn source(bytes: &[u8]) -> Result<TomlFile, InputError> {
         TomlFile::new(Path::new("a.toml"), bytes.to_vec())
-    }
-
-    #[test]
-    fn text_that_is_no_toml_is_located() {
-        for (text, parts) in [
-            ("a = 1\nb = = 2\n", [":2:", "TOML", "found 'b = = 2'", "allowed"]),
-            ("a = 1\n\na = 2\n", [":3:", "duplicate key", "found 'a = 2'", "allowed"]),
-            ("a = [1,\n2\n", [":", "TOML", "found", "allowed"]),
-            ("[cell\nx = 1\n", [":1:", "TOML", "found '[cell'", "allowed"]),
-        ] {
-            let message = source(text.as_bytes()).unwrap().parse().unwrap_err().to_string();
-            for part in parts {
-                assert!(message.contains(part), "{part} in {message}");
-            }
-        }
     }
 
     #[test]

@@ -78,23 +78,10 @@ units! {
     Hundredth Percent "%" = |value| value / 100.0;
 }
 
-/// Declares ranges of numbers.
-macro_rules! ranges {
-    ($($(#[$doc:meta])* $name:ident: $from:expr, $to:expr;)*) => {$(
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq)]
-        pub struct $name;
-
-        impl $crate::quantity::Range for $name {
-            const ENDS: (std::ops::Bound<f64>, std::ops::Bound<f64>) = ($from, $to);
-        }
-    )*};
-}
-pub(crate) use ranges;
+pub use crate::quantity::Finite;
+pub(crate) use crate::quantity::ranges;
 
 ranges! {
-    /// Any finite number.
-    Finite: Unbounded, Unbounded;
     /// Above zero.
     Positive: Excluded(0.0), Unbounded;
     /// Zero or above.

@@ -135,7 +135,7 @@ mod tests {
         )
         .unwrap();
         let cut = PassCut {
-            section: Cut { direction: direction, radial_depth: 4e-3, axial_depth: 2e-3 },
+            section: Cut { direction, radial_depth: 4e-3, axial_depth: 2e-3 },
             length: 1.0,
             spindle_speed: 1e3,
             slices: 1,

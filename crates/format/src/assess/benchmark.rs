@@ -6,21 +6,13 @@ use crate::place::{Place, required};
 use crate::quantity::Quantity;
 use crate::scalars::joint_set;
 use crate::shapes::Vector;
-use crate::units::{Number, ranges};
+use crate::units::Number;
 use nalgebra::{Matrix3, Vector3};
-use std::ops::Bound::Included;
 use stead_assessment::benchmark::{Benchmark, LimitsAt, Plane, StiffnessModel, Turning};
 use stead_assessment::comparison::ElbowNames;
 use stead_model::cutting::ForceHistory;
 use stead_model::robot::{Pose, point_from_tool};
 use stead_model::task::{PathPoint, Wrench};
-
-ranges! {
-    /// Radius of a circle. mm
-    Radius: Included(1e-3), Included(1e5);
-    /// A force or a moment, within what machines can do.
-    Force: Included(-1e7), Included(1e7);
-}
 
 /// What `[stiffness]` says.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,5 @@
 //! What an assessment file declares.
 
-use super::benchmark::{Force, Radius};
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::{Interval, List, Vector};
 use crate::spindle::SpindleTable;
@@ -13,6 +12,10 @@ use stead_assessment::benchmark::{LimitsAt, Turning};
 use stead_assessment::comparison::ElbowNames;
 
 ranges! {
+    /// Radius of a circle. mm
+    Radius: Included(1e-3), Included(1e5);
+    /// A force or a moment, within what machines can do.
+    Force: Included(-1e7), Included(1e7);
     /// A share of the weight of the payload.
     RatedShare: Excluded(0.0), Included(10.0);
 }

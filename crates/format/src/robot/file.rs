@@ -1,6 +1,6 @@
 //! What a robot file declares.
 
-use super::compliance::OneOrRange;
+use super::one_or_range::OneOrRange;
 use crate::inertial::InertiaTable;
 use crate::shapes::{List, Vector};
 use crate::units::*;

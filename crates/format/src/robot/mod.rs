@@ -4,9 +4,10 @@ mod compliance;
 pub mod covariance;
 mod dynamics;
 mod file;
+mod one_or_range;
 
-pub use compliance::OneOrRange;
 pub use file::{CompensatorTable, CovarianceTable, JointRow, RobotFile};
+pub use one_or_range::OneOrRange;
 
 use crate::input::InputError;
 use crate::place::Place;

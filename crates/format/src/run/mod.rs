@@ -13,8 +13,9 @@ pub use tables::{
     CellTable, ConstraintsTable, CriterionTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable,
 };
 
+use crate::document::NamedFile;
 use crate::input::{InputError, InputFile, input_file};
-use crate::place::{NamedFile, Place};
+use crate::place::Place;
 use crate::robot::{moving_robot_from, robot_from};
 use crate::spindle::SpindleTable;
 use crate::task::{Imported, parse_csv};

@@ -6,8 +6,6 @@ use crate::place::Place;
 use crate::robot::moving_robot_from;
 use crate::scalars::Words;
 use crate::toml_file::TomlFile;
-use crate::units::ranges;
-use std::ops::Bound::{Excluded, Included};
 use stead_model::robot::{Robot, Spindle};
 use stead_simulation::arm::Variant;
 use stead_simulation::motion::{Motion, MotionError, Pass, Ramp};
@@ -22,16 +20,6 @@ pub struct Overrides {
     pub damping_scale: Option<f64>,
     /// The spindle speed. rad/s
     pub spindle_speed: Option<f64>,
-}
-
-/// Damping times more than this is none of an arm.
-pub const MOST_DAMPING_SCALE: f64 = 1e4;
-
-ranges! {
-    /// A factor on all damping.
-    DampingScale: Included(0.0), Included(MOST_DAMPING_SCALE);
-    /// Length of a pass; more is none of an arm. mm
-    PassLength: Excluded(0.0), Included(1e4);
 }
 
 /// The arm and its pass; the robot file is added to `inputs`.

@@ -5,8 +5,6 @@ use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::shapes::Span;
-use crate::units::ranges;
-use std::ops::Bound::Included;
 use stead_model::published::Published;
 use stead_simulation::arm::Variant;
 use stead_simulation::milling::PassCut;
@@ -14,11 +12,6 @@ use stead_simulation::outcome::{EvaluationSettings, PassFigures, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::linear_at;
-
-ranges! {
-    /// Cutoff of a profile filter. mm
-    Cutoff: Included(0.08), Included(25.0);
-}
 
 /// Cutoff of the filter where the file does not say: ISO 21920-3 for a profile of this roughness. m
 const CUTOFF: f64 = 2.5e-3;

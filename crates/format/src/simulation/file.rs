@@ -1,16 +1,30 @@
 //! What a simulation file declares.
 
-use super::arm::{DampingScale, PassLength};
-use super::evaluation::Cutoff;
-use super::stability::{Frequency, LobeSpeed};
 use crate::scalars::{Whole, Word};
 use crate::shapes::{Array, Span, Vector};
 use crate::spindle::SpindleTable;
-use crate::tool::{CutTable, ToolTable};
+use crate::tool::{CutTable, FASTEST_RPM, ToolTable};
 use crate::units::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::ops::Bound::{Excluded, Included};
 use stead_simulation::arm::Variant;
+
+/// Damping times more than this is none of an arm.
+pub const MOST_DAMPING_SCALE: f64 = 1e4;
+
+ranges! {
+    /// A factor on all damping.
+    DampingScale: Included(0.0), Included(MOST_DAMPING_SCALE);
+    /// Length of a pass; more is none of an arm. mm
+    PassLength: Excluded(0.0), Included(1e4);
+    /// Cutoff of a profile filter. mm
+    Cutoff: Included(0.08), Included(25.0);
+    /// A spindle speed on an axis of lobes. 1/min
+    LobeSpeed: Included(1.0), Included(FASTEST_RPM);
+    /// A frequency of a response. Hz
+    Frequency: Included(0.0), Included(1e5);
+}
 
 /// A straight milling pass of `stead simulate` and `stead stability`: the arm with its masses and damping, the cutter, and
 /// what it cuts.

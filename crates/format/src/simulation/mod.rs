@@ -7,7 +7,7 @@ mod stability;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{MOST_DAMPING_SCALE, Overrides};
+pub use arm::Overrides;
 pub use file::*;
 
 use super::toml_file::TomlFile;
@@ -15,7 +15,6 @@ use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::tool::Cutting;
 use crate::units::{Mm, Positive};
-pub(crate) use arm::DampingScale;
 use arm::setup_from;
 use evaluation::{check_duration, check_step, evaluation_from};
 use stability::analysis_from;

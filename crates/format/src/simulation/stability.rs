@@ -5,20 +5,11 @@ use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::shapes::Span;
-use crate::tool::FASTEST_RPM;
-use crate::units::{Mm, Positive, ranges};
-use std::ops::Bound::Included;
+use crate::units::{Mm, Positive};
 use stead_model::cutting::Cutter;
 use stead_simulation::milling::PassCut;
 use stead_simulation::setup::Setup;
 use stead_simulation::stability_analysis::AnalysisSettings;
-
-ranges! {
-    /// A spindle speed on an axis of lobes. 1/min
-    LobeSpeed: Included(1.0), Included(FASTEST_RPM);
-    /// A frequency of a response. Hz
-    Frequency: Included(0.0), Included(1e5);
-}
 
 /// What is to be found out of the stability of a cut.
 ///

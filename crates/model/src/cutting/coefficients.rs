@@ -43,7 +43,7 @@
 use nalgebra::{Matrix3, Vector3, vector};
 use serde::Serialize;
 
-/// Coefficients of the linear cutting force law with edge forces (see the [module](self)).
+/// Coefficients of the linear cutting force law with edge forces.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Coefficients {
     /// K_t, against the motion of the tooth. Pa
@@ -75,7 +75,7 @@ impl Coefficients {
     }
 }
 
-/// The rake face of a tooth with its friction and specific cutting coefficient (see the [module](self)).
+/// The rake face of a tooth with its friction and specific cutting coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RakeFace {
     /// Entering angle kappa, above 0 and below pi. rad

@@ -1,4 +1,4 @@
-//! Evaluation of states of the arm: [`reference`] one state at a time, in any number type; [`batch`] all grid values of beta
+//! Evaluation of states of the arm: [`mod@reference`] one state at a time, in any number type; [`batch`] all grid values of beta
 //! at a path point at once, tested against it.
 
 pub mod batch;

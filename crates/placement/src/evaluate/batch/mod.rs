@@ -2,7 +2,7 @@
 //!
 //! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
 //! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
-//! quantities, one state at a time and by way of the Jacobian, come from [`super::evaluate::reference::state`]; the tests hold the
+//! quantities, one state at a time and by way of the Jacobian, come from [`state`](super::reference::state); the tests hold the
 //! two against each other.
 //!
 //! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the frame

@@ -1,0 +1,148 @@
+//! The parse tree of a TOML file, and what is read from it.
+//!
+//! ```
+//! use serde::Deserialize;
+//! use stead_format::shapes::Interval;
+//! use stead_format::toml_file::TomlFile;
+//! use stead_format::units::{Mm, Positive};
+//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! #[derive(Deserialize)]
+//! #[serde(deny_unknown_fields)]
+//! struct Cell {
+//!     x_mm: Interval<Mm>,
+//!     wall_mm: Mm<Positive>,
+//!     gap_mm: Option<Mm>,
+//! }
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = 20".to_vec())?;
+//! let cell: Cell = source.parse()?.read()?;
+//! assert_eq!((cell.x_mm.si(), cell.wall_mm.si(), cell.gap_mm), ([-0.3, 0.3], 0.02, None));
+//!
+//! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
+//! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
+//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0";
+//! assert_eq!(error.as_deref(), Some(expected));
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::deserialize::Node;
+use crate::input::InputError;
+use crate::place::Place;
+use crate::toml_file::{TomlFile, shorten};
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The parse tree of a [`TomlFile`], every value with its place in the text.
+#[derive(Debug, Clone)]
+pub struct Document<'a> {
+    file: &'a TomlFile,
+    root: Spanned<DeValue<'a>>,
+}
+
+/// A file that another one names, read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFile {
+    /// The name as given in the naming file, with forward slashes.
+    pub name: String,
+    /// The name with the folder of the naming file before it.
+    pub file: PathBuf,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+impl TomlFile {
+    /// Parses the text.
+    ///
+    /// # Errors
+    /// [`InputError`] at the line where the text stops being TOML.
+    pub fn parse(&self) -> Result<Document<'_>, InputError> {
+        let tree = DeTable::parse(self.text()).map_err(|e| {
+            let span = e.span().unwrap_or(0..0);
+            let line = self.line(span.start);
+            InputError::new(self.file(), format!("is not readable as TOML: {}", e.message().trim()))
+                .at_line(line)
+                .found(format!("'{}'", shorten(self.text().lines().nth(line - 1).unwrap_or_default())))
+                .allowed("a TOML file")
+        })?;
+        let span = tree.span();
+        Ok(Document { file: self, root: Spanned::new(span, DeValue::Table(tree.into_inner())) })
+    }
+}
+
+impl<'a> Document<'a> {
+    /// What the file says, as the type that declares its keys.
+    ///
+    /// # Errors
+    /// [`InputError`] at the first key that is unknown or missing, or whose value is of the wrong kind or out of range.
+    pub fn read<T: DeserializeOwned>(&'a self) -> Result<T, InputError> {
+        self.root().read()
+    }
+
+    /// The place of a value, for an error there: `cell.x_mm`, `joints[3].min_deg`; array elements are counted from 1.
+    pub fn at(&'a self, path: &str) -> Place<'a> {
+        path.split(['.', '[']).fold(self.root(), |place, step| match step.strip_suffix(']') {
+            Some(number) => place.element(number.parse().unwrap_or(0)),
+            None => place.key(step),
+        })
+    }
+
+    /// The table that the whole file is.
+    pub fn root(&'a self) -> Place<'a> {
+        Place::root(self.file, &self.root)
+    }
+}
+
+impl Place<'_> {
+    /// What is here, as the type that declares it.
+    ///
+    /// # Errors
+    /// [`InputError`] at the first value that is unknown, missing, of the wrong kind or out of range.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
+        T::deserialize(Node::new(self.clone())).map_err(|problem| problem.located(self, "another value"))
+    }
+
+    /// The file named here, by a path relative to the folder of this one, read.
+    ///
+    /// # Errors
+    /// [`InputError`] here when there is no name, or the file cannot be read.
+    pub fn named_file(&self) -> Result<NamedFile, InputError> {
+        let name: String = self.read()?;
+        let file = match self.file.file().parent() {
+            Some(folder) => folder.join(&name),
+            None => PathBuf::from(&name),
+        };
+        let bytes = std::fs::read(&file).map_err(|e| {
+            let problem = format!("names a file that cannot be read, {}: {e}", file.display());
+            self.error(problem, "a readable file, its path relative to the folder of the file that names it")
+        })?;
+        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn source(bytes: &[u8]) -> Result<TomlFile, InputError> {
+        TomlFile::new(Path::new("a.toml"), bytes.to_vec())
+    }
+
+    #[test]
+    fn text_that_is_no_toml_is_located() {
+        for (text, parts) in [
+            ("a = 1\nb = = 2\n", [":2:", "TOML", "found 'b = = 2'", "allowed"]),
+            ("a = 1\n\na = 2\n", [":3:", "duplicate key", "found 'a = 2'", "allowed"]),
+            ("a = [1,\n2\n", [":", "TOML", "found", "allowed"]),
+            ("[cell\nx = 1\n", [":1:", "TOML", "found '[cell'", "allowed"]),
+        ] {
+            let message = source(text.as_bytes()).unwrap().parse().unwrap_err().to_string();
+            for part in parts {
+                assert!(message.contains(part), "{part} in {message}");
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! A compliance as a robot file states it: one number, or two at the ends of the range of the joint.
+
+use crate::quantity::{Expects, Reading, expecting};
+use crate::shapes::Array;
+use crate::units::{Positive, UradPerNm};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+/// One compliance, or two: at the lower and at the upper limit of the joint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum OneOrRange {
+    /// The same at every angle.
+    One(UradPerNm<Positive>),
+    /// Linear in the angle between `min_deg` and `max_deg`.
+    Range(Array<UradPerNm<Positive>, 2>),
+}
+
+impl Expects for OneOrRange {
+    fn expected() -> String {
+        "one number above 0, or two [at min_deg, at max_deg]".to_owned()
+    }
+}
+
+impl<'de> Deserialize<'de> for OneOrRange {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Reading::<Self>(PhantomData))
+    }
+}
+
+impl<'de> Visitor<'de> for Reading<OneOrRange> {
+    type Value = OneOrRange;
+
+    expecting!(OneOrRange);
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
+        Reading::<UradPerNm<Positive>>(PhantomData).visit_f64(value).map(OneOrRange::One)
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Self::Value, A::Error> {
+        Reading::<Array<UradPerNm<Positive>, 2>>(PhantomData).visit_seq(values).map(OneOrRange::Range)
+    }
+}
+
+impl JsonSchema for OneOrRange {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "OneOrRange".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<UradPerNm<Positive>>();
+        let range = generator.subschema_for::<Array<UradPerNm<Positive>, 2>>();
+        json_schema!({ "anyOf": [one, range] })
+    }
+}
