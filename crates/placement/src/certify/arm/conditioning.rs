@@ -54,7 +54,7 @@ impl Arm {
     /// `D^2 s^4 - |N|^2 (D^2 s^4 |N^-1|^2) min^2 / 36`: not negative where the constraint holds. `regular` loses the lanes in which
     /// the wrist centre may be too near to axis 1.
     #[inline(always)]
-    pub(super) fn conditioning<T: Number>(&self, posed: &Posed<T>, regular: &mut Mask) -> T {
+    pub(super) fn conditioning<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> T {
         let frame = self.arm_frame(posed);
         let norm2 = self.jacobian_norm2(posed, &frame);
         let inverse = self.inverse_position(posed, regular);
@@ -66,7 +66,7 @@ impl Arm {
     }
 
     #[inline(always)]
-    fn arm_frame<T: Number>(&self, posed: &Posed<T>) -> ArmFrame<T> {
+    fn arm_frame<T: Number>(&self, posed: &Posed<'_, T>) -> ArmFrame<T> {
         let (cosine, sine) = (posed.first.cosine, posed.first.sine);
         let into = |v: Vector<T>| Vector { x: v.x * cosine + v.y * sine, y: v.y * cosine - v.x * sine, z: v.z };
         let axis4 = Vector { x: posed.wrist.axis4_along, y: T::constant(0.0), z: posed.wrist.axis4.z };
@@ -77,10 +77,10 @@ impl Arm {
 
     /// |N|^2.
     #[inline(always)]
-    fn jacobian_norm2<T: Number>(&self, posed: &Posed<T>, frame: &ArmFrame<T>) -> T {
+    fn jacobian_norm2<T: Number>(&self, posed: &Posed<'_, T>, frame: &ArmFrame<T>) -> T {
         let (lever, length) = (frame.lever, self.characteristic_length);
         let (px, py) = (posed.first.forward + lever.x, lever.y.plus(self.geometry.lateral));
-        let [p2, p3] = &posed.tips;
+        let [p2, p3] = posed.tips;
         // The lever's length, and its part along axis 6, are known.
         let (lever2, along6) = (self.lever.norm_squared(), self.lever.dot(&self.axis6));
         let along4 = frame.axis4.dot(lever);
@@ -92,7 +92,7 @@ impl Arm {
     }
 
     #[inline(always)]
-    fn inverse_position<T: Number>(&self, posed: &Posed<T>, regular: &mut Mask) -> InversePosition<T> {
+    fn inverse_position<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> InversePosition<T> {
         let (g, signs, forward) = (&self.geometry, posed.signs, posed.first.forward);
         let inverse_forward =
             forward.scale(signs.side).assume_above(MIN_DISTANCE, regular).reciprocal().scale(signs.side);
@@ -113,7 +113,7 @@ impl Arm {
 
     /// D^2 s^4 |N^-1|^2.
     #[inline(always)]
-    fn inverse_norm2<T: Number>(&self, posed: &Posed<T>, frame: &ArmFrame<T>, inverse: &InversePosition<T>) -> T {
+    fn inverse_norm2<T: Number>(&self, posed: &Posed<'_, T>, frame: &ArmFrame<T>, inverse: &InversePosition<T>) -> T {
         let (t, length, lever2) = (frame.lever, self.characteristic_length, self.lever.norm_squared());
         let InversePosition { rows: [q1, q2, q3], spin_y: wy } = *inverse;
         let arm2 = q1.square() + q2.square() + q3.square();

@@ -117,14 +117,16 @@ pub(super) struct Wrist<T> {
 }
 
 /// One state, joint by joint.
-pub(super) struct Posed<T> {
+///
+/// By reference: an enclosure is large to copy.
+pub(super) struct Posed<'a, T> {
     pub signs: Signs,
-    pub tool: Tool<T>,
-    pub first: FirstJoint<T>,
-    pub elbow: Elbow<T>,
-    pub wrist: Wrist<T>,
+    pub tool: &'a Tool<T>,
+    pub first: &'a FirstJoint<T>,
+    pub elbow: &'a Elbow<T>,
+    pub wrist: &'a Wrist<T>,
     /// Tool centre point from axes 2 and 3.
-    pub tips: [InPlane<T>; 2],
+    pub tips: &'a [InPlane<T>; 2],
 }
 
 impl Arm {

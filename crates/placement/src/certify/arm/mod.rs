@@ -91,7 +91,7 @@ impl Arm {
         let lever_along = tool.lever.x * first.cosine + tool.lever.y * first.sine;
         let tips = [elbow.from_shoulder, wrist.from_elbow]
             .map(|p| InPlane { along: p.along + lever_along, up: p.up.plus(self.lever.z) });
-        let posed = Posed { signs, tool, first, elbow, wrist, tips };
+        let posed = Posed { signs, tool: &tool, first: &first, elbow: &elbow, wrist: &wrist, tips: &tips };
         let mut conditioned = regular;
         let conditioning = if self.min_inverse_condition > 0.0 {
             self.conditioning(&posed, &mut conditioned)
@@ -103,7 +103,6 @@ impl Arm {
             return None;
         }
         let (m, d1, d2, vertical) = self.compliance(&posed);
-        let Posed { elbow, wrist, .. } = posed;
         let margins = Margins {
             elbow: elbow.margin,
             joints: elbow.joint_margins,
@@ -116,7 +115,7 @@ impl Arm {
 
     /// m, d1, d2, and c_rz with c_tz where some force is along axis 1.
     #[inline(always)]
-    fn compliance<T: Number>(&self, posed: &Posed<T>) -> (T, T, T, [T; 2]) {
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>) -> (T, T, T, [T; 2]) {
         let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
         let v4 = axis4.cross(lever);
         // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).
@@ -128,7 +127,7 @@ impl Arm {
         let k5 = posed.wrist.inverse5.scale(k5);
         // The sum over joints 4 to 6 of k_j f(v_j).
         let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
-        let [p2, p3] = &posed.tips;
+        let [p2, p3] = posed.tips;
         let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
         let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
         let bending = (p2.up.square().scale(k2) + p3.up.square().scale(k3)).scale(0.5);
