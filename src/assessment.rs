@@ -33,8 +33,12 @@ impl AssessmentRun {
     /// [`Error::Argument`] when only one of the two is known.
     pub fn selecting(mut self, accuracy: Option<f64>, force: Option<f64>) -> Result<Self, Error> {
         let selection = &mut Arc::make_mut(&mut self.run).comparison.selection;
-        selection.accuracies = accuracy.map_or_else(|| std::mem::take(&mut selection.accuracies), |a| vec![a]);
-        selection.forces = force.map_or_else(|| std::mem::take(&mut selection.forces), |f| vec![f]);
+        if let Some(accuracy) = accuracy {
+            selection.accuracies = vec![accuracy];
+        }
+        if let Some(force) = force {
+            selection.forces = vec![force];
+        }
         if selection.accuracies.is_empty() != selection.forces.is_empty() {
             return Err(Error::Argument(
                 "only one of the two is known; allowed: both, or a table [selection]".to_owned(),

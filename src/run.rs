@@ -74,9 +74,7 @@ impl Run {
     /// [`Error::Infeasible`] when no placement met satisfies the constraints.
     pub fn place(&self, monitor: &Monitor) -> Result<Placements, Error> {
         let mut placements = self.search(monitor)?;
-        if self.run.certificate.is_some() {
-            placements.certify(monitor);
-        }
+        placements.certify(monitor);
         Ok(placements)
     }
 
@@ -86,8 +84,9 @@ impl Run {
     /// As [`Run::place`].
     pub fn search(&self, monitor: &Monitor) -> Result<Placements, Error> {
         let started = Instant::now();
-        let Placed { outcome, stability, warnings } = study::place(&self.run, monitor)?;
+        let Placed { outcome, stability } = study::place(&self.run, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
+        let warnings = outcome.warnings.clone();
         let context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
     }
@@ -114,7 +113,8 @@ impl Run {
     /// # Errors
     /// [`Error::Infeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
-        let Scored { score, stability, notes, warnings } = study::score(&self.run, placement)?;
+        let Scored { score, stability, notes } = study::score(&self.run, placement)?;
+        let warnings = score.warnings.clone();
         let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         context.notes.extend(notes);
         Ok(PlacementScore { score, context })
@@ -230,7 +230,10 @@ impl Report for Placements {
 
     fn table(&self) -> String {
         let table = placement_text(&self.run.problem, &self.outcome, &self.context);
-        self.certificate_text().map_or_else(|| table.clone(), |certificate| format!("{table}\n{certificate}"))
+        match self.certificate_text() {
+            Some(certificate) => format!("{table}\n{certificate}"),
+            None => table,
+        }
     }
 
     fn notes(&self) -> &[String] {

@@ -2,7 +2,6 @@
 
 use super::PathStability;
 use stead_format::Run;
-use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Cases, Outcome, Plan};
 use stead_placement::place::{self, Infeasible, Score};
@@ -27,8 +26,6 @@ pub struct Placed {
     pub outcome: Outcome,
     /// Critical depths along cases 1 and 3, where the run file asks for them.
     pub stability: Option<PathStability>,
-    /// Why the result may not be what was wanted.
-    pub warnings: Vec<Warning>,
 }
 
 /// A given placement of a run.
@@ -40,8 +37,6 @@ pub struct Scored {
     pub stability: Option<PathStability>,
     /// What the user should know about the placement though it is not wrong, in sentences.
     pub notes: Vec<String>,
-    /// Why the result may not be what was wanted.
-    pub warnings: Vec<Warning>,
 }
 
 /// Searches for the best and the worst placement. A stop that the monitor asks for leaves the best found so far.
@@ -52,8 +47,7 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
     let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
     let Cases { best, worst, .. } = &outcome.cases;
     let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
-    let warnings = outcome.warnings.clone();
-    Ok(Placed { outcome, stability, warnings })
+    Ok(Placed { outcome, stability })
 }
 
 /// Plans a given placement, best and worst.
@@ -64,8 +58,7 @@ pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
     let score = place::score(&run.problem, placement)?;
     let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
     let notes = outside_cell(run, placement).into_iter().collect();
-    let warnings = score.warnings.clone();
-    Ok(Scored { score, stability, notes, warnings })
+    Ok(Scored { score, stability, notes })
 }
 
 /// A placement outside the cell is evaluated all the same, but not silently.
