@@ -207,12 +207,12 @@ pub enum RefinementStatus {
     NotLinearised,
 }
 
-/// What a search looked through.
+/// The lookup table that the searches used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LookupSummary {
     /// What was sampled where.
     pub shape: Shape,
-    /// How far it is from the ordinary evaluator.
+    /// How far it is from the reference evaluator.
     pub accuracy: Accuracy,
 }
 
@@ -221,7 +221,7 @@ pub struct LookupSummary {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
-    /// The table that the searches looked through, or why there is none; `None` where none was asked for.
+    /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,

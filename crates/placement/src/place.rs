@@ -11,7 +11,7 @@ use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
-use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::settings::{LookupUse, SearchSettings, TransferSettings};
 use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
@@ -73,8 +73,8 @@ pub fn place(
 ) -> Result<Outcome, Infeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
-        Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
-        Tables::Never => None,
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::new(problem)),
+        LookupUse::Never => None,
     };
     let mut lookup_summary = table.as_ref().map(|table| match table {
         Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
@@ -297,7 +297,7 @@ fn infeasible(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Pos
     Infeasible { placement: *placement, searched, findings }
 }
 
-/// A plan with everything that there is to say of each point, from the ordinary evaluator.
+/// A plan with everything that there is to say of each point, from the reference evaluator.
 fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
     let mut points = Vec::with_capacity(problem.task.points().len());
     let known = problem.robot.uncertainty();

@@ -198,10 +198,10 @@ impl Redundancy {
         TAU / self.beta_count as f64
     }
 
-    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `most`
+    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `max_step`
     /// (rad): every state of the old grid is one of the new.
-    pub fn divided(&self, most: f64) -> Self {
-        let parts = (self.beta_step() / most - 1e-9).ceil().max(1.0) as usize;
+    pub fn divided(&self, max_step: f64) -> Self {
+        let parts = (self.beta_step() / max_step - 1e-9).ceil().max(1.0) as usize;
         Self { beta_count: self.beta_count * parts, ..*self }
     }
 

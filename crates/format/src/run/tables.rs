@@ -13,7 +13,7 @@ use stead_model::published::Published;
 use stead_model::robot::{Robot, angles::yaw_from_q4};
 use stead_placement::lookup::LookupTable;
 use stead_placement::problem::{self, Cell, Constraints, Criterion, Problem, Redundancy};
-use stead_placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
+use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
 
 ranges! {
     /// From -1 to 1.
@@ -136,7 +136,7 @@ impl RedundancyTable {
 }
 
 words!(PostureSearch: "exact" => PostureSearch::Exact, "genetic" => PostureSearch::Genetic);
-words!(Tables: "auto" => Tables::Auto, "always" => Tables::Always, "never" => Tables::Never);
+words!(LookupUse: "auto" => LookupUse::Auto, "always" => LookupUse::Always, "never" => LookupUse::Never);
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -153,7 +153,7 @@ pub struct SearchTable {
     /// Distinct basins of each search that are refined.
     pub basins: Option<Whole<1, 64>>,
     /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
-    pub tables: Option<Word<Tables>>,
+    pub tables: Option<Word<LookupUse>>,
 }
 
 impl SearchTable {
@@ -172,7 +172,7 @@ impl SearchTable {
 
 /// Refuses to promise a lookup table where the problem does not allow one.
 pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
-    if search.tables == Tables::Always
+    if search.tables == LookupUse::Always
         && let Err(unsuited) = LookupTable::shape_for(problem)
     {
         let reason = format!("asks for a table, but there can be none: {unsuited}");
@@ -219,7 +219,7 @@ impl ReferenceTable {
 
 #[cfg(test)]
 mod tests {
-    use super::{PostureSearch, SearchSettings, Tables, TransferSettings};
+    use super::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
     use crate::testing::{RUN, assert_refused, read_text as read};
     use std::f64::consts::PI;
     use stead_placement::problem::Interval;
@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(run.problem.redundancy.beta_count, 50);
         let default = SearchSettings::default();
         let expected = SearchSettings {
-            tables: Tables::Never,
+            tables: LookupUse::Never,
             seed: i64::MAX as u64,
             population: 40,
             postures: PostureSearch::Genetic,

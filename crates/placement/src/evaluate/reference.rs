@@ -1,6 +1,6 @@
 //! The score of one state: one path point, one placement, one beta, one posture.
 //!
-//! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
+//! This is the reference evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
 //! batch evaluator of [`super::batch`], which is tested against this one.
 
 use crate::problem::{PlacedPoint, Placement, Problem};
@@ -12,7 +12,7 @@ use stead_numerics::scalar::Scalar;
 /// A state of the arm at a path point and what the cutting force does to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<T: Scalar> {
-    /// Joint angles as the inverse kinematics gives them, limits not looked at. rad
+    /// Joint angles as the inverse kinematics gives them, limits not checked. rad
     pub joints: [T; 6],
     /// 1/kappa_F of the normalised Jacobian at the tool centre point (Caro 2013, eq. 26).
     pub inverse_condition: T,
@@ -40,7 +40,7 @@ impl<T: Scalar> State<T> {
 }
 
 /// Evaluates path point `point` for a workpiece at a placement, free angle `beta` (rad) and a
-/// posture. Joint limits are not looked at.
+/// posture. Joint limits are not checked.
 ///
 /// # Errors
 /// [`Unreachable`] when the posture cannot reach the point.

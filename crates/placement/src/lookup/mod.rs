@@ -3,7 +3,7 @@
 //!
 //! With the tool axis along axis 1 ([`super::symmetry`]), a state depends on four things alone: the tool centre point's radius r
 //! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
-//! compliance there is sampled once per robot and spindle, by the ordinary geometry (`sample`, over the grid of `shape`). A placement
+//! compliance there is sampled once per robot and spindle, by the reference geometry (`sample`, over the grid of `shape`). A placement
 //! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
 //! joint steps and turns (`objective`); `coordinate_search` descends on that. With n the wall normal and f the force, both as (radial,
 //! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:

@@ -62,7 +62,7 @@ pub struct Planner<'a> {
     evaluators: Vec<BatchEvaluator<'a>>,
     rate_limit: rate_limit::RateLimit,
     steps: Vec<[f64; 6]>,
-    /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
+    /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
     instructions: Instructions,
 }

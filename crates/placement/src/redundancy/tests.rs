@@ -36,7 +36,7 @@ fn agrees_with_the_prototype_at_the_published_optimum() {
     assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
 }
 
-/// Holds a plan against every rule, through the ordinary evaluator.
+/// Holds a plan against every rule, through the reference evaluator.
 fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) {
     assert_eq!(plans.len(), problem.task.segments().len());
     for plan in plans {

@@ -9,7 +9,7 @@
 //! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
 //! constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
 //!
-//! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
+//! A step is only ever taken to a state that the reference evaluator finds allowed and better, so the result is never worse
 //! or less feasible than the start.
 //!
 //! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one radian in

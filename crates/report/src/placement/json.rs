@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{Case, LookupSummary, Outcome, PlanPoint, Refinement, Transfer};
 use stead_placement::problem::{Interval, Problem};
-use stead_placement::settings::{PostureSearch, Tables};
+use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
@@ -163,9 +163,9 @@ fn search(context: &Context) -> Value {
         PostureSearch::Genetic => "genetic",
     };
     let tables = match context.search.tables {
-        Tables::Auto => "auto",
-        Tables::Always => "always",
-        Tables::Never => "never",
+        LookupUse::Auto => "auto",
+        LookupUse::Always => "always",
+        LookupUse::Never => "never",
     };
     json!({
         "population": context.search.population,

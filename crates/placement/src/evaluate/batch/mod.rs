@@ -11,10 +11,10 @@
 //! and all is done in the widest vectors that the processor has ([`stead_numerics::simd`]), to the same bits with each.
 
 mod arm;
+mod deviation;
 mod laws;
 mod limit;
 mod pose;
-mod spread;
 mod states;
 mod wrist;
 
@@ -22,11 +22,11 @@ pub use states::StateGrid;
 
 use crate::constraints::{ConstraintKind, relaxed};
 use crate::problem::{Placement, Problem, Redundancy};
+use deviation::Deviation;
 use laws::Laws;
 use limit::Limit;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
-use spread::Spread;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
 use wrist::Demand;
@@ -40,7 +40,7 @@ pub struct BatchEvaluator<'a> {
     sine: Vec<f64>,
     limits: [Limit; 6],
     laws: Laws,
-    spread: Option<Spread>,
+    deviation: Option<Deviation>,
     flips: Flips,
     forearm_sin_cos: (f64, f64),
     instructions: Instructions,
@@ -122,7 +122,7 @@ impl<'a> BatchEvaluator<'a> {
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
             laws: Laws::new(&problem.robot),
-            spread: Spread::new(problem),
+            deviation: Deviation::new(problem),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
             instructions: Instructions::best(),
@@ -152,7 +152,7 @@ impl<'a> BatchEvaluator<'a> {
     ///
     /// Allowed states get their score (m) and the sines and cosines of their joint angles (theta_5 not negative), all others
     /// an infinite score. A state is allowed when one of the postures asked for is inside the limits of every joint by
-    /// itself; turns, and limits that tell two postures apart, are for the planner to look at.
+    /// itself; turns, and limits that tell two postures apart, are checked by the planner.
     pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
         self.evaluate_classes(point, placement, [true; 4], states);
     }
@@ -205,7 +205,7 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        if self.geometry.uncertainty > 0.0 || self.evaluator.spread.is_some() {
+        if self.geometry.uncertainty > 0.0 || self.evaluator.deviation.is_some() {
             self.batches::<S, true>(simd);
         } else {
             self.batches::<S, false>(simd);

@@ -178,7 +178,7 @@ fn agrees_with_uncertain_compliances() {
 
 #[test]
 fn agrees_for_every_sign_of_twist_and_with_offsets() {
-    // Springs at every joint, so that each angle's sine and cosine is held against the ordinary evaluator too.
+    // Springs at every joint, so that each angle's sine and cosine is held against the reference evaluator too.
     let compensator = Compensator { spring_stiffness: 4e4, a: 0.5, l: 0.3, alpha: 0.7, free_length: 0.5 };
     let sprung = Compliance::Compensated { alone: 1e-6, compensator };
     for (arm, is_sprung) in odd_arms().into_iter().flat_map(|arm| [(arm.clone(), false), (arm, true)]) {

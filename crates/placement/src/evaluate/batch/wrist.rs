@@ -117,8 +117,8 @@ impl BatchEvaluator<'_> {
         }
         let compliances = self.laws.at(simd, &self.limits, &turned);
         let (mut score, parts) = pose.score::<ROBUST>(simd, g.lateral, &compliances, &demand.load, uncertainty);
-        if ROBUST && let Some(spread) = &self.spread {
-            score = score + spread.margin(simd, &self.limits, &parts, &turned, &compliances);
+        if ROBUST && let Some(deviation) = &self.deviation {
+            score = score + deviation.margin(simd, &self.limits, &parts, &turned, &compliances);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));

@@ -15,7 +15,7 @@ struct Case {
     count: usize,
     reach: usize,
     sign: f64,
-    /// Of joints that are not looked at modulo a turn.
+    /// Of joints not treated modulo a turn.
     ranges: [Option<Range>; 6],
     limits: [f64; 6],
     /// Before and now, over beta: what is not there is not allowed.
@@ -184,7 +184,7 @@ fn every_breach_of_the_rules_is_noticed() {
         ("predecessor beside the one taken", noticed::<PredecessorBeside>(wrap_around)),
         ("limit of the next joint", noticed::<LimitOfTheNextJoint>(wrap_around)),
         ("no second look where a joint steps too far", noticed::<NeverLooksAgain>(wrap_around)),
-        ("joint steps not looked at", noticed::<NoJointSteps>(wrap_around)),
+        ("joint steps not checked", noticed::<NoJointSteps>(wrap_around)),
         ("smallest instead of largest", noticed::<AlwaysSmallest>(wrap_around)),
         ("cyclic continuation one off", noticed::<Right>(wrap_one_off)),
     ];
