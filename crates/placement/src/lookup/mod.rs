@@ -31,7 +31,7 @@ pub use shape::{Axis, Shape};
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
-use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
@@ -86,6 +86,7 @@ impl<'a> LookupTable<'a> {
     /// [`Unsupported`], with the reason.
     pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
         Upright::of(problem)?;
+        require_mean_wall(problem)?;
         require_constant(problem, &[0, 3, 4, 5])?;
         require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
@@ -125,8 +126,10 @@ impl<'a> LookupTable<'a> {
 
     /// The constraints that an objective by the table leaves out: only the planner evaluates them.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
-        use ConstraintKind::{BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach};
-        let mut evaluated = vec![Reach, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        use ConstraintKind::{
+            BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach,
+        };
+        let mut evaluated = vec![Reach, BaseDistance, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
     }

@@ -45,7 +45,7 @@ impl LookupTable<'_> {
         workspace: &mut Workspace,
     ) -> Objective {
         let placed = self.place(placement);
-        let mut sum = 0.0;
+        let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index].class().index());
@@ -60,7 +60,7 @@ impl LookupTable<'_> {
                 }
             }
             if best.is_finite() {
-                sum += best;
+                costs.push(self.problem.point_cost(span.start, best));
                 continue;
             }
             let Workspace { scratch, scores, .. } = workspace;
@@ -82,7 +82,7 @@ impl LookupTable<'_> {
         } else if segments > 0 {
             Objective::Infeasible { points, segments }
         } else {
-            Objective::Feasible(sum / self.points.len() as f64)
+            Objective::Feasible(self.problem.objective(costs))
         }
     }
 

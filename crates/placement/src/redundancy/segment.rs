@@ -124,7 +124,8 @@ impl Planner<'_> {
             if !joint_turns::is_allowed(self.problem, &state) {
                 return None;
             }
-            choice.cost += state.score();
+            choice.cost =
+                self.problem.criterion.aggregate.join(choice.cost, self.problem.point_cost(point, state.score()));
         }
         Some(choice)
     }

@@ -6,6 +6,8 @@
 
 use super::super::evaluate::batch::StateGrid;
 use crate::constraints::STEP_ROUNDING;
+use crate::criterion::Aggregate;
+use crate::sense::Sense;
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
@@ -19,8 +21,10 @@ pub struct Step {
     pub reach: usize,
     /// Whether each joint can make the step.
     pub joints: [JointStep; 6],
-    /// Scores times this are minimised.
-    pub sign: f64,
+    /// Whether costs are minimised or maximised.
+    pub sense: Sense,
+    /// How the costs of points make up that of a path.
+    pub aggregate: Aggregate,
     /// What the processor is to use.
     pub instructions: Instructions,
 }
@@ -160,7 +164,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let lanes = Lanes::<S>::COUNT;
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let numbers = Lanes::load(simd, &NUMBERS, 0);
-        let sign = if R::SIGNED { step.sign } else { 1.0 };
+        let sign = if R::SIGNED { step.sense.sign() } else { 1.0 };
         let band = Band::<R> { costs: before.scores(class), reach: step.reach + R::WIDER, rules: PhantomData };
         let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
@@ -187,7 +191,13 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
                 }
             }
             reached |= known.any();
-            known.select(best + score * sign, infinity).store(scores, here);
+            let own = score * sign;
+            let cost = match (step.aggregate, step.sense) {
+                (Aggregate::Mean | Aggregate::Rms, _) => best + own,
+                (Aggregate::Max, Sense::Min) => best.max(own),
+                (Aggregate::Max, Sense::Max) => best.min(own),
+            };
+            known.select(cost, infinity).store(scores, here);
             for (way, from) in way.iter_mut().zip(from.to_whole()) {
                 *way = from + R::BESIDE;
             }
