@@ -22,7 +22,7 @@ fn pulses(period: f64, more: f64) -> Run {
     run(|index| {
         let turned = index as f64 / period;
         let (number, share) = (turned.floor(), turned - turned.floor());
-        let factor = if number as usize % 2 == 0 { 1.0 + more } else { 1.0 };
+        let factor = if (number as usize).is_multiple_of(2) { 1.0 + more } else { 1.0 };
         factor * (100.0 * (1.0 - 3.0 * share)).max(0.0)
     })
 }
