@@ -26,7 +26,7 @@ pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Valu
         ("lobes", lobes(analysis)),
     ];
     entries.extend(rest.map(|(key, value)| (key.to_owned(), value)));
-    Document::new(&run.inputs).with(Value::Object(entries))
+    Document::new(&run.inputs).notes(&analysis.notes).with(Value::Object(entries))
 }
 
 /// Critical depths and verdict.
