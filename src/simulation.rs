@@ -145,10 +145,6 @@ impl Report for SimulatedPass {
         simulation_text(&self.run, &self.simulation, &self.making)
     }
 
-    fn notes(&self) -> &[String] {
-        &[]
-    }
-
     fn warnings(&self) -> &[Warning] {
         &self.simulation.warnings
     }
@@ -165,14 +161,6 @@ impl Report for StabilityAnalysis {
 
     fn table(&self) -> String {
         stability_text(&self.run, &self.analysis)
-    }
-
-    fn notes(&self) -> &[String] {
-        &[]
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
     }
 }
 

@@ -1,7 +1,7 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
 use stead_assessment::roundness::Sector;
-use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE};
+use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
 use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
 
@@ -11,13 +11,13 @@ pub(super) fn variant(text: &str) -> Result<Variant, String> {
 }
 
 pub(super) fn damping_scale(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number from 0 to {MOST_DAMPING_SCALE}");
-    finite(text).ok().filter(|scale| (0.0..=MOST_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
+    let allowed = || format!("allowed: a number from 0 to {MAX_DAMPING_SCALE}");
+    finite(text).ok().filter(|scale| (0.0..=MAX_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
 }
 
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number above 0 and not above {FASTEST_RPM}");
-    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= FASTEST_RPM).ok_or_else(allowed)
+    let allowed = || format!("allowed: a number above 0 and not above {MAX_SPINDLE_SPEED_RPM}");
+    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= MAX_SPINDLE_SPEED_RPM).ok_or_else(allowed)
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {
@@ -52,8 +52,8 @@ pub(super) fn quaternion(text: &str) -> Result<f64, String> {
 
 /// Seeds are what a run file can hold too.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
-    const MOST: u64 = i64::MAX as u64;
-    text.parse().ok().filter(|n| *n <= MOST).ok_or_else(|| format!("allowed: a whole number from 0 to {MOST}"))
+    const MAX: u64 = i64::MAX as u64;
+    text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
 }
 
 pub(super) fn point(text: &str) -> Result<usize, String> {
@@ -61,11 +61,11 @@ pub(super) fn point(text: &str) -> Result<usize, String> {
 }
 
 /// More threads than this help nobody.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     text.parse()
         .ok()
-        .filter(|n| (1..=MOST_THREADS).contains(n))
-        .ok_or_else(|| format!("allowed: a whole number from 1 to {MOST_THREADS}"))
+        .filter(|n| (1..=MAX_THREADS).contains(n))
+        .ok_or_else(|| format!("allowed: a whole number from 1 to {MAX_THREADS}"))
 }
