@@ -20,13 +20,13 @@ use std::ops::Bound::{Excluded, Included};
 use stead_model::cutting::{MillingDirection, Rotation, Side};
 
 /// Speeds beyond this are those of no spindle. rpm
-pub const FASTEST_RPM: f64 = 1e6;
+pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
 
 ranges! {
     /// An entering angle. deg
     EnteringAngle: Excluded(0.0), Excluded(180.0);
     /// A speed that a spindle may have. 1/min
-    SpindleSpeed: Excluded(0.0), Included(FASTEST_RPM);
+    SpindleSpeed: Excluded(0.0), Included(MAX_SPINDLE_SPEED_RPM);
 }
 
 words!(Rotation: "clockwise" => Rotation::Clockwise, "counterclockwise" => Rotation::Counterclockwise);
@@ -37,7 +37,6 @@ words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "
 /// depends on what is computed: forces along a path need `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
 /// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ToolTable {
     /// Diameter of the cutter.
     pub cutter_diameter_mm: Mm<Positive>,
@@ -79,7 +78,6 @@ pub struct ToolTable {
 /// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes with
 /// it, and `feed_per_tooth_mm`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CutTable {
     /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
     pub milling: Option<Word<MillingDirection>>,
