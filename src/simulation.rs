@@ -145,6 +145,10 @@ impl Report for SimulatedPass {
         simulation_text(&self.run, &self.simulation, &self.making)
     }
 
+    fn notes(&self) -> &[String] {
+        &self.simulation.notes
+    }
+
     fn warnings(&self) -> &[Warning] {
         &self.simulation.warnings
     }
@@ -161,6 +165,10 @@ impl Report for StabilityAnalysis {
 
     fn table(&self) -> String {
         stability_text(&self.run, &self.analysis)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.analysis.notes
     }
 }
 

@@ -44,9 +44,10 @@ pub struct ToolTable {
     pub teeth: Whole<1, 100>,
     /// Sense of rotation seen from the spindle; clockwise where left out.
     pub rotation: Option<Word<Rotation>>,
-    /// Angle from each tooth to the next, 360 in all; equal ones where left out.
+    /// Angle at which each tooth follows the tooth before it, in the order in which they pass, 360 in all: the second number is that
+    /// from tooth 1 to tooth 2, the first that from the last tooth to tooth 1. Equal ones where left out.
     pub pitch_deg: Option<List<Deg>>,
-    /// What the radius of each edge is more than half the diameter; 0 where left out.
+    /// What the radius of each edge is more than half the diameter, in the order in which the teeth pass; 0 where left out.
     pub runout_um: Option<List<Um>>,
     /// Helix angle; 0 where left out.
     pub helix_deg: Option<Deg<Acute>>,

@@ -11,7 +11,7 @@ use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::{EvaluationSettings, PassFigures, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
-use stead_simulation::stability_analysis::linear_at;
+use stead_simulation::stability_analysis::{AnalysisSettings, linear_at};
 
 /// Cutoff of the filter where the file does not say: ISO 21920-3 for a profile of this roughness. m
 const CUTOFF: f64 = 2.5e-3;
@@ -29,6 +29,7 @@ pub(super) fn evaluation_from(
     at: &Place<'_>,
     setup: &Setup,
     cut: &PassCut,
+    analysis: &AnalysisSettings,
 ) -> Result<EvaluationSettings, InputError> {
     let (duration, depth_mm) = (setup.motion.duration(), cut.section.axial_depth * 1e3);
     let window = table.window_s.map(Span::si);
@@ -45,6 +46,7 @@ pub(super) fn evaluation_from(
         window,
         height: table.wall_height_mm.map_or(cut.section.axial_depth / 2.0, Quantity::si),
         cutoff: table.cutoff_mm.map_or(CUTOFF, Quantity::si),
+        analysis_distance: analysis.distance,
     })
 }
 

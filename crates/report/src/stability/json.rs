@@ -24,7 +24,7 @@ pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Valu
         "modes": modes(&analysis.modes),
         "lobes": lobes(analysis),
     });
-    Document::new(&run.inputs).with(joined(result, verdict(&analysis.cut_stability)))
+    Document::new(&run.inputs).notes(&analysis.notes).with(joined(result, verdict(&analysis.cut_stability)))
 }
 
 /// Critical depths and verdict.
