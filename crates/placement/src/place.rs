@@ -11,7 +11,7 @@ use super::outcome::{
 };
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
-use super::refine::{Solution, planned, refine};
+use super::refine::{Solution, found_again, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
 use super::settings::{LookupUse, SearchSettings, TransferSettings};
@@ -315,7 +315,7 @@ fn refine_one(
         (planned(planner, placement, scheme, spacing, &mut planner.workspace())?, None)
     } else {
         let (solution, report) = refine(evaluator, placement, sense, scheme)?;
-        (solution, Some(report))
+        (found_again(evaluator.planner(), solution, scheme), Some(report))
     };
     Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
 }
