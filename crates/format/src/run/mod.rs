@@ -3,6 +3,7 @@
 mod certificate;
 mod criterion;
 mod notes;
+mod redundancy;
 mod stability;
 mod tables;
 #[cfg(test)]
@@ -10,8 +11,9 @@ mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
+pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
-pub use tables::{CellTable, ConstraintsTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable};
+pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
 
 use crate::document::NamedFile;
 use crate::input::{InputError, InputFile, input_file};
@@ -23,6 +25,7 @@ use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
 use certificate::check_size;
 use notes::{density_note, direction_note, speed_note, tilt_note};
+use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -150,6 +153,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let criterion = run.criterion.unwrap_or_default().criterion(&segments, &robot, &task, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     if certificate.is_some() {
         check_size(&problem, &at.key("cell"))?;

@@ -6,6 +6,7 @@
 //! number of points, and time with their number.
 
 use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
+use super::rate_limit::SavedChange;
 use super::transition::{JointStep, Step, advance, begin};
 use super::{Planner, Sense, Workspace};
 use crate::problem::{MAX_JOINT_STEP, Placement};
@@ -109,14 +110,16 @@ impl Planner<'_> {
     }
 
     fn accumulated_step(&self, point: usize, sense: Sense, is_accumulated: bool) -> Step {
-        let (reach, stride) =
-            if is_accumulated { self.rate_limit.step(point) } else { (self.rate_limit.reach(point), 1) };
+        let SavedChange { change, points } = match is_accumulated {
+            true => self.rate_limit.saved(point),
+            false => SavedChange { change: self.rate_limit.direct(point), points: 1 },
+        };
         let mut limits = self.steps[point];
-        for other in point + 1 - stride..point {
+        for other in point + 1 - points..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
         }
         Step {
-            reach,
+            change,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
             sense,
             aggregate: self.problem.criterion.aggregate,
