@@ -110,13 +110,18 @@ impl Planner<'_> {
     }
 
     fn accumulated_step(&self, point: usize, sense: Sense, is_accumulated: bool) -> Step {
-        let SavedChange { change, points } = match is_accumulated {
+        let SavedChange { change, points, is_moving } = match is_accumulated {
             true => self.rate_limit.saved(point),
-            false => SavedChange { change: self.rate_limit.direct(point), points: 1 },
+            false => SavedChange { change: self.rate_limit.direct(point), points: 1, is_moving: false },
         };
         let mut limits = self.steps[point];
         for other in point + 1 - points..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
+        }
+        if is_moving {
+            // Joint steps are checked when the changes are spread; here states are beside those of the plan.
+            let rounding = 2.0 * self.grid.beta_step();
+            limits.iter_mut().for_each(|limit| *limit = MAX_JOINT_STEP.min(*limit + rounding));
         }
         Step {
             change,

@@ -96,10 +96,7 @@ impl<'a> Planner<'a> {
     /// degree and at most half the width of what is allowed to beta between any two points, those apart where that is less than
     /// an eighth of a degree.
     pub fn finer(problem: &'a Problem) -> Self {
-        let segments = problem.task.segments().iter();
-        let steps = segments.flat_map(|span| span.clone().skip(1)).map(|point| problem.beta_step(point).half);
-        let narrowest = steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min);
-        Self::on_grid(problem, problem.redundancy.divided(narrowest))
+        Self::on_grid(problem, finer(problem, problem.redundancy))
     }
 
     fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
@@ -270,6 +267,13 @@ impl<'a> Planner<'a> {
         }
         if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
     }
+}
+
+/// The grid of [`Planner::finer`], for limits on beta that may not be those of the problem.
+fn finer(problem: &Problem, grid: Redundancy) -> Redundancy {
+    let inner = problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let steps = inner.map(|point| problem.beta_step_within(point, &grid).half);
+    grid.divided(steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min))
 }
 
 /// Widest step of the grid that final plans are made on. rad

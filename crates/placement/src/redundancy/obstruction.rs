@@ -3,7 +3,7 @@
 //! The segment is planned again with limits left out: each alone, then two, then all three. What lets a posture past the point
 //! that none gets to is what stops it.
 
-use super::Planner;
+use super::{Planner, finer};
 use crate::constraints::ConstraintKind;
 use crate::problem::{MAX_JOINT_STEP, Placement, Problem, Redundancy};
 use crate::sense::Sense;
@@ -18,7 +18,8 @@ const STEPS: [ConstraintKind; 3] = [ConstraintKind::JointStep, ConstraintKind::B
 /// The planner of a problem with some limits between neighbouring points left out.
 struct Relaxed<'a> {
     kinds: Vec<ConstraintKind>,
-    planner: Planner<'a>,
+    /// Where one gets through, a posture does.
+    planners: Vec<Planner<'a>>,
 }
 
 /// A problem with each set of the limits between neighbouring points left out.
@@ -49,13 +50,16 @@ impl<'a> Obstruction<'a> {
         only: Option<Posture>,
     ) -> Vec<Vec<ConstraintKind>> {
         let mut found: Vec<Vec<ConstraintKind>> = Vec::new();
-        for Relaxed { kinds, planner } in &self.relaxed {
+        for Relaxed { kinds, planners } in &self.relaxed {
             if found.first().is_some_and(|smallest| smallest.len() < kinds.len()) {
                 break;
             }
-            let span = planner.problem.task.segments()[segment].clone();
-            let options = planner.segment(span, placement, Sense::Min, only, &mut planner.workspace(), Some(0.0));
-            if !options.choices.is_empty() || options.farthest > point {
+            let gets_past = |planner: &Planner<'_>| {
+                let span = planner.problem.task.segments()[segment].clone();
+                let options = planner.segment(span, placement, Sense::Min, only, &mut planner.workspace(), Some(0.0));
+                !options.choices.is_empty() || options.farthest > point
+            };
+            if planners.iter().any(gets_past) {
                 found.push(kinds.clone());
             }
         }
@@ -65,18 +69,27 @@ impl<'a> Obstruction<'a> {
 
 impl<'a> Relaxed<'a> {
     fn new(problem: &'a Problem, kinds: Vec<ConstraintKind>) -> Self {
-        let mut grid =
-            Redundancy { beta_count: problem.redundancy.beta_count.min(MAX_BETA_COUNT), ..problem.redundancy };
+        let mut grid = problem.redundancy;
         if kinds.contains(&ConstraintKind::BetaRate) {
             grid.max_beta_rate = None;
         }
         if kinds.contains(&ConstraintKind::SpindleTurn) {
             (grid.max_spindle_turn, grid.max_spindle_speed) = (None, None);
         }
-        let mut planner = Planner::on_grid(problem, grid);
-        if kinds.contains(&ConstraintKind::JointStep) {
-            planner.steps.iter_mut().flatten().for_each(|limit| *limit = limit.max(MAX_JOINT_STEP));
+        let mut planners = Vec::new();
+        if grid.max_beta_rate.or(grid.max_spindle_turn).or(grid.max_spindle_speed).is_none() {
+            let beta_count = grid.beta_count.min(MAX_BETA_COUNT);
+            planners.push(Planner::on_grid(problem, Redundancy { beta_count, ..grid }));
+            // Where joints step by less than that grid, it does not hold the spindle still in a corner; a limit in space does.
+            grid.max_spindle_turn = problem.redundancy.max_beta_rate;
         }
-        Self { kinds, planner }
+        if grid.max_spindle_turn.or(grid.max_spindle_speed).or(grid.max_beta_rate).is_some() {
+            planners.push(Planner::on_grid(problem, finer(problem, grid)));
+        }
+        if kinds.contains(&ConstraintKind::JointStep) {
+            let limits = planners.iter_mut().flat_map(|planner| planner.steps.iter_mut().flatten());
+            limits.for_each(|limit| *limit = limit.max(MAX_JOINT_STEP));
+        }
+        Self { kinds, planners }
     }
 }

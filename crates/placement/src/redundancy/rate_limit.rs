@@ -62,7 +62,9 @@ impl BetaChange {
         if half < 0.0 {
             return Self::NONE;
         }
-        if half + STEP_ROUNDING >= all as f64 {
+        // About zero the ends of an even grid are one value.
+        let needed = if middle == 0.0 { all as f64 } else { count as f64 / 2.0 };
+        if half + STEP_ROUNDING >= needed {
             return Self { min: -(all as i32), max: all as i32 };
         }
         let middle = middle - count as f64 * (middle / count as f64).round();
@@ -84,6 +86,8 @@ pub(super) struct SavedChange {
     pub change: BetaChange,
     /// Number of points whose joint steps it may take, itself among them.
     pub points: usize,
+    /// Whether it follows a moving middle, so that states on the grid are up to half a step of it beside those planned.
+    pub is_moving: bool,
 }
 
 /// The limits on beta along the whole path, on a grid.
@@ -113,7 +117,7 @@ struct Run {
 impl RateLimit {
     pub fn new(problem: &Problem, grid: &Redundancy) -> Self {
         let count = problem.task.points().len();
-        let still = SavedChange { change: BetaChange::only(0), points: 1 };
+        let still = SavedChange { change: BetaChange::only(0), points: 1, is_moving: false };
         let mut limit = Self {
             grid: *grid,
             direct: vec![still.change; count],
@@ -144,7 +148,7 @@ impl RateLimit {
         let is_wide = half + STEP_ROUNDING >= 1.0;
         // Where the middle stands still, so does beta until there is a step, and nothing is owed.
         if half < 0.0 || (is_wide && run.middle == 0.0) {
-            self.saved[point] = SavedChange { change: direct, points: 1 };
+            self.saved[point] = SavedChange { change: direct, points: 1, is_moving: false };
             *run = Run::default();
             return;
         }
@@ -152,7 +156,7 @@ impl RateLimit {
         *run = Run { middle: run.middle + middle, half: run.half + half, points: run.points + 1, ..*run };
         if run.half + STEP_ROUNDING >= 1.0 {
             let change = BetaChange::within(run.middle, run.half, count).after(run.taken, count);
-            self.saved[point] = SavedChange { change, points: run.points };
+            self.saved[point] = SavedChange { change, points: run.points, is_moving: run.middle != 0.0 };
             self.spread[point] = run.points;
             *run = Run::default();
         } else {
@@ -161,6 +165,7 @@ impl RateLimit {
             self.saved[point] = SavedChange {
                 change: BetaChange::only(change).after(0, count),
                 points: if change == 0 { 1 } else { run.points },
+                is_moving: run.middle != 0.0,
             };
             run.taken = followed;
         }

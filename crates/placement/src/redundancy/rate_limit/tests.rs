@@ -47,10 +47,11 @@ proptest! {
     ) {
         let turn = if side { size } else { -size };
         let mut problem = arc(0.002, turn, 60);
-        let grid = Redundancy { beta_count, ..problem.redundancy };
+        problem.redundancy.beta_count = beta_count;
         // In steps of the grid.
-        let limit = share * grid.beta_step() / problem.step_length(1);
+        let limit = share * problem.redundancy.beta_step() / problem.step_length(1);
         (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(limit));
+        let grid = problem.redundancy;
         let limits = RateLimit::new(&problem, &grid);
         let span = problem.task.segments()[0].clone();
         let mut number = 7;

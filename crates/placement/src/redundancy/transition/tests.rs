@@ -55,7 +55,7 @@ impl Case {
         let change = if random.random() {
             BetaChange { min: -reach, max: reach }
         } else {
-            BetaChange { min: middle - reach / 2, max: middle + (reach + 1) / 2 }
+            BetaChange { min: middle - reach, max: middle + reach + random.random_range(0..2) }
         };
         let ranges = std::array::from_fn(|j| Some(ranges[j]).filter(|_| !is_modulo[j]));
         Self {
@@ -70,7 +70,7 @@ impl Case {
     }
 
     fn states(&self, point: usize, wrap_around: fn(&mut StateGrid)) -> StateGrid {
-        let mut states = StateGrid::new(self.count, 5);
+        let mut states = StateGrid::new(self.count, 6);
         for (beta, state) in self.points[point].iter().enumerate() {
             if let Some((score, joints)) = state {
                 states.set(CLASS, beta, *score, *joints);
