@@ -11,15 +11,18 @@ use super::outcome::{
 };
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
+use super::refine::active::active_bounds;
 use super::refine::{Solution, found_again, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
+use super::sensitivity::{ForceSensitivity, mean_by_stiffness, objective_with_force_errors};
 use super::settings::{LookupUse, SearchSettings, TransferSettings};
 use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::digits::figures;
 use stead_numerics::mean_max::percentile;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
@@ -89,19 +92,30 @@ pub fn place(
         };
         // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
         let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
+        let active_bounds = match plan_sense {
+            Sense::Min => active_bounds(problem, &solution.solution, placement_sense),
+            Sense::Max => Vec::new(),
+        };
         Case {
             placement_sense,
             plan_sense,
             placement: solution.solution.placement,
             plan: detailed(problem, &solution.solution.placement, &plans),
             cycle: cycle(problem, transfer, &plans),
+            active_bounds,
         }
     };
-    let mean = best.solution.objective;
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
+    let best_case = case(Sense::Min, best, Sense::Min);
+    let sensitivity = match settings.sensitivity {
+        Some(size) if !interrupted => force_sensitivity(problem, &best_case, &found, size, monitor),
+        _ => None,
+    };
     Ok(Outcome {
+        notes: small_part(problem, &best_case.plan).into_iter().collect(),
+        sensitivity,
         cases: Cases {
-            best: case(Sense::Min, best, Sense::Min),
+            best: best_case,
             best_worst_plan: case(Sense::Min, best, Sense::Max),
             worst: case(Sense::Max, worst, Sense::Min),
             worst_worst_plan: case(Sense::Max, worst, Sense::Max),
@@ -114,7 +128,37 @@ pub fn place(
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
         interrupted,
-        warnings: cancellation(problem, mean).into_iter().chain(interrupted.then(interruption)).collect(),
+        warnings: cancellation(problem, best.solution.objective)
+            .into_iter()
+            .chain(interrupted.then(interruption))
+            .collect(),
+    })
+}
+
+/// Refines the basins of the best placement once more, with scores that cover force errors of this relative size.
+fn force_sensitivity(
+    problem: &Problem,
+    best: &Case,
+    found: &[SearchResult; 2],
+    size: f64,
+    monitor: &Monitor,
+) -> Option<ForceSensitivity> {
+    let mut robust = problem.clone();
+    robust.criterion.force_uncertainty = size;
+    let planner = Planner::finer(&robust);
+    let evaluator = Evaluator::new(&planner, None);
+    let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
+    let (solutions, _) = refine_side(&evaluator, &basins, monitor);
+    let Refined { solution, .. } = solutions.into_iter().flatten().next()?;
+    let plan = detailed(problem, &solution.placement, &solution.plans);
+    let (from, to) = (&best.placement, &solution.placement);
+    Some(ForceSensitivity {
+        force_uncertainty: size,
+        nominal: [best.plan.objective, objective_with_force_errors(problem, from, &best.plan, size)],
+        robust: [plan.objective, solution.objective],
+        placement: *to,
+        distance: (0..3).map(|k| (to[k] - from[k]) * (to[k] - from[k])).sum::<f64>().sqrt(),
+        turn: wrap(to.yaw - from.yaw).abs(),
     })
 }
 
@@ -192,6 +236,8 @@ pub struct Score {
     pub best: Plan,
     /// The worst plan.
     pub worst: Plan,
+    /// What should be known about the result though nothing is wrong, in sentences.
+    pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
 }
@@ -202,6 +248,23 @@ fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
         let message = "the best plan cancels the deflection to nothing, which no real force will; \
                        criterion.force_uncertainty makes the score the worst case over force errors";
         Warning::new("cancellation", message)
+    })
+}
+
+/// A scored part below this share of the whole deflection is small.
+const SMALL_PART: f64 = 0.2;
+
+/// A note on a plan whose scored part is small beside the whole deflection: it may have been balanced against itself.
+fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {
+    let (scored, total) = (plan.mean * 1e3, plan.deflection.total.mean * 1e3);
+    (problem.criterion.force_uncertainty == 0.0 && scored < SMALL_PART * total).then(|| {
+        format!(
+            "the scored part of the deflection, {} mm in the mean, is below a fifth of the whole, {} mm: a plan that balances one \
+             part leaves the rest; criterion.direction = \"total\" scores the whole, and criterion.force_uncertainty covers errors of \
+             the force",
+            figures(scored),
+            figures(total)
+        )
     })
 }
 
@@ -223,9 +286,11 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
         return Err(infeasible(&planner, placement, None, false));
     };
     let warnings = cancellation(problem, best.objective).into_iter().collect();
+    let best = detailed(problem, placement, &best.plans);
     Ok(Score {
         placement: *placement,
-        best: detailed(problem, placement, &best.plans),
+        notes: small_part(problem, &best).into_iter().collect(),
+        best,
         worst: detailed(problem, placement, &worst),
         warnings,
     })
@@ -245,13 +310,25 @@ const TIE: f64 = 1e-5;
 /// improved on a lookup table: refinement gains less from there.
 const MAX_DEFICIT: f64 = 0.03;
 
-/// Refines the basins of both searches side by side, and takes the best and the worst of what comes out; `None`
-/// when nothing feasible went in. The first basin of each search goes ahead, to tell which of the others can still win.
+/// Refines the basins of both searches, and takes the best and the worst of what comes out; `None` when nothing feasible went
+/// in.
 fn refine_basins(
     evaluator: &Evaluator<'_>,
     found: &[SearchResult; 2],
     monitor: &Monitor,
 ) -> Option<([Refined; 2], Vec<Refinement>)> {
+    let (chosen, refinements) = refine_side(evaluator, found, monitor);
+    let [Some(best), Some(worst)] = chosen else { return None };
+    Some(([best, worst], refinements))
+}
+
+/// Refines the basins of both searches side by side. The first basin of each search goes ahead, to tell which of the others can
+/// still win.
+fn refine_side(
+    evaluator: &Evaluator<'_>,
+    found: &[SearchResult; 2],
+    monitor: &Monitor,
+) -> ([Option<Refined>; 2], Vec<Refinement>) {
     let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
@@ -297,8 +374,7 @@ fn refine_basins(
             *slot = Some(refined);
         }
     }
-    let [Some(best), Some(worst)] = chosen else { return None };
-    Some(([best, worst], refinements))
+    (chosen, refinements)
 }
 
 /// Refines one basin, or only plans it where the job is to stop.
@@ -375,6 +451,7 @@ fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> 
         percentiles: [0.5, 0.95].map(|share| percentile(points.iter().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(&points),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
+        mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
         points,
     }
 }

@@ -17,6 +17,7 @@
 //! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
 //! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
 
+pub mod active;
 mod agreement;
 pub mod ascent;
 pub mod linearise;
