@@ -4,13 +4,13 @@ use super::candidate::Candidate;
 use super::criterion::Criterion;
 use super::evaluate::reference::{scored_part_by_parameters, state};
 use super::evaluator::Evaluator;
-use super::feasibility::{Finding, deflection_map, diagnose};
+use super::feasibility::{AFTER_STOP, Finding, diagnose};
 use super::lookup::LookupTable;
 use super::outcome::{
-    CANCELLATION, Case, Cases, DeflectionFigures, LookupSummary, Outcome, Plan, PlanPoint, Refinement,
+    CANCELLATION, Case, Cases, Cycle, DeflectionFigures, LookupSummary, Outcome, Plan, PlanPoint, Refinement,
 };
 use super::problem::{Placement, Problem};
-use super::redundancy::{Planner, SegmentPlan, off_grid};
+use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
@@ -31,8 +31,10 @@ pub struct Infeasible {
     pub placement: Placement,
     /// Whether it was the only one asked for, or the nearest of a search.
     pub searched: bool,
-    /// Which constraint fails at which points there.
+    /// Which constraint fails at which points there; of a search that was stopped, for some of the points.
     pub findings: Vec<Finding>,
+    /// Whether the caller stopped the search before its end.
+    pub interrupted: bool,
 }
 
 impl std::fmt::Display for Infeasible {
@@ -64,8 +66,9 @@ impl std::error::Error for Infeasible {}
 
 /// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
 ///
-/// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, the search ends
-/// with its present generation, refinement is left out, and [`Outcome::interrupted`] is set.
+/// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, every stage ends with what
+/// it has, only the plans of the best and the worst placement are still made, and [`Outcome::interrupted`] is set. Maps are not
+/// made here: see [`Outcome::map`].
 ///
 /// # Errors
 /// [`Infeasible`] when the search met no feasible placement.
@@ -77,7 +80,7 @@ pub fn place(
 ) -> Result<Outcome, Infeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
-        LookupUse::Auto | LookupUse::Always => Some(LookupTable::new(problem)),
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::monitored(problem, monitor)),
         LookupUse::Never => None,
     };
     let mut lookup_summary = table.as_ref().map(|table| match table {
@@ -103,45 +106,50 @@ pub fn place(
         [false, true] => found[0].basins = found[1].basins.clone(),
         [false, false] => {
             let nearest = &found[0].basins[0];
-            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
+            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
         }
     }
     let planner = Planner::finer(problem);
     let (solutions, refinements) =
         refine_basins(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(
-            || infeasible(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true),
+            || {
+                let nearest = &found[0].basins[0];
+                infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
+            },
         )?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
-    let case = |placement_sense, solution: &Refined, plan_sense| {
+    let worst_plan_of =
+        |refined: &Refined| worst_plan(&planner, &refined.solution.placement, refined.scheme.as_deref());
+    let (of_best, of_worst) = rayon::join(|| worst_plan_of(best), || worst_plan_of(worst));
+    let case = |placement_sense, solution: &Refined, plan_sense, worst: &Result<Vec<SegmentPlan>, NoFeasiblePlan>| {
+        let best = &solution.solution.plans;
         let plans = match plan_sense {
-            Sense::Min => Ok(solution.solution.plans.clone()),
-            Sense::Max => worst_plan(&planner, &solution.solution.placement, solution.scheme.as_deref()),
+            Sense::Min => best,
+            // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+            Sense::Max => worst.as_ref().unwrap_or(best),
         };
-        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
-        let plans = plans.unwrap_or_else(|_| solution.solution.plans.clone());
         Case {
             placement_sense,
             plan_sense,
             placement: solution.solution.placement,
-            plan: detailed(problem, &solution.solution.placement, &plans),
-            cycle: cycle(problem, transfer, &plans),
+            plan: detailed(problem, &solution.solution.placement, plans),
+            cycle: cycle(problem, transfer, plans),
         }
     };
     let mean = best.solution.objective;
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     Ok(Outcome {
         cases: Cases {
-            best: case(Sense::Min, best, Sense::Min),
-            best_worst_plan: case(Sense::Min, best, Sense::Max),
-            worst: case(Sense::Max, worst, Sense::Min),
-            worst_worst_plan: case(Sense::Max, worst, Sense::Max),
+            best: case(Sense::Min, best, Sense::Min, &of_best),
+            best_worst_plan: case(Sense::Min, best, Sense::Max, &of_best),
+            worst: case(Sense::Max, worst, Sense::Min, &of_worst),
+            worst_worst_plan: case(Sense::Max, worst, Sense::Max, &of_worst),
         },
         lookup_summary,
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
-        map_best: deflection_map(problem, &best.solution.placement),
-        map_worst: deflection_map(problem, &worst.solution.placement),
+        maps: None,
         evaluations,
         states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
         interrupted,
@@ -158,8 +166,27 @@ pub struct Score {
     pub best: Plan,
     /// The worst plan.
     pub worst: Plan,
+    /// Times of both plans.
+    pub cycles: [Cycle; 2],
+    /// Whether the caller asked to stop before all that was wanted was there.
+    pub interrupted: bool,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
+}
+
+impl Score {
+    /// Both plans as cases of one placement.
+    pub fn cases(&self) -> [Case; 2] {
+        let [of_best, of_worst] = &self.cycles;
+        let case = |plan_sense, plan: &Plan, cycle: &Cycle| Case {
+            placement_sense: Sense::Min,
+            plan_sense,
+            placement: self.placement,
+            plan: plan.clone(),
+            cycle: cycle.clone(),
+        };
+        [case(Sense::Min, &self.best, of_best), case(Sense::Max, &self.worst, of_worst)]
+    }
 }
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
@@ -175,29 +202,38 @@ fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
-/// Plans one given placement, best and worst.
+/// Plans one given placement, best and worst. The two plans are made even when the caller asks to stop.
 ///
 /// # Errors
 /// [`Infeasible`] when it has no plan.
-pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasible> {
+pub fn score(
+    problem: &Problem,
+    placement: &Placement,
+    transfer: &TransferSettings,
+    monitor: &Monitor,
+) -> Result<Score, Infeasible> {
+    monitor.report(Progress::Steps { stage: "planning", done: 0, total: 1 });
     let planner = Planner::finer(problem);
-    let mut workspace = planner.workspace();
     let spacing = off_grid::Spacing::full(planner.grid());
-    let (Some(best), Ok(worst)) =
-        (planned(&planner, placement, None, spacing, &mut workspace), worst_plan(&planner, placement, None))
-    else {
-        return Err(infeasible(&planner, placement, None, false));
+    let (Some(best), Ok(worst)) = rayon::join(
+        || planned(&planner, placement, None, spacing, &mut planner.workspace()),
+        || worst_plan(&planner, placement, None),
+    ) else {
+        return Err(infeasible(&planner, placement, None, false, monitor));
     };
     let warnings = cancellation(problem, best.objective).into_iter().collect();
     Ok(Score {
         placement: *placement,
         best: detailed(problem, placement, &best.plans),
         worst: detailed(problem, placement, &worst),
+        cycles: [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans)),
+        interrupted: monitor.should_stop(),
         warnings,
     })
 }
 
 /// A refined solution with the scheme it was held to.
+#[derive(Clone)]
 struct Refined {
     solution: Solution,
     scheme: Option<Vec<Posture>>,
@@ -224,8 +260,11 @@ fn refine_basins(
         .flat_map(|(sense, f)| f.basins.iter().enumerate().map(move |(rank, candidate)| (sense, rank, candidate)))
         .collect();
     let done = AtomicUsize::new(0);
-    let run = |jobs: &[(Sense, usize, &Candidate)], of: usize| -> Vec<(Sense, Refined, Option<Refinement>)> {
-        let refined = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
+    let run = |jobs: &[(Sense, usize, &Candidate)], of: usize, known: &[Sense]| -> Vec<(Sense, Refined, Option<Refinement>)> {
+        let refined = |(sense, rank, candidate): &(Sense, usize, &Candidate)| {
+            if *rank > 0 && monitor.should_stop() && known.contains(sense) {
+                return None;
+            }
             let refined = refine_one(evaluator, *sense, candidate, monitor);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             monitor.report(Progress::Steps { stage: "refining", done, total: of });
@@ -234,7 +273,8 @@ fn refine_basins(
         jobs.par_iter().filter_map(refined).collect()
     };
     let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
-    let mut results = run(&ahead, jobs.len());
+    let mut results = run(&ahead, jobs.len(), &[]);
+    let known: Vec<Sense> = results.iter().map(|(sense, ..)| *sense).collect();
     let can_win = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
         let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.objective);
         match (evaluator.table(), first, candidate.objective.mean()) {
@@ -245,9 +285,11 @@ fn refine_basins(
             _ => true,
         }
     };
-    let others: Vec<_> = others.into_iter().filter(can_win).collect();
+    // Once the caller asks to stop, other basins are only for a search whose first one has no plan.
+    let is_wanted = |job: &(Sense, usize, &Candidate)| can_win(job) && !(monitor.should_stop() && known.contains(&job.0));
+    let others: Vec<_> = others.into_iter().filter(is_wanted).collect();
     let of = ahead.len() + others.len();
-    results.extend(run(&others, of));
+    results.extend(run(&others, of, &known));
     // In the order of the searches: a stable sort.
     results.sort_by_key(|(sense, ..)| usize::from(*sense == Sense::Max));
     let mut refinements = Vec::new();
@@ -263,8 +305,12 @@ fn refine_basins(
             *slot = Some(refined);
         }
     }
-    let [Some(best), Some(worst)] = chosen else { return None };
-    Some(([best, worst], refinements))
+    match chosen {
+        [Some(best), Some(worst)] => Some(([best, worst], refinements)),
+        // A search whose basins have no plan on the finer grid takes the other's.
+        [Some(only), None] | [None, Some(only)] => Some(([only.clone(), only], refinements)),
+        [None, None] => None,
+    }
 }
 
 /// Refines one basin, or only plans it where the job is to stop.
@@ -280,7 +326,7 @@ fn refine_one(
         let spacing = off_grid::Spacing::full(planner.grid());
         (planned(planner, placement, scheme, spacing, &mut planner.workspace())?, None)
     } else {
-        let (solution, report) = refine(evaluator, placement, sense, scheme)?;
+        let (solution, report) = refine(evaluator, placement, sense, scheme, monitor)?;
         (solution, Some(report))
     };
     Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
@@ -290,15 +336,25 @@ fn worst_plan(
     planner: &Planner<'_>,
     placement: &Placement,
     scheme: Option<&[Posture]>,
-) -> Result<Vec<SegmentPlan>, super::redundancy::NoFeasiblePlan> {
+) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
     let spacing = off_grid::Spacing::full(planner.grid());
     planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
 }
 
-fn infeasible(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Posture]>, searched: bool) -> Infeasible {
-    let none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace());
-    let findings = none.err().map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
-    Infeasible { placement: *placement, searched, findings }
+fn infeasible(
+    planner: &Planner<'_>,
+    placement: &Placement,
+    scheme: Option<&[Posture]>,
+    searched: bool,
+    monitor: &Monitor,
+) -> Infeasible {
+    let mut none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace()).err();
+    let interrupted = monitor.should_stop();
+    if let (true, Some(none)) = (interrupted, &mut none) {
+        none.blocked_points.truncate(AFTER_STOP / planner.problem().redundancy.beta_count);
+    }
+    let findings = none.map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
+    Infeasible { placement: *placement, searched, findings, interrupted }
 }
 
 /// A plan with everything that there is to say of each point, from the reference evaluator.

@@ -22,6 +22,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -55,13 +56,17 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 
 /// Basins kept in mind during the search.
 const ARCHIVE: usize = 64;
+/// A search stopped before it met a feasible candidate looks at this many more of them.
+const LAST_LOOK: usize = 16;
+/// The objective of a candidate that is not evaluated yet.
+const UNEVALUATED: Objective = Objective::Infeasible { points: usize::MAX, segments: 0 };
 
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> SearchResult {
     let problem = evaluator.planner().problem();
     let cell = &problem.cell;
     let mut population = initial(problem, settings, sense);
-    evaluate(evaluator, &mut population, 0);
+    evaluate(evaluator, &mut population, 0, monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -78,8 +83,8 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
                 .collect::<Vec<_>>();
             population.truncate(elite);
             population.extend(children);
-            evaluate(evaluator, &mut population, elite);
-            evaluations += settings.population - elite;
+            evaluate(evaluator, &mut population, elite, monitor);
+            evaluations += population.len() - elite;
         }
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
         archive.extend(population.iter().filter(|i| i.objective.mean().is_some()).cloned());
@@ -100,7 +105,7 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
         }
     }
     archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
-    evaluator.check(&mut history, &best, sense);
+    evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
     SearchResult {
@@ -162,7 +167,7 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
             Candidate {
                 placement: Placement::from(placement),
                 scheme,
-                objective: Objective::Infeasible { points: usize::MAX, segments: 0 },
+                objective: UNEVALUATED,
             }
         })
         .collect()
@@ -172,13 +177,27 @@ fn random_posture(random: &mut impl Rng) -> Posture {
     Posture::ALL[random.random_range(0..8)]
 }
 
-fn evaluate(evaluator: &Evaluator<'_>, population: &mut [Candidate], from: usize) {
+/// Evaluates all candidates from one on. Once the caller asks to stop, those not begun yet are taken out; only where nothing feasible
+/// was met, a few of them are evaluated all the same.
+fn evaluate(evaluator: &Evaluator<'_>, population: &mut Vec<Candidate>, from: usize, monitor: &Monitor) {
+    let is_feasible = |candidate: &Candidate| candidate.objective.mean().is_some();
+    let is_met = AtomicBool::new(population[..from].iter().any(is_feasible));
+    let looked = AtomicUsize::new(0);
     population[from..].par_iter_mut().for_each_init(
         || evaluator.workspace(),
         |workspace, candidate| {
+            let is_enough = || is_met.load(Relaxed) || looked.fetch_add(1, Relaxed) >= LAST_LOOK;
+            if monitor.should_stop() && is_enough() {
+                candidate.objective = UNEVALUATED;
+                return;
+            }
             candidate.objective = evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace);
+            if is_feasible(candidate) {
+                is_met.store(true, Relaxed);
+            }
         },
     );
+    population.retain(|candidate| candidate.objective != UNEVALUATED);
 }
 
 /// One child: of two parents, or a mutant of one.

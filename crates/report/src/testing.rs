@@ -53,14 +53,12 @@ pub fn outcome() -> &'static Outcome {
             convergence.extend((0..=51).map(|k| generation(sense, end, k)));
         }
         let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
-        let (map_best, map_worst) = (best.map(), worst.map());
         Outcome {
             cases,
             lookup_summary: None,
             convergence,
             refinements,
-            map_best,
-            map_worst,
+            maps: Some([best.map(), worst.map()]),
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
@@ -104,7 +102,7 @@ fn refinement(sense: Sense, case: &Case) -> Refinement {
         end_mean: case.plan.mean,
         rounds: 2,
         iterations: 17,
-        kkt_residual: 3.2e-10,
+        kkt_residual: Some(3.2e-10),
         statuses: vec![RefinementStatus::NoMoreGain, RefinementStatus::NoFirstOrderGain],
     }
 }

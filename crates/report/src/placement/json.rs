@@ -159,7 +159,7 @@ fn refinement(refinement: &Refinement) -> Value {
         "end_mean_mm": number(Unit::DEFLECTION_MM, refinement.end_mean),
         "rounds": refinement.rounds,
         "iterations": refinement.iterations,
-        "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
+        "kkt_residual_mm": optional(Unit::RESIDUAL_MM, refinement.kkt_residual),
         "status": names::statuses(&refinement.statuses),
     })
 }
