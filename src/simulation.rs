@@ -146,7 +146,7 @@ impl Report for SimulatedPass {
     }
 
     fn notes(&self) -> &[String] {
-        &[]
+        &self.simulation.notes
     }
 
     fn warnings(&self) -> &[Warning] {
@@ -168,11 +168,7 @@ impl Report for StabilityAnalysis {
     }
 
     fn notes(&self) -> &[String] {
-        &[]
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
+        &self.analysis.notes
     }
 }
 

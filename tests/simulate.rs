@@ -85,6 +85,78 @@ fn the_fast_model_agrees_in_every_variant() {
     }
 }
 
+/// Forces push the tip the way it goes: both have one sense of y, in which the wall pushes it back.
+#[test]
+fn forces_and_deflections_have_one_sense() {
+    let bench = bench();
+    assert_eq!(simulate(&bench, &["--out", "out"]).code, Some(0));
+    let series = bench.read("out/series.csv");
+    let column = |name: &str| series.lines().next().unwrap().split(',').position(|header| header == name).unwrap();
+    let [force, place, deflection] = ["force_y_n", "y_mm", "deflection_y_um"].map(column);
+    let (mut work, mut forces) = (0.0, 0.0);
+    for line in series.lines().skip(1) {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        work += fields[force] * fields[deflection];
+        forces += fields[force];
+        // The tool centre stays in front of the wall by about its radius.
+        assert!((fields[place] + 5.0 - fields[deflection] / 1e3).abs() < 1e-3, "{line}");
+    }
+    assert!(forces < 0.0 && work > 0.0, "{forces} {work}");
+}
+
+/// Steel without runout, at depths of 0.55, 0.62, 0.75 and 1.0 mm: a flip of two teeth repeats every turn, and is told all the same.
+#[test]
+fn simulate_and_stability_agree_on_calm_and_flip() {
+    let steel = "configs/umons-steel.toml";
+    for (depth, judgement, is_calm) in
+        [("0.55", "calm", true), ("0.62", "calm", true), ("0.75", "flip", false), ("1.0", "flip", false)]
+    {
+        let bench = Bench::new();
+        bench.copy_all(&[steel, ROBOT]);
+        bench.replace(steel, "axial_depth_mm = 1.6", &format!("axial_depth_mm = {depth}"));
+        bench.replace(steel, "runout_um = [6.929, 0.0]", "runout_um = [0.0, 0.0]");
+        bench.replace(steel, "# steps_per_turn = 360", "steps_per_turn = 90\nslices = 8");
+        bench.replace(steel, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
+        let pass = bench.stead(&["simulate", steel, "--fast", "--json"]).json();
+        let stability = bench.stead(&["stability", steel, "--json"]).json();
+        assert_eq!(pass["judgement"], judgement, "{depth}: {}", pass["small_motions"]);
+        assert_eq!((&pass["stable"], &stability["stable"]), (&is_calm.into(), &is_calm.into()), "{depth}");
+        let kind = if is_calm { "none" } else { judgement };
+        assert_eq!((&pass["small_motions"]["kind"], &stability["kind"]), (&kind.into(), &kind.into()), "{depth}");
+        assert!(number(&pass["unrest"]) < 0.01, "{depth}: from turn to turn nothing is to be seen");
+        assert_eq!(number(&pass["unrest_of_teeth_alike"]) > 0.2, !is_calm, "{depth}");
+        assert_eq!((&pass["notes"], &stability["notes"]), (&serde_json::json!([]), &serde_json::json!([])));
+        let text = bench.stead(&["simulate", steel, "--fast"]).stdout;
+        let sentence = if is_calm {
+            "The cut is calm: forces differ by 0.0"
+        } else {
+            "The cut chatters (flip): forces differ by "
+        };
+        assert!(text.contains(sentence) && text.contains("% from tooth to tooth"), "{text}");
+    }
+}
+
+/// With runout a flip repeats from turn to turn; both commands say that the stability is that without it.
+#[test]
+fn a_flip_with_runout_is_told_by_its_growth() {
+    let steel = "configs/umons-steel.toml";
+    let bench = Bench::new();
+    bench.copy_all(&[steel, ROBOT]);
+    bench.replace(steel, "axial_depth_mm = 1.6", "axial_depth_mm = 0.75");
+    bench.replace(steel, "# steps_per_turn = 360", "steps_per_turn = 90\nslices = 8");
+    bench.replace(steel, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
+    let ended = bench.stead(&["simulate", steel, "--fast"]);
+    for part in ["The cut chatters (flip): with runout a flip repeats from turn to turn", "Small motions grow (flip)"] {
+        assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
+    }
+    for command in [&["simulate", steel, "--fast", "--json"][..], &["stability", steel, "--json"]] {
+        let ended = bench.stead(command);
+        let note = "the stability of small motions is that of the cutter without its runout";
+        ended.assert_says(&["note: ", note]);
+        assert!(ended.json()["notes"][0].as_str().unwrap().starts_with(note));
+    }
+}
+
 /// Whatever happens, a run that could start ends with a verdict, its files and exit code 0.
 #[test]
 fn an_unstable_run_ends_cleanly_with_the_verdict() {

@@ -1,7 +1,7 @@
 //! `stead simulate`: a pass with an arm that yields, then files, then a text.
 
 use super::arguments::SimulateOptions;
-use super::{Failure, out_folder, results_in, say_warnings};
+use super::{Failure, out_folder, results_in, say_notes, say_warnings};
 use stead::{Overrides, SimulationRun};
 
 pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
@@ -9,6 +9,7 @@ pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config)?;
     let pass = if options.fast { run.simulate_condensed() } else { run.simulate() };
     let pass = pass.inspect_err(|_| out.give_up())?;
+    say_notes(pass.notes());
     say_warnings(pass.warnings());
     out.show(pass.write(&out.path), &pass, options.json, results_in)
 }

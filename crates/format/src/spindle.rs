@@ -10,9 +10,8 @@ use serde::{Deserialize, Serialize};
 use stead_model::robot::Spindle;
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
-/// point and its z axis along the tool, from the work to the spindle.
+/// point and its z axis along the tool, out of the spindle to the work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SpindleTable {
     /// Tool centre point in the flange frame.
     pub xyz_mm: Vector<Mm>,

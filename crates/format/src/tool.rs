@@ -37,7 +37,6 @@ words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "
 /// depends on what is computed: forces along a path need `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
 /// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ToolTable {
     /// Diameter of the cutter.
     pub cutter_diameter_mm: Mm<Positive>,
@@ -45,9 +44,10 @@ pub struct ToolTable {
     pub teeth: Whole<1, 100>,
     /// Sense of rotation seen from the spindle; clockwise where left out.
     pub rotation: Option<Word<Rotation>>,
-    /// Angle from each tooth to the next, 360 in all; equal ones where left out.
+    /// Angle at which each tooth follows the tooth before it, in the order in which they pass, 360 in all: the second number is that
+    /// from tooth 1 to tooth 2, the first that from the last tooth to tooth 1. Equal ones where left out.
     pub pitch_deg: Option<List<Deg>>,
-    /// What the radius of each edge is more than half the diameter; 0 where left out.
+    /// What the radius of each edge is more than half the diameter, in the order in which the teeth pass; 0 where left out.
     pub runout_um: Option<List<Um>>,
     /// Helix angle; 0 where left out.
     pub helix_deg: Option<Deg<Acute>>,
@@ -79,7 +79,6 @@ pub struct ToolTable {
 /// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes with
 /// it, and `feed_per_tooth_mm`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CutTable {
     /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
     pub milling: Option<Word<MillingDirection>>,

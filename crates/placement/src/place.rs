@@ -1,10 +1,9 @@
 //! The placement job: search, refine, plan, map.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Objective};
 use super::criterion::Criterion;
 use super::evaluate::reference::{scored_part_by_parameters, state};
 use super::evaluator::Evaluator;
-use super::feasibility::{AFTER_STOP, Finding, diagnose};
 use super::lookup::LookupTable;
 use super::outcome::{
     CANCELLATION, Case, Cases, Cycle, DeflectionFigures, LookupSummary, Outcome, Plan, PlanPoint, Refinement,
@@ -24,45 +23,10 @@ use stead_numerics::mean_max::percentile;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 
-/// Why a placement job has no result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Infeasible {
-    /// The placement that comes nearest: of all tried the one with the fewest blocked points.
-    pub placement: Placement,
-    /// Whether it was the only one asked for, or the nearest of a search.
-    pub searched: bool,
-    /// Which constraint fails at which points there; of a search that was stopped, for some of the points.
-    pub findings: Vec<Finding>,
-    /// Whether the caller stopped the search before its end.
-    pub interrupted: bool,
-}
+mod infeasible;
 
-impl std::fmt::Display for Infeasible {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Placement { x, y, z, .. } = self.placement;
-        if self.searched {
-            write!(f, "no feasible placement was found; the nearest is")?;
-        } else {
-            write!(f, "nothing is feasible at")?;
-        }
-        write!(
-            f,
-            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, Q4 = {:.4} (yaw {:.2} deg):",
-            x * 1e3,
-            y * 1e3,
-            z * 1e3,
-            self.placement.q4(),
-            self.placement.yaw.to_degrees()
-        )?;
-        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
-        if self.searched {
-            write!(f, "\na search may miss a small feasible region: more population and generations look closer")?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for Infeasible {}
+pub use infeasible::Infeasible;
+use infeasible::infeasible;
 
 /// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
 ///
@@ -78,45 +42,14 @@ pub fn place(
     transfer: &TransferSettings,
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
-    let planner = Planner::new(problem);
-    let table = match settings.tables {
-        LookupUse::Auto | LookupUse::Always => Some(LookupTable::monitored(problem, monitor)),
-        LookupUse::Never => None,
-    };
-    let mut lookup_summary = table.as_ref().map(|table| match table {
-        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
-        Err(unsuited) => Err(unsuited.clone()),
-    });
-    let mut table = table.and_then(Result::ok);
-    let search = |table: Option<&LookupTable<'_>>| {
-        let evaluator = Evaluator::new(&planner, table);
-        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
-    };
-    let mut found = search(table.as_ref());
-    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
-        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
-        found = search(None);
-        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
-    }
-    // A search that met nothing feasible goes on from what the other met.
-    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.objective.mean().is_some())) {
-        [true, true] => {}
-        [true, false] => found[1].basins = found[0].basins.clone(),
-        [false, true] => found[0].basins = found[1].basins.clone(),
-        [false, false] => {
-            let nearest = &found[0].basins[0];
-            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
-        }
-    }
     let planner = Planner::finer(problem);
-    let (solutions, refinements) =
-        refine_basins(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(
-            || {
-                let nearest = &found[0].basins[0];
-                infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
-            },
-        )?;
+    let Searched { found, table, lookup_summary, evaluations } = search_cell(&planner, settings, monitor)?;
+    let refused = || {
+        let nearest = &found[0].basins[0];
+        infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
+    };
+    let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
+    let (solutions, refinements) = refine_basins(&evaluator, &found, monitor).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let worst_plan_of =
@@ -155,6 +88,71 @@ pub fn place(
         interrupted,
         warnings: cancellation(problem, mean).into_iter().chain(interrupted.then(interruption)).collect(),
     })
+}
+
+/// What the searches of both senses come to.
+struct Searched<'a> {
+    found: [SearchResult; 2],
+    table: Option<LookupTable<'a>>,
+    lookup_summary: Option<Result<LookupSummary, Unsupported>>,
+    evaluations: usize,
+}
+
+/// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last word on
+/// what is feasible.
+fn search_cell<'a>(
+    finer: &Planner<'a>,
+    settings: &SearchSettings,
+    monitor: &Monitor,
+) -> Result<Searched<'a>, Infeasible> {
+    let problem = finer.problem();
+    if let Some(placement) = problem.cell.pinned() {
+        let found = Sense::BOTH.map(|sense| search::pinned(finer, placement, sense));
+        return match found[0].basins[0].objective {
+            Objective::Feasible(_) => Ok(Searched { found, table: None, lookup_summary: None, evaluations: 1 }),
+            Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false, monitor)),
+        };
+    }
+    let planner = Planner::new(problem);
+    let table = match settings.tables {
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::monitored(problem, monitor)),
+        LookupUse::Never => None,
+    };
+    let mut lookup_summary = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
+        Err(unsuited) => Err(unsuited.clone()),
+    });
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&LookupTable<'_>>| {
+        let evaluator = Evaluator::new(&planner, table).with_finer_planner(finer);
+        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
+        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
+    let is_feasible = |f: &SearchResult| f.basins.first().is_some_and(|i| i.objective.mean().is_some());
+    if !found.iter().any(is_feasible) {
+        evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
+        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+            search::evaluate_finer(finer, sense, &mut found.basins, monitor);
+            found.basins.truncate(settings.basins);
+        }
+    }
+    // A search that met nothing feasible goes on from what the other met.
+    match found.each_ref().map(is_feasible) {
+        [true, true] => {}
+        [true, false] => found[1].basins = found[0].basins.clone(),
+        [false, true] => found[0].basins = found[1].basins.clone(),
+        [false, false] => {
+            let nearest = &found[0].basins[0];
+            return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
+        }
+    }
+    Ok(Searched { found, table, lookup_summary, evaluations })
 }
 
 /// What one given placement is worth.
@@ -339,22 +337,6 @@ fn worst_plan(
 ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
     let spacing = off_grid::Spacing::full(planner.grid());
     planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
-}
-
-fn infeasible(
-    planner: &Planner<'_>,
-    placement: &Placement,
-    scheme: Option<&[Posture]>,
-    searched: bool,
-    monitor: &Monitor,
-) -> Infeasible {
-    let mut none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace()).err();
-    let interrupted = monitor.should_stop();
-    if let (true, Some(none)) = (interrupted, &mut none) {
-        none.blocked_points.truncate(AFTER_STOP / planner.problem().redundancy.beta_count);
-    }
-    let findings = none.map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
-    Infeasible { placement: *placement, searched, findings, interrupted }
 }
 
 /// A plan with everything that there is to say of each point, from the reference evaluator.

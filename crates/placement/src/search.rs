@@ -12,9 +12,10 @@
 //! seed alone and not on the number of threads.
 
 use super::candidate::{Candidate, Objective, rank};
-use super::evaluator::Evaluator;
+use super::evaluator::{self, Evaluator};
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
+use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
@@ -29,7 +30,7 @@ use stead_numerics::monitor::{Monitor, Progress};
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchResult {
-    /// The best candidates of distinct basins, best first; if nothing was feasible, the one that came nearest.
+    /// The best candidates of distinct basins, best first; if nothing was feasible, those that came nearest.
     pub basins: Vec<Candidate>,
     /// Generation by generation.
     pub history: Vec<Generation>,
@@ -104,7 +105,9 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
             break;
         }
     }
-    archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
+    if archive.is_empty() {
+        archive = distinct(cell, &population, ARCHIVE);
+    }
     evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
@@ -115,6 +118,26 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
         lookup_rejected: selected.lookup_rejected,
         interrupted,
     }
+}
+
+/// In place of a search, the only placement of a cell that leaves no other, on a planner's grid.
+pub fn pinned(planner: &Planner<'_>, placement: Placement, sense: Sense) -> SearchResult {
+    let objective = planner.objective(&placement, Sense::Min, None, &mut planner.workspace());
+    let candidate = Candidate { placement, scheme: None, objective };
+    let history = vec![figures(sense, 0, std::slice::from_ref(&candidate), 1)];
+    SearchResult { basins: vec![candidate], history, evaluations: 1, lookup_rejected: false, interrupted: false }
+}
+
+/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest alone. Once the
+/// caller asks to stop, two are enough.
+pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<Candidate>, monitor: &Monitor) {
+    let objective = |candidate: &Candidate, workspace: &mut redundancy::Workspace| {
+        planner.objective(&candidate.placement, Sense::Min, candidate.scheme.as_deref(), workspace)
+    };
+    evaluate_by(&|| planner.workspace(), &objective, candidates, 0, (2, monitor));
+    candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
+    let feasible = candidates.iter().filter(|candidate| candidate.objective.mean().is_some()).count();
+    candidates.truncate(feasible.max(1));
 }
 
 /// The name of a search in reports of progress.
@@ -177,27 +200,37 @@ fn random_posture(random: &mut impl Rng) -> Posture {
     Posture::ALL[random.random_range(0..8)]
 }
 
-/// Evaluates all candidates from one on. Once the caller asks to stop, those not begun yet are taken out; only where nothing feasible
-/// was met, a few of them are evaluated all the same.
 fn evaluate(evaluator: &Evaluator<'_>, population: &mut Vec<Candidate>, from: usize, monitor: &Monitor) {
+    let objective = |candidate: &Candidate, workspace: &mut evaluator::Workspace| {
+        evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace)
+    };
+    evaluate_by(&|| evaluator.workspace(), &objective, population, from, (LAST_LOOK, monitor));
+}
+
+/// Evaluates all candidates from one on. Once the caller asks to stop, those not begun yet are taken out; only where nothing feasible
+/// was met, `last_look` of them are evaluated all the same.
+fn evaluate_by<W>(
+    workspace: &(impl Fn() -> W + Sync),
+    objective: &(impl Fn(&Candidate, &mut W) -> Objective + Sync),
+    candidates: &mut Vec<Candidate>,
+    from: usize,
+    (last_look, monitor): (usize, &Monitor),
+) {
     let is_feasible = |candidate: &Candidate| candidate.objective.mean().is_some();
-    let is_met = AtomicBool::new(population[..from].iter().any(is_feasible));
+    let is_met = AtomicBool::new(candidates[..from].iter().any(is_feasible));
     let looked = AtomicUsize::new(0);
-    population[from..].par_iter_mut().for_each_init(
-        || evaluator.workspace(),
-        |workspace, candidate| {
-            let is_enough = || is_met.load(Relaxed) || looked.fetch_add(1, Relaxed) >= LAST_LOOK;
-            if monitor.should_stop() && is_enough() {
-                candidate.objective = UNEVALUATED;
-                return;
-            }
-            candidate.objective = evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace);
-            if is_feasible(candidate) {
-                is_met.store(true, Relaxed);
-            }
-        },
-    );
-    population.retain(|candidate| candidate.objective != UNEVALUATED);
+    candidates[from..].par_iter_mut().for_each_init(workspace, |workspace, candidate| {
+        let is_enough = || is_met.load(Relaxed) || looked.fetch_add(1, Relaxed) >= last_look;
+        if monitor.should_stop() && is_enough() {
+            candidate.objective = UNEVALUATED;
+            return;
+        }
+        candidate.objective = objective(candidate, workspace);
+        if is_feasible(candidate) {
+            is_met.store(true, Relaxed);
+        }
+    });
+    candidates.retain(|candidate| candidate.objective != UNEVALUATED);
 }
 
 /// One child: of two parents, or a mutant of one.

@@ -1,10 +1,11 @@
 //! Result of a simulated pass: forces, wall roughness, modes, stability.
 
 use super::coupled::{End, Job, JobError, Run};
+use super::judgement::{Evidence, Judgement, period_variation, steps};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
-use super::stability_analysis::{StabilityError, linear_at};
+use super::stability_analysis::{StabilityError, linear_at, runout_note};
 use serde::Serialize;
 use stead_numerics::message::Warning;
 
@@ -17,6 +18,9 @@ pub struct EvaluationSettings {
     pub height: f64,
     /// Cutoff of the Gaussian filter. m
     pub cutoff: f64,
+    /// Distance along the pass at which the stability analysis linearises the arm: what small motions do there is found as well, so that
+    /// both answers can be compared. m
+    pub analysis_distance: f64,
 }
 
 /// Figures of a pass that publications give.
@@ -52,9 +56,17 @@ pub struct Simulation {
     pub forces: Option<[Statistics; 2]>,
     /// Root mean square of the difference between the force and that one spindle turn before, over the second half of the window,
     /// relative to the root mean square of the force; `None` if the run ended before the window did.
+    pub turn_variation: Option<f64>,
+    /// The same for one period of the cutter: the part of a turn after which the teeth repeat in pitch and radius.
     pub period_variation: Option<f64>,
+    /// Teeth in such a period: one where all are alike.
+    pub period_teeth: usize,
     /// Stability of small motions (semi-discretisation), linearised in the middle of the work.
     pub verdict: Verdict,
+    /// The same where the stability analysis linearises the arm.
+    pub analysis_verdict: Verdict,
+    /// How the pass went.
+    pub judgement: Judgement,
     /// All modes at the start of the pass.
     pub modes: Vec<Mode>,
     /// The wall that remains.
@@ -63,8 +75,10 @@ pub struct Simulation {
     pub filtered: Profile,
     /// Roughness of the wall as it is, and filtered; `None` if no wall was cut.
     pub roughness: Option<[Roughness; 2]>,
-    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled` or `slow-growth`.
+    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled`, `slow-growth` or `at-the-limit`.
     pub warnings: Vec<Warning>,
+    /// What the result rests on.
+    pub notes: Vec<String>,
 }
 
 /// Why a pass cannot be simulated.
@@ -78,8 +92,6 @@ pub enum SimulationError {
     StabilityAnalysis(#[from] StabilityError),
 }
 
-/// Largest period variation of a cut without chatter.
-pub const MAX_PERIOD_VARIATION: f64 = 0.2;
 /// Distance of the points of a wall. m
 const SPACING: f64 = 10e-6;
 
@@ -95,68 +107,78 @@ impl Simulation {
         };
         let at = |share: f64| job.setup.motion.ramp().time_of(distance(share));
         let window = settings.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
-        let linear = linear_at(job.setup, distance(0.5))?;
-        let plant = linear.plant(&job.setup.motion.cut_frame(job.cut.wall(job.cutter)))?;
-        let method = SemiDiscretisation::new(&plant, job.cutter, job.cut).map_err(StabilityError::from)?;
+        let half = [(window[0] + window[1]) / 2.0, window[1]];
+        let turn = job.cut.steps_per_turn as f64;
+        let repeats = job.cutter.repeats_with_runout();
+        let variation = period_variation(&run, half, turn / repeats as f64);
+        let [verdict, analysis_verdict] = verdicts(job, [distance(0.5), settings.analysis_distance])?;
+        let verdicts = [&verdict, &analysis_verdict];
+        let time = (half[0] - at(0.0)).max(0.0);
+        let judgement = Evidence { end: &run.end, cutter: job.cutter, variation, verdicts, time }.judgement();
         let wall = wall(job, settings, &run);
         let filtered = wall.filtered(settings.cutoff);
         let roughness = wall.roughness().zip(filtered.roughness()).map(|(raw, filtered)| [raw, filtered]);
-        let mut found = Self {
+        Ok(Self {
             forces: statistics(&run, window),
-            period_variation: period_variation(
-                &run,
-                [(window[0] + window[1]) / 2.0, window[1]],
-                job.cut.steps_per_turn,
-            ),
+            turn_variation: period_variation(&run, half, turn),
+            period_variation: variation,
+            period_teeth: job.cutter.teeth().len() / repeats,
             window,
-            verdict: method.verdict(job.cut.section.axial_depth),
+            verdict,
+            analysis_verdict,
+            judgement,
             modes: linear_at(job.setup, 0.0)?.modes()?,
             wall,
             filtered,
             roughness,
+            warnings: warning(judgement, &run.end).into_iter().collect(),
+            notes: runout_note(job.cutter).into_iter().collect(),
             run,
-            warnings: Vec::new(),
-        };
-        found.warnings = found.judge();
-        Ok(found)
+        })
     }
 
-    /// Reasons not to take the figures for those of a steady cut.
-    fn judge(&self) -> Vec<Warning> {
-        let reason = match &self.run.end {
-            End::Complete => None,
-            End::Limit(limit) => Some(limit.to_string()),
-            End::Step(error) => Some(error.to_string()),
-        };
-        if let Some(reason) = reason {
-            return vec![Warning::new("ended-early", format!("the run ended before the pass: {reason}"))];
-        }
-        match (self.verdict.is_stable(), self.is_stable()) {
-            (true, false) => vec![Warning::new(
-                "not-settled",
-                "small motions die out, but the forces still change from turn to turn: a longer ramp or pass tells whether the \
-                 start is still felt",
-            )],
-            (false, true) => vec![Warning::new(
-                "slow-growth",
-                "small motions grow, but have not become large by the end of the pass",
-            )],
-            _ => Vec::new(),
-        }
-    }
-
-    /// Whether the cut was free of chatter: the pass was completed, and the forces hardly vary from turn to turn.
+    /// Whether the cut was free of chatter: the pass was completed, its forces repeat, and small motions die out.
     pub fn is_stable(&self) -> bool {
-        self.run.end == End::Complete
-            && self.period_variation.is_none_or(|period_variation| period_variation < MAX_PERIOD_VARIATION)
+        self.judgement == Judgement::Calm
     }
 }
 
-/// Steps between two times; none if the run does not have them all.
-fn steps(run: &Run, [from, to]: [f64; 2]) -> Option<std::ops::Range<usize>> {
-    let [first, last] = [(from / run.step - 1e-9).ceil(), (to / run.step + 1e-9).floor()];
-    let range = first.max(0.0) as usize..last.max(0.0) as usize + 1;
-    (!range.is_empty() && range.end <= run.samples.len()).then_some(range)
+/// What small motions do at two distances along the pass (m).
+fn verdicts(job: &Job<'_>, distances: [f64; 2]) -> Result<[Verdict; 2], StabilityError> {
+    let frame = job.setup.motion.cut_frame(job.cut.wall(job.cutter));
+    let at = |distance: f64| -> Result<Verdict, StabilityError> {
+        let plant = linear_at(job.setup, distance)?.plant(&frame)?;
+        Ok(SemiDiscretisation::new(&plant, job.cutter, job.cut)?.verdict(job.cut.section.axial_depth))
+    };
+    let [first, second] = distances;
+    Ok([at(first)?, at(second)?])
+}
+
+/// The reason not to take the figures for those of a steady cut, if there is one.
+fn warning(judgement: Judgement, end: &End) -> Option<Warning> {
+    let (kind, message) = match judgement {
+        Judgement::Calm | Judgement::Chatter(_) => return None,
+        Judgement::Ended => {
+            let reason = match end {
+                End::Complete => String::new(),
+                End::Limit(limit) => limit.to_string(),
+                End::Step(error) => error.to_string(),
+            };
+            return Some(Warning::new("ended-early", format!("the run ended before the pass: {reason}")));
+        }
+        Judgement::Unsettled => (
+            "not-settled",
+            "small motions die out, but the forces do not repeat yet: a longer ramp or pass tells whether the start is still felt",
+        ),
+        Judgement::Growing(_) => {
+            ("slow-growth", "small motions grow, but have not become large by the end of the pass")
+        }
+        Judgement::Marginal => (
+            "at-the-limit",
+            "the cut is at its limit of stability: small motions grow at one place of the pass and die out at another",
+        ),
+    };
+    Some(Warning::new(kind, message))
 }
 
 /// Forces along the feed and towards the wall between two times (s).
@@ -175,20 +197,6 @@ pub fn statistics(run: &Run, window: [f64; 2]) -> Option<[Statistics; 2]> {
         }
         Statistics { min, max, mean: sum / count, root_mean_square: (squares / count).sqrt() }
     }))
-}
-
-/// Root mean square of the difference between forces one turn (in steps) apart, between two times (s), relative to that of the forces.
-pub fn period_variation(run: &Run, window: [f64; 2], turn: usize) -> Option<f64> {
-    let range = steps(run, window)?;
-    let (mut changes, mut squares) = (0.0, 0.0);
-    for index in range.start.max(turn)..range.end {
-        for axis in 0..2 {
-            let (now, before) = (run.samples[index].force[axis], run.samples[index - turn].force[axis]);
-            changes += (now - before) * (now - before);
-            squares += now * now;
-        }
-    }
-    (squares > 0.0).then(|| (changes / squares).sqrt())
 }
 
 /// The wall up to where the tool came.

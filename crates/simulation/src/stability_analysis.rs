@@ -62,6 +62,16 @@ pub struct StabilityAnalysis {
     pub lobes: Vec<Lobe>,
     /// Time of the pass through the work at the feed. s
     pub pass_time: f64,
+    /// What the result rests on.
+    pub notes: Vec<String>,
+}
+
+/// That the analysis leaves the runout of a cutter out, where it has one.
+pub fn runout_note(cutter: &Cutter) -> Option<String> {
+    cutter.has_runout().then(|| {
+        "the stability of small motions is that of the cutter without its runout: every tooth is taken to cut, with equal radii"
+            .to_owned()
+    })
 }
 
 /// Number of frequencies of the frequency response.
@@ -89,6 +99,7 @@ pub fn analyse(
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
         lobes: lobes(&plant, cutter, cut, &between(settings.speeds, settings.points), settings.max_depth)?,
         pass_time: cut.length / setup.motion.ramp().feed,
+        notes: runout_note(cutter).into_iter().collect(),
     })
 }
 

@@ -34,6 +34,7 @@ use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
+use stead_simulation::stability_analysis::runout_note;
 use tables::check_tables;
 
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which its
@@ -162,6 +163,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
+    notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
     Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
 }

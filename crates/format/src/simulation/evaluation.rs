@@ -11,7 +11,7 @@ use stead_simulation::milling::PassCut;
 use stead_simulation::outcome::{EvaluationSettings, PassFigures, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::setup::Setup;
-use stead_simulation::stability_analysis::linear_at;
+use stead_simulation::stability_analysis::{AnalysisSettings, linear_at};
 
 /// Cutoff of the filter where the file does not say: ISO 21920-3 for a profile of this roughness. m
 const CUTOFF: f64 = 2.5e-3;
@@ -29,6 +29,7 @@ pub(super) fn evaluation_from(
     at: &Place<'_>,
     setup: &Setup,
     cut: &PassCut,
+    analysis: &AnalysisSettings,
 ) -> Result<EvaluationSettings, InputError> {
     let (duration, depth_mm) = (setup.motion.duration(), cut.section.axial_depth * 1e3);
     let window = table.window_s.map(Span::si);
@@ -45,6 +46,7 @@ pub(super) fn evaluation_from(
         window,
         height: table.wall_height_mm.map_or(cut.section.axial_depth / 2.0, Quantity::si),
         cutoff: table.cutoff_mm.map_or(CUTOFF, Quantity::si),
+        analysis_distance: analysis.distance,
     })
 }
 
@@ -100,9 +102,9 @@ pub(super) fn check_step(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result
 }
 
 /// More steps than these are not kept in memory.
-const MOST_STEPS: f64 = 5e6;
+const MAX_STEPS: f64 = 5e6;
 /// Nor is a pass that takes longer. s
-const LONGEST: f64 = 2e4;
+const MAX_DURATION: f64 = 2e4;
 
 /// Refuses a pass that takes so long that its steps cannot be kept.
 ///
@@ -110,10 +112,13 @@ const LONGEST: f64 = 2e4;
 /// [`InputError`] at the feed.
 pub(super) fn check_duration(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result<(), InputError> {
     let duration = setup.motion.duration();
-    let longest = LONGEST.min(MOST_STEPS * cut.step());
+    let longest = MAX_DURATION.min(MAX_STEPS * cut.step());
     if duration <= longest {
         return Ok(());
     }
     let problem = format!("makes a pass of {duration:.3e} s, {:.3e} steps", duration / cut.step());
-    Err(at.error(problem, format!("at most {MOST_STEPS:e} steps and {LONGEST:e} s: a faster feed, or a shorter pass")))
+    Err(at.error(
+        problem,
+        format!("at most {MAX_STEPS:e} steps and {MAX_DURATION:e} s: a faster feed, or a shorter pass"),
+    ))
 }

@@ -98,7 +98,7 @@ fn read(file: &Path, overrides: &Overrides, steps_are_made: bool) -> Result<Simu
         check_duration(&setup, &cut, &at.key("pass").key("feed_mm_per_min"))?;
     }
     let published = file.published.map(|table| table.published(setup.variant));
-    let evaluation = evaluation_from(&settings, &settings_at, &setup, &cut)?;
+    let evaluation = evaluation_from(&settings, &settings_at, &setup, &cut, &analysis)?;
     Ok(SimulationRun { setup, cutter, cut, gap: file.work.gap_mm.si(), evaluation, analysis, published, inputs })
 }
 

@@ -92,6 +92,22 @@ concave_corners = 'right'
             assert_refused(read(&TEXT.replacen(from, to, 1)), &parts);
         }
     }
+
+    /// The order of the lists is that in which the teeth pass (what each pitch is counted from: `milling::tests` of the simulation).
+    #[test]
+    fn pitches_and_radii_are_those_of_the_teeth_in_their_order() {
+        let listed = "teeth = 3\npitch_deg = [100, 120, 140]\nrunout_um = [6, 0, -4]";
+        let cutter = read(&TEXT.replace("teeth = 4", listed)).unwrap().cutter;
+        let found: Vec<[f64; 2]> =
+            cutter.teeth().iter().map(|tooth| [tooth.pitch.to_degrees(), tooth.radius]).collect();
+        for (found, expected) in found.iter().zip([[100.0, 8.006e-3], [120.0, 8e-3], [140.0, 7.996e-3]]) {
+            assert!((found[0] - expected[0]).abs() < 1e-12 && (found[1] - expected[1]).abs() < 1e-15, "{found:?}");
+        }
+        // The second tooth passes 120 deg after the first, and the first 100 deg after the third.
+        let offsets: Vec<f64> = cutter.offsets().iter().map(|offset| offset.to_degrees().round()).collect();
+        assert_eq!(offsets, [0.0, 120.0, 260.0]);
+    }
+
     #[test]
     fn the_radial_coefficient_is_given_by_itself_or_over_the_tangential_one() {
         assert_eq!(read(&TEXT.replace("kr = 0.4", "kr_mpa = 320")).unwrap(), read(TEXT).unwrap());

@@ -5,6 +5,11 @@ use super::rotation::Rotation;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+/// Pitches that differ by less are equal. rad
+const SAME_PITCH: f64 = 1e-9;
+/// Likewise radii. m
+const SAME_RADIUS: f64 = 1e-9;
+
 /// One tooth of a cutter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Tooth {
@@ -162,6 +167,31 @@ impl Cutter {
         self.teeth.iter().fold(f64::INFINITY, |smallest, tooth| tooth.radius.min(smallest))
     }
 
+    /// Whether the edges of the teeth differ in their radii.
+    pub fn has_runout(&self) -> bool {
+        self.largest_radius() - self.smallest_radius() > SAME_RADIUS
+    }
+
+    /// How often in a turn the pitches of the teeth repeat: as often as there are teeth, where they are equal.
+    pub fn repeats(&self) -> usize {
+        self.repeats_by(|a, b| (a.pitch - b.pitch).abs() < SAME_PITCH)
+    }
+
+    /// How often in a turn the teeth repeat in pitch and radius: after this part of a turn a cut without chatter is the same
+    /// again.
+    pub fn repeats_with_runout(&self) -> usize {
+        self.repeats_by(|a, b| (a.pitch - b.pitch).abs() < SAME_PITCH && (a.radius - b.radius).abs() < SAME_RADIUS)
+    }
+
+    fn repeats_by(&self, are_alike: impl Fn(&Tooth, &Tooth) -> bool) -> usize {
+        let count = self.teeth.len();
+        let is_period = |period: &usize| {
+            count.is_multiple_of(*period)
+                && (0..count).all(|k| are_alike(&self.teeth[k], &self.teeth[(k + period) % count]))
+        };
+        (1..=count).find(is_period).map_or(1, |period| count / period)
+    }
+
     /// How far each tooth passes after the first one. rad
     pub fn offsets(&self) -> Vec<f64> {
         let followers = self.teeth.iter().skip(1).scan(0.0, |sum, tooth| {
@@ -180,4 +210,30 @@ impl Cutter {
 /// Whether a number is finite and above 0.
 fn is_length(value: f64) -> bool {
     value > 0.0 && value.is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn teeth_repeat_with_their_pitches_and_with_their_radii() {
+        for (pitches_deg, runout_um, has_runout, by_pitch, by_both) in [
+            (&[180.0, 180.0][..], &[0.0, 0.0][..], false, 2, 2),
+            (&[180.0, 180.0], &[7.0, 7.0], false, 2, 2),
+            (&[180.0, 180.0], &[7.0, 0.0], true, 2, 1),
+            (&[170.0, 190.0], &[0.0, 0.0], false, 1, 1),
+            (&[85.0, 95.0, 85.0, 95.0], &[0.0; 4], false, 2, 2),
+            (&[90.0; 4], &[5.0, 0.0, 5.0, 0.0], true, 4, 2),
+            (&[85.0, 95.0, 85.0, 95.0], &[5.0, 5.0, 0.0, 0.0], true, 2, 1),
+            (&[360.0], &[3.0], false, 1, 1),
+        ] {
+            let tooth =
+                |(pitch, runout): (&f64, &f64)| Tooth { pitch: f64::to_radians(*pitch), radius: 5e-3 + runout * 1e-6 };
+            let teeth = pitches_deg.iter().zip(runout_um).map(tooth).collect();
+            let cutter = Cutter::new(teeth, 0.0, None, Rotation::Clockwise, Coefficients::new(1e9, 0.0, 0.0)).unwrap();
+            let found = (cutter.has_runout(), cutter.repeats(), cutter.repeats_with_runout());
+            assert_eq!(found, (has_runout, by_pitch, by_both), "{pitches_deg:?} {runout_um:?}");
+        }
+    }
 }

@@ -14,7 +14,7 @@ use stead_simulation::roughness::Roughness;
 pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
     let (end, reason) = end_words(&found.run.end);
     let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
-    Document::new(&run.inputs).warnings(&found.warnings).with(json!({
+    Document::new(&run.inputs).notes(&found.notes).warnings(&found.warnings).with(json!({
         "robot": run.setup.robot.name(),
         "variant": run.setup.variant.word(),
         "damping_scale": run.setup.damping_scale,
@@ -28,10 +28,17 @@ pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making)
         "end": end,
         "end_reason": reason,
         "stable": found.is_stable(),
-        "unrest": found.period_variation.map(|period_variation| SHARE.number(period_variation)),
+        "judgement": found.judgement.word(),
+        "unrest": found.turn_variation.map(|variation| SHARE.number(variation)),
+        "unrest_of_teeth_alike": found.period_variation.map(|variation| SHARE.number(variation)),
         "small_motions": {
             "kind": found.verdict.kind().word(),
             "growth_rate_per_s": RATE.number(found.verdict.growth_rate()),
+            "where_stability_looks": {
+                "way_mm": Unit::PLACE_MM.number(run.evaluation.analysis_distance),
+                "kind": found.analysis_verdict.kind().word(),
+                "growth_rate_per_s": RATE.number(found.analysis_verdict.growth_rate()),
+            },
         },
         "window_s": found.window.map(|time| MOMENT_S.number(time)),
         "force_x": forces(0),

@@ -5,8 +5,10 @@ use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_format::SimulationRun;
 use stead_simulation::coupled::End;
+use stead_simulation::judgement::{Judgement, MAX_PERIOD_VARIATION};
 use stead_simulation::outcome::{Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
+use stead_simulation::stability::{Kind, Verdict};
 
 /// Forces in the window and roughness of the wall, beside published figures where there are any; whether the cut stayed calm.
 /// Lines end with a line break.
@@ -23,7 +25,7 @@ pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making)
     );
     text.push_str(&forces(run, found));
     text.push_str(&roughness(run, found));
-    text.push_str(&verdict(found));
+    text.push_str(&verdict(run, found));
     text
 }
 
@@ -68,21 +70,54 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
     format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
 }
 
-fn verdict(found: &Simulation) -> String {
-    let calm = if found.is_stable() { "calm" } else { "unstable" };
+/// How the pass went, what its forces show of it, and what small motions do: in the middle of the work, and where the stability
+/// analysis looks at the arm if that is another answer.
+fn verdict(run: &SimulationRun, found: &Simulation) -> String {
     let (_, reason) = end_words(&found.run.end);
-    let mut text = match (reason, found.period_variation) {
-        (Some(reason), _) => format!("The cut is {calm}: {reason}.\n"),
-        (None, Some(period_variation)) => {
-            format!("The cut is {calm}: forces differ by {} % from turn to turn.\n", figures(period_variation * 100.0))
-        }
-        (None, None) => format!("The cut is {calm}.\n"),
+    let how = match found.judgement {
+        Judgement::Calm => "is calm",
+        Judgement::Chatter(Kind::Flip) => "chatters (flip)",
+        Judgement::Chatter(_) => "chatters (Hopf)",
+        Judgement::Growing(_) => "is unstable, though not for long enough to chatter",
+        Judgement::Marginal => "is at the limit of stability",
+        Judgement::Unsettled => "has not settled",
+        Judgement::Ended if found.verdict.is_stable() => "ended early",
+        Judgement::Ended => "is unstable",
     };
-    let rate = figures(found.verdict.growth_rate().abs());
-    text.push_str(&if found.verdict.is_stable() {
-        format!("Small motions die out, at {rate} per second.\n")
-    } else {
-        format!("Small motions grow ({}), at {rate} per second.\n", found.verdict.kind().word())
-    });
+    let compared = match found.period_teeth {
+        1 => "tooth to tooth".to_owned(),
+        teeth if teeth == run.cutter.teeth().len() => "turn to turn".to_owned(),
+        teeth => format!("one tooth to the next like it, {teeth} teeth later"),
+    };
+    let mut text = match (reason, found.period_variation) {
+        (Some(reason), _) => format!("The cut {how}: {reason}.\n"),
+        (None, Some(variation))
+            if found.judgement == Judgement::Chatter(Kind::Flip) && variation < MAX_PERIOD_VARIATION =>
+        {
+            format!(
+                "The cut {how}: with runout a flip repeats from {compared}, as the forces do to {} %; its growth tells of it.\n",
+                figures(variation * 100.0)
+            )
+        }
+        (None, Some(variation)) => {
+            format!("The cut {how}: forces differ by {} % from {compared}.\n", figures(variation * 100.0))
+        }
+        (None, None) => format!("The cut {how}.\n"),
+    };
+    text.push_str(&small_motions(&found.verdict, ""));
+    if found.verdict.is_stable() != found.analysis_verdict.is_stable() {
+        let place = format!(" {} mm along the pass", figures(run.evaluation.analysis_distance * 1e3));
+        text.push_str(&small_motions(&found.analysis_verdict, &place));
+    }
     text
+}
+
+/// What small motions do at a place.
+fn small_motions(verdict: &Verdict, place: &str) -> String {
+    let rate = figures(verdict.growth_rate().abs());
+    if verdict.is_stable() {
+        format!("Small motions die out{place}, at {rate} per second.\n")
+    } else {
+        format!("Small motions grow{place} ({}), at {rate} per second.\n", verdict.kind().word())
+    }
 }

@@ -144,7 +144,7 @@ fn steel(damping_scale: f64) -> Run {
 #[test]
 fn steel_is_unstable_and_bounded_with_ten_times_the_damping() {
     let [unstable, bounded] = [1.0, 10.0].map(steel);
-    let period_variation = |run: &Run| crate::outcome::period_variation(run, [7.0, 10.0], 90).unwrap();
+    let period_variation = |run: &Run| crate::judgement::period_variation(run, [7.0, 10.0], 90.0).unwrap();
     assert!(period_variation(&unstable) > 0.3, "{}", period_variation(&unstable));
     assert!(period_variation(&bounded) < 0.1, "{}", period_variation(&bounded));
     assert_eq!((unstable.end, bounded.end), (End::Complete, End::Complete));
@@ -190,7 +190,7 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), PassCut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
-    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3 };
+    let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, analysis_distance: 0.005 };
     let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
     let frame = setup.motion.cut_frame(cut.wall(&cutter));
     let verdict_at = |distance: f64| {
@@ -199,5 +199,6 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     };
     assert_eq!(found.verdict, verdict_at(cutter.radius() + 0.06 + 0.005));
     assert_ne!(found.verdict, verdict_at(0.005));
+    assert_eq!(found.analysis_verdict, verdict_at(0.005));
     assert_eq!(found.modes, linear_at(&setup, 0.0).unwrap().modes().unwrap());
 }

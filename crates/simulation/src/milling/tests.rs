@@ -95,6 +95,38 @@ fn a_rigid_arm_gives_the_forces_known_for_aluminium() {
     }
 }
 
+/// Of three teeth with unequal pitches and radii each comes its own pitch after the one before it, and cuts the feed over that
+/// pitch and what it is longer than that one: with the teeth in another order, or each pitch counted to the tooth that follows, both
+/// are others.
+#[test]
+fn each_tooth_follows_the_one_before_it_at_its_own_pitch() {
+    let (pitches, runouts, feed) = ([100.0, 120.0, 140.0], [6e-6, 0.0, -4e-6], 0.3e-3);
+    let cutter = cutter(&pitches, &runouts, 0.0);
+    for (direction, sense) in [(Way::Climb, -1.0), (Way::Conventional, 1.0)] {
+        // A slot, so that a tooth that is ahead of the tool is alone in the work; a step is a degree.
+        let cut = PassCut {
+            section: Cut { radial_depth: 2.0 * RADIUS, ..cut(direction, 1, 360).section },
+            ..cut(direction, 1, 360)
+        };
+        let mut milling = MaterialRemoval::new(&cutter, &cut).unwrap();
+        let chips: Vec<f64> = (0..4 * 360)
+            .map(|step| {
+                let place = [20e-3 + feed * step as f64 / 360.0, RADIUS];
+                let chip = milling.force(step as f64, place).chip;
+                milling.remember(Node { place, motion: [feed / 360.0, 0.0] });
+                chip
+            })
+            .collect();
+        let mut ahead = 360.0 + 90.0 * sense;
+        for tooth in [0, 1, 2] {
+            ahead += if tooth == 0 { 0.0 } else { pitches[tooth] };
+            let chip = feed * pitches[tooth] / 360.0 + runouts[tooth] - runouts[(tooth + 2) % 3];
+            let found = chips[3 * 360 + ahead as usize % 360];
+            assert!((found - chip).abs() < 1e-9, "{direction:?} tooth {}: {found} {chip}", tooth + 1);
+        }
+    }
+}
+
 /// A tool of one tooth that stands still while the tooth cuts and is moved on by the feed while it does not leaves circles. The
 /// chip between two of them is `R + f sin(psi) - sqrt(R^2 - f^2 cos^2(psi))`, or ends at the top of the stock.
 #[test]

@@ -115,7 +115,7 @@ impl<'a> SemiDiscretisation<'a> {
         cut: &'a PassCut,
         intervals: usize,
     ) -> Result<Self, EngagementError> {
-        let repeats = repeats(cutter);
+        let repeats = cutter.repeats();
         let smallest = cutter.teeth().iter().fold(TAU, |smallest, tooth| tooth.pitch.min(smallest));
         let period = intervals.max((2.0 * TAU / smallest).ceil() as usize).div_ceil(repeats);
         let intervals = period * repeats;
@@ -164,16 +164,6 @@ impl<'a> SemiDiscretisation<'a> {
         }
         Some(high)
     }
-}
-
-/// How often in a turn the pitches of the teeth repeat.
-fn repeats(cutter: &Cutter) -> usize {
-    let teeth = cutter.teeth();
-    let repeat = |period: &usize| {
-        teeth.len().is_multiple_of(*period)
-            && (0..teeth.len()).all(|k| (teeth[k].pitch - teeth[(k + period) % teeth.len()].pitch).abs() < 1e-9)
-    };
-    (1..=teeth.len()).find(repeat).map_or(1, |period| teeth.len() / period)
 }
 
 /// What a period does to the states and to the past motions of the tip.
