@@ -1,8 +1,8 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::feasibility::DeflectionMap;
+use super::feasibility::{DeflectionMap, deflection_map};
 use super::lookup::{Accuracy, Shape};
-use super::problem::Placement;
+use super::problem::{Placement, Problem};
 use super::refine::active::ActiveBound;
 use super::sense::Sense;
 use super::sensitivity::ForceSensitivity;
@@ -12,6 +12,7 @@ use serde::Serialize;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -223,8 +224,8 @@ pub struct Refinement {
     /// Convex subproblems solved.
     pub iterations: usize,
     /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit of
-    /// the variables (see [`super::refine`]).
-    pub kkt_residual: f64,
+    /// the variables (see [`super::refine`]); `None` where the refinement was stopped before its end.
+    pub kkt_residual: Option<f64>,
     /// How each round ended.
     pub statuses: Vec<RefinementStatus>,
 }
@@ -253,6 +254,9 @@ pub enum RefinementStatus {
     /// A state of the solution has no derivatives.
     #[error("a point cannot be linearised")]
     NotLinearised,
+    /// The caller stopped it.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// The lookup table that the searches used.
@@ -275,10 +279,8 @@ pub struct Outcome {
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.
     pub refinements: Vec<Refinement>,
-    /// Deflection map at the best placement.
-    pub map_best: DeflectionMap,
-    /// Deflection map at the worst placement.
-    pub map_worst: DeflectionMap,
+    /// Deflection maps at the best and at the worst placement, where they were made ([`Outcome::map`]).
+    pub maps: Option<[DeflectionMap; 2]>,
     /// Placements evaluated.
     pub evaluations: usize,
     /// States (path point, beta, all postures) evaluated.
@@ -291,4 +293,21 @@ pub struct Outcome {
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
+}
+
+impl Outcome {
+    /// Makes the deflection maps at the best and at the worst placement. A stop may leave them out, which is then among the warnings.
+    pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
+        let Cases { best, worst, .. } = &self.cases;
+        let map = |case: &Case| deflection_map(problem, &case.placement, monitor);
+        self.maps = map(best).zip(map(worst)).map(<[DeflectionMap; 2]>::from);
+        if self.maps.is_none() {
+            self.warnings.push(left_out("the deflection maps are"));
+        }
+    }
+}
+
+/// The warning that the caller's stop left something out.
+pub fn left_out(what: &str) -> Warning {
+    Warning::new("interrupted", format!("interrupted: {what} left out"))
 }
