@@ -1,7 +1,7 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
 use stead_assessment::roundness::Sector;
-use stead_format::{FASTEST_RPM, GAPS_ALLOWED, MOST_DAMPING_SCALE};
+use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
 use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
 
@@ -11,13 +11,13 @@ pub(super) fn variant(text: &str) -> Result<Variant, String> {
 }
 
 pub(super) fn damping_scale(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number from 0 to {MOST_DAMPING_SCALE}");
-    finite(text).ok().filter(|scale| (0.0..=MOST_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
+    let allowed = || format!("allowed: a number from 0 to {MAX_DAMPING_SCALE}");
+    finite(text).ok().filter(|scale| (0.0..=MAX_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
 }
 
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number above 0 and not above {FASTEST_RPM}");
-    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= FASTEST_RPM).ok_or_else(allowed)
+    let allowed = || format!("allowed: a number above 0 and not above {MAX_SPINDLE_SPEED_RPM}");
+    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= MAX_SPINDLE_SPEED_RPM).ok_or_else(allowed)
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {

@@ -50,5 +50,5 @@ pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify};
-pub use simulation::{MOST_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
-pub use tool::FASTEST_RPM;
+pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use tool::MAX_SPINDLE_SPEED_RPM;

@@ -20,11 +20,13 @@ pub struct Imported {
 const REQUIRED: [&str; 10] =
     ["segment", "x_mm", "y_mm", "z_mm", "feed_x", "feed_y", "feed_z", "axis_x", "axis_y", "axis_z"];
 const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
+const NORMAL: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
 const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
 
 /// Reads a tool path: columns `segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z`, optionally
 /// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
-/// `moment_x_nm,moment_y_nm,moment_z_nm`, in any order, all in the workpiece frame.
+/// `moment_x_nm,moment_y_nm,moment_z_nm`, and `normal_x,normal_y,normal_z`, the normal of the surface that is cut; in any order,
+/// all in the workpiece frame.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value that is
@@ -44,6 +46,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let columns = Columns::find(file, &table)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
+    let mut normals = columns.normal.map(|_| Vec::new());
     let mut lines = Vec::new();
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
@@ -53,9 +56,16 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
             let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| vector(&row, moment))?;
             wrenches.push(Wrench { force: vector(&row, force)?, moment });
         }
+        if let (Some(normals), Some(normal)) = (normals.as_mut(), columns.normal) {
+            normals.push(vector(&row, normal)?);
+        }
         lines.push(row.line());
     }
-    let path = ToolPath::new(points).map_err(|e| locate(file, &lines, &e))?;
+    let path = ToolPath::new(points).and_then(|path| match normals {
+        Some(normals) => path.with_surface_normals(normals),
+        None => Ok(path),
+    });
+    let path = path.map_err(|e| locate(file, &lines, &e))?;
     Ok(Imported { path, wrenches, lines })
 }
 
@@ -64,11 +74,12 @@ struct Columns {
     required: [usize; 10],
     force: Option<[usize; 3]>,
     moment: Option<[usize; 3]>,
+    normal: Option<[usize; 3]>,
 }
 
 impl Columns {
     fn find(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
-        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT);
+        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL);
         let fail = |column: &str, problem: &str| {
             InputError::new(file, problem)
                 .at_line(1)
@@ -101,11 +112,11 @@ impl Columns {
                 }
             }
         };
-        let (force, moment) = (group(FORCE)?, group(MOMENT)?);
+        let (force, moment, normal) = (group(FORCE)?, group(MOMENT)?, group(NORMAL)?);
         if moment.is_some() && force.is_none() {
             return Err(fail(FORCE[0], "missing column: moments need forces beside them"));
         }
-        Ok(Self { required, force, moment })
+        Ok(Self { required, force, moment, normal })
     }
 }
 
@@ -120,7 +131,7 @@ fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
 /// A broken rule of the path, at its line of the file.
 fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
     let (point, field, found, allowed) = match error {
-        TaskError::Empty | TaskError::Wrenches { .. } => {
+        TaskError::Empty | TaskError::Wrenches { .. } | TaskError::Normals { .. } => {
             return InputError::new(file, error.to_string()).allowed("at least one row under the header");
         }
         TaskError::NotFinite { point, field } => (*point, *field, None, "finite numbers".to_owned()),

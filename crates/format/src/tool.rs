@@ -20,13 +20,13 @@ use std::ops::Bound::{Excluded, Included};
 use stead_model::cutting::{MillingDirection, Rotation, Side};
 
 /// Speeds beyond this are those of no spindle. rpm
-pub const FASTEST_RPM: f64 = 1e6;
+pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
 
 ranges! {
     /// An entering angle. deg
     EnteringAngle: Excluded(0.0), Excluded(180.0);
     /// A speed that a spindle may have. 1/min
-    SpindleSpeed: Excluded(0.0), Included(FASTEST_RPM);
+    SpindleSpeed: Excluded(0.0), Included(MAX_SPINDLE_SPEED_RPM);
 }
 
 words!(Rotation: "clockwise" => Rotation::Clockwise, "counterclockwise" => Rotation::Counterclockwise);

@@ -2,6 +2,7 @@
 //! the monitor of long jobs.
 
 pub mod digits;
+pub mod mean_max;
 pub mod message;
 pub mod monitor;
 pub mod rotation;

@@ -28,6 +28,8 @@ pub enum ConstraintKind {
     BetaRate,
     /// The largest score of a point.
     MaxDeflection,
+    /// The smallest distance of a path point from axis 1.
+    BaseDistance,
     /// The bounds of the cell on x, y and z.
     CellPosition,
     /// The bounds of the cell on the yaw.
@@ -45,6 +47,7 @@ impl ConstraintKind {
             Self::Conditioning => "conditioning".to_owned(),
             Self::BetaRate => "beta_rate".to_owned(),
             Self::MaxDeflection => "deflection".to_owned(),
+            Self::BaseDistance => "base_distance".to_owned(),
             Self::CellPosition => "cell_position".to_owned(),
             Self::CellYaw => "cell_yaw".to_owned(),
         }
@@ -59,6 +62,7 @@ impl Problem {
         kinds.extend((1..=6).map(JointLimit));
         kinds.extend([Conditioning, BetaRate]);
         kinds.extend(self.constraints.max_deflection.map(|_| MaxDeflection));
+        kinds.extend((self.constraints.min_base_distance > 0.0).then_some(BaseDistance));
         kinds.push(CellPosition);
         kinds.extend((!self.cell.is_yaw_free()).then_some(CellYaw));
         kinds
@@ -96,6 +100,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
             Conditioning => Some("conditioning"),
             BetaRate => Some("rate of beta"),
             MaxDeflection => Some("max_deflection_mm"),
+            BaseDistance => Some("distance of the path from axis 1"),
             CellPosition => Some("bounds of x, y and z"),
             CellYaw => Some("which yaw goes with which x and y"),
         }
@@ -117,8 +122,9 @@ mod tests {
         assert_eq!(relaxed(&problem, &problem.constraint_kinds()), []);
         let in_force = problem.constraint_kinds().len();
         problem.constraints.max_deflection = Some(1e-3);
+        problem.constraints.min_base_distance = 0.3;
         problem.cell.yaw.max = 1.0;
-        assert_eq!(problem.constraint_kinds().len(), in_force + 2);
+        assert_eq!(problem.constraint_kinds().len(), in_force + 3);
         let all = relaxed(&problem, &[]);
         // The joints' limits are one name, and so are their steps and turns.
         assert_eq!(describe(&all).len(), all.len() - 6);
@@ -132,6 +138,7 @@ mod tests {
     fn shortcuts_declare_what_they_relax() {
         let mut problem = five_segments();
         problem.constraints.max_deflection = Some(1e-3);
+        problem.constraints.min_base_distance = 0.3;
         use ConstraintKind::*;
         let batch = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
         assert_eq!(batch.relaxed(), [JointStep, JointTurn, BetaRate, CellPosition]);

@@ -74,12 +74,12 @@ fn distinct<'s>(
 const CANDIDATES: usize = 3;
 
 impl<'a> Evaluator<'a> {
-    /// Looks through the table, if there is one; it must be for the planner's problem.
+    /// Scores candidates by the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
         Self { planner, table, grid: BetaGrid::of(planner) }
     }
 
-    /// The same, looking through the table on a grid of beta that many times finer than the planner's.
+    /// The same, reading the table on a grid of beta that many times finer than the planner's.
     pub fn with_finer_lookup(mut self, parts: usize) -> Self {
         self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
         self

@@ -174,14 +174,14 @@ pub fn diagnose(
         let kinds: Vec<ConstraintKind> = explanation.violations.iter().map(Measured::kind).collect();
         let severity = explanation.severity();
         let nearest = Nearest { point, beta, posture: explanation.posture, violations: explanation.violations };
-        if let Some((least, last)) = findings.last_mut()
+        if let Some((lowest, last)) = findings.last_mut()
             && last.segment == segment
             && last.points.1 + 1 == point
             && last.nearest.as_ref().is_some_and(|n| n.violations.iter().map(Measured::kind).eq(kinds.iter().copied()))
         {
             last.points.1 = point;
-            if severity < *least {
-                *least = severity;
+            if severity < *lowest {
+                *lowest = severity;
                 last.nearest = Some(nearest);
             }
         } else {

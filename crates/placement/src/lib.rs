@@ -2,6 +2,7 @@
 //!
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
+//! - [`criterion`]: which part of the deflection is scored, and how points make up one figure.
 //! - [`constraints`]: what a plan must satisfy, by kind, with signed margins.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
 //! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
@@ -18,6 +19,7 @@
 pub mod candidate;
 pub mod certify;
 pub mod constraints;
+pub mod criterion;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
@@ -37,6 +39,7 @@ pub mod transfer;
 pub mod testing {
     //! The problem of Caro 2013 for the tests of this crate and of those above.
     #![allow(clippy::unwrap_used)]
+    use super::criterion::Criterion;
     use super::problem::*;
     use nalgebra::{DMatrix, Vector3};
     use std::f64::consts::PI;
@@ -55,7 +58,11 @@ pub mod testing {
                 position: [interval(-0.3, 0.3), interval(-2.24, -1.64), interval(-0.602, -0.214)],
                 yaw: interval(-PI, PI),
             },
-            constraints: Constraints { min_inverse_condition: 0.2, characteristic_length: 0.682, max_deflection: None },
+            constraints: Constraints {
+                min_inverse_condition: 0.2,
+                characteristic_length: 0.682,
+                ..Constraints::default()
+            },
             criterion: Criterion::default(),
             redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
         }

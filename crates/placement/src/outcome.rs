@@ -6,7 +6,9 @@ use super::problem::Placement;
 use super::sense::Sense;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
+use serde::Serialize;
 use stead_model::robot::Posture;
+use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 
 /// One path point of a plan.
@@ -36,10 +38,42 @@ pub struct PlanPoint {
     pub normal_part: f64,
     /// Part along the tool axis, positive towards the robot. m
     pub axial_part: f64,
-    /// What the point counts: |normal part|, what force errors can add to it, and what it counts for its deviation. m
+    /// Part along the normal of the surface, where the task states that. m
+    pub surface_part: Option<f64>,
+    /// The score: the size of the scored part, what force errors can add to it, and what is added for its deviation. m
     pub score: f64,
-    /// Standard deviation of the normal part, where the robot's uncertainty is known. m
+    /// Standard deviation of the scored part, where the robot's uncertainty is known. m
     pub deviation: Option<f64>,
+}
+
+/// How large the deflection is along a path, in each direction and altogether.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DeflectionFigures {
+    /// Normal to the wall, axis x feed. m
+    pub wall: MeanAndMax,
+    /// Normal to the surface, where the task states that. m
+    pub surface: Option<MeanAndMax>,
+    /// Along the feed. m
+    pub feed: MeanAndMax,
+    /// Along the tool axis. m
+    pub axis: MeanAndMax,
+    /// The size of the whole. m
+    pub total: MeanAndMax,
+}
+
+impl DeflectionFigures {
+    /// Those of the points of a plan.
+    pub fn of(points: &[PlanPoint]) -> Self {
+        let figures = |of: &dyn Fn(&PlanPoint) -> f64| MeanAndMax::of(points.iter().map(|point| of(point).abs()));
+        let surface: Option<Vec<f64>> = points.iter().map(|point| point.surface_part.map(f64::abs)).collect();
+        Self {
+            wall: figures(&|point| point.normal_part),
+            surface: surface.map(MeanAndMax::of),
+            feed: figures(&|point| point.feed_part),
+            axis: figures(&|point| point.axial_part),
+            total: figures(&|point| point.deflection.norm()),
+        }
+    }
 }
 
 /// A redundancy plan with its posture scheme, for one placement.
@@ -49,11 +83,17 @@ pub struct Plan {
     pub points: Vec<PlanPoint>,
     /// Posture of each segment.
     pub postures: Vec<Posture>,
-    /// f_MQC: mean of the scores (Caro 2013, eq. 13). m
+    /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)); by default the mean. m
+    pub objective: f64,
+    /// Mean of the scores: f_MQC (Caro 2013, eq. 13). m
     pub mean: f64,
     /// Largest score. m
     pub max: f64,
-    /// Standard deviation of the mean of |normal part|, where the robot's uncertainty is known: the points err together, so
+    /// The scores that half of the points, and 95 of 100, do not exceed. m
+    pub percentiles: [f64; 2],
+    /// The deflection itself.
+    pub deflection: DeflectionFigures,
+    /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err together, so
     /// that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
 }
@@ -101,7 +141,7 @@ impl Cases {
         [&self.best, &self.best_worst_plan, &self.worst, &self.worst_worst_plan]
     }
 
-    /// Mean deflection of a case over that of the first; `None` where the first is a cancellation.
+    /// Mean score of a case over that of the first; `None` where the first is a cancellation.
     pub fn ratio(&self, case: &Case) -> Option<f64> {
         (self.best.plan.mean > CANCELLATION).then(|| case.plan.mean / self.best.plan.mean)
     }
@@ -207,12 +247,12 @@ pub enum RefinementStatus {
     NotLinearised,
 }
 
-/// What a search looked through.
+/// The lookup table that the searches used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LookupSummary {
     /// What was sampled where.
     pub shape: Shape,
-    /// How far it is from the ordinary evaluator.
+    /// How far it is from the reference evaluator.
     pub accuracy: Accuracy,
 }
 
@@ -221,7 +261,7 @@ pub struct LookupSummary {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
-    /// The table that the searches looked through, or why there is none; `None` where none was asked for.
+    /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,

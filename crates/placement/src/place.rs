@@ -1,22 +1,26 @@
 //! The placement job: search, refine, plan, map.
 
 use super::candidate::Candidate;
-use super::evaluate::reference::{normal_part_by_parameters, state};
+use super::criterion::Criterion;
+use super::evaluate::reference::{scored_part_by_parameters, state};
 use super::evaluator::Evaluator;
 use super::feasibility::{Finding, deflection_map, diagnose};
 use super::lookup::LookupTable;
-use super::outcome::{CANCELLATION, Case, Cases, LookupSummary, Outcome, Plan, PlanPoint, Refinement};
-use super::problem::{Criterion, Placement, Problem};
+use super::outcome::{
+    CANCELLATION, Case, Cases, DeflectionFigures, LookupSummary, Outcome, Plan, PlanPoint, Refinement,
+};
+use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
 use super::refine::{Solution, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
-use super::settings::{SearchSettings, Tables, TransferSettings};
+use super::settings::{LookupUse, SearchSettings, TransferSettings};
 use super::symmetry::Unsupported;
 use super::transfer::cycle;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::mean_max::percentile;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -73,8 +77,8 @@ pub fn place(
 ) -> Result<Outcome, Infeasible> {
     let planner = Planner::new(problem);
     let table = match settings.tables {
-        Tables::Auto | Tables::Always => Some(LookupTable::new(problem)),
-        Tables::Never => None,
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::new(problem)),
+        LookupUse::Never => None,
     };
     let mut lookup_summary = table.as_ref().map(|table| match table {
         Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
@@ -124,7 +128,7 @@ pub fn place(
             cycle: cycle(problem, transfer, &plans),
         }
     };
-    let mean = best.solution.mean();
+    let mean = best.solution.objective;
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     Ok(Outcome {
         cases: Cases {
@@ -184,7 +188,7 @@ pub fn score(problem: &Problem, placement: &Placement) -> Result<Score, Infeasib
     else {
         return Err(infeasible(&planner, placement, None, false));
     };
-    let warnings = cancellation(problem, best.mean()).into_iter().collect();
+    let warnings = cancellation(problem, best.objective).into_iter().collect();
     Ok(Score {
         placement: *placement,
         best: detailed(problem, placement, &best.plans),
@@ -232,7 +236,7 @@ fn refine_basins(
     let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
     let mut results = run(&ahead, jobs.len());
     let can_win = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
-        let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.mean());
+        let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.objective);
         match (evaluator.table(), first, candidate.objective.mean()) {
             (Some(_), Some(first), Some(mean)) => match sense {
                 Sense::Min => mean * (1.0 - MAX_DEFICIT) < first,
@@ -252,8 +256,8 @@ fn refine_basins(
         refinements.extend(report);
         let slot = &mut chosen[usize::from(sense == Sense::Max)];
         let better = slot.as_ref().is_none_or(|known| match sense {
-            Sense::Min => refined.solution.mean() < known.solution.mean() * (1.0 - TIE),
-            Sense::Max => refined.solution.mean() > known.solution.mean() * (1.0 + TIE),
+            Sense::Min => refined.solution.objective < known.solution.objective * (1.0 - TIE),
+            Sense::Max => refined.solution.objective > known.solution.objective * (1.0 + TIE),
         });
         if better {
             *slot = Some(refined);
@@ -297,7 +301,7 @@ fn infeasible(planner: &Planner<'_>, placement: &Placement, scheme: Option<&[Pos
     Infeasible { placement: *placement, searched, findings }
 }
 
-/// A plan with everything that there is to say of each point, from the ordinary evaluator.
+/// A plan with everything that there is to say of each point, from the reference evaluator.
 fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
     let mut points = Vec::with_capacity(problem.task.points().len());
     let known = problem.robot.uncertainty();
@@ -306,8 +310,8 @@ fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> 
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = state(problem, point, placement, plan.betas[place], plan.posture) else { continue };
             let placed = problem.placed(point, placement);
-            let sign = if s.normal_part < 0.0 { -1.0 } else { 1.0 };
-            for (sum, slope) in slopes.iter_mut().zip(normal_part_by_parameters(problem, point, placement, &s.joints)) {
+            let sign = if s.scored < 0.0 { -1.0 } else { 1.0 };
+            for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {
                 *sum += sign * slope;
             }
             points.push(PlanPoint {
@@ -323,6 +327,7 @@ fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> 
                 feed_part: s.feed_part,
                 normal_part: s.normal_part,
                 axial_part: s.axial_part,
+                surface_part: s.surface_part,
                 score: s.score(),
                 deviation: s.deviation,
             });
@@ -330,8 +335,11 @@ fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> 
     }
     Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
+        objective: problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score))),
         mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
         max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        percentiles: [0.5, 0.95].map(|share| percentile(points.iter().map(|p| p.score), share)),
+        deflection: DeflectionFigures::of(&points),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
         points,
     }

@@ -1,5 +1,6 @@
 //! The placement problem: what may vary, what must hold, and what a placement is.
 
+use super::criterion::Criterion;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
@@ -159,7 +160,7 @@ pub struct PlacedPoint<T: Scalar = f64> {
 }
 
 /// What every point of a plan must satisfy, joint limits apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Constraints {
     /// Smallest 1/kappa_F (Caro 2013, eq. 26).
     pub min_inverse_condition: f64,
@@ -167,18 +168,10 @@ pub struct Constraints {
     pub characteristic_length: f64,
     /// Largest score of a point, c_max (Caro 2013, eq. 22), where one is set. m
     pub max_deflection: Option<f64>,
-}
-
-/// How a point is scored.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Criterion {
-    /// Relative size eps of the force error in any direction that a score must cover: the score is
-    /// `c_i + eps |w| |K^-1 n|`, the worst case over all such errors. Zero gives eq. 11 as published.
-    pub force_uncertainty: f64,
-    /// How many standard deviations sigma_i of c_i a score must cover, from the uncertainty of the robot's compliances: this
-    /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
-    /// uncertainty is not known.
-    pub confidence: f64,
+    /// Smallest distance of any path point from axis 1, so that no workpiece stands in the robot's column. m
+    pub min_base_distance: f64,
+    /// The margin that the limits of the robot's joints have in them already ([`Robot::with_joint_margin`]). rad
+    pub joint_margin: f64,
 }
 
 /// How the free angle beta about the tool axis is planned.
@@ -198,10 +191,10 @@ impl Redundancy {
         TAU / self.beta_count as f64
     }
 
-    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `most`
+    /// The same planning on the grid of beta divided by the smallest whole number that makes its step no wider than `max_step`
     /// (rad): every state of the old grid is one of the new.
-    pub fn divided(&self, most: f64) -> Self {
-        let parts = (self.beta_step() / most - 1e-9).ceil().max(1.0) as usize;
+    pub fn divided(&self, max_step: f64) -> Self {
+        let parts = (self.beta_step() / max_step - 1e-9).ceil().max(1.0) as usize;
         Self { beta_count: self.beta_count * parts, ..*self }
     }
 
@@ -227,7 +220,7 @@ pub struct Problem {
     pub cell: Cell,
     /// What every point must satisfy.
     pub constraints: Constraints,
-    /// How a point is scored.
+    /// What is minimised.
     pub criterion: Criterion,
     /// How beta is planned.
     pub redundancy: Redundancy,
@@ -260,6 +253,21 @@ impl Problem {
             force: workpiece.rotation * cast(&wrench.force),
             moment: workpiece.rotation * cast(&wrench.moment),
         }
+    }
+
+    /// Distance of a point given in the base frame from axis 1. m
+    pub fn base_distance<T: Scalar>(&self, position: &Vector3<T>) -> T {
+        let g = self.robot.geometry();
+        let from_root = position - cast(&g.root_in_base);
+        let axis = cast(&g.base_from_root.column(2).into_owned());
+        let across = from_root - axis * from_root.dot(&axis);
+        across.dot(&across).sqrt()
+    }
+
+    /// The normal of the surface at a path point in the base frame, with the workpiece placed, where the task states it.
+    pub fn surface_normal<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> Option<Vector3<T>> {
+        let normals = self.task.path().surface_normals()?;
+        Some(placement.base_from_workpiece().rotation * cast(&normals[point]))
     }
 
     /// The feed at every path point in the base frame, with the workpiece placed.

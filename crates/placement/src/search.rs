@@ -255,11 +255,11 @@ fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluation
     }
 }
 
-/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `most`.
-pub fn distinct(cell: &Cell, sorted: &[Candidate], most: usize) -> Vec<Candidate> {
+/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `max_count`.
+pub fn distinct(cell: &Cell, sorted: &[Candidate], max_count: usize) -> Vec<Candidate> {
     let mut basins: Vec<Candidate> = Vec::new();
     for candidate in sorted {
-        if basins.len() == most {
+        if basins.len() == max_count {
             break;
         }
         let is_new = basins.iter().all(|known| {

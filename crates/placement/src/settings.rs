@@ -11,7 +11,7 @@ pub enum PostureSearch {
 
 /// Whether the search uses a lookup table ([`super::lookup`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Tables {
+pub enum LookupUse {
     /// Where the task allows it and the table fits in memory.
     Auto,
     /// As a wish: a task that does not allow it is refused when it is read.
@@ -34,7 +34,7 @@ pub struct SearchSettings {
     /// Distinct basins of each search that are refined, at least 1.
     pub basins: usize,
     /// Whether to use a lookup table.
-    pub tables: Tables,
+    pub tables: LookupUse,
 }
 
 impl Default for SearchSettings {
@@ -46,7 +46,7 @@ impl Default for SearchSettings {
             generations: 51,
             postures: PostureSearch::Exact,
             basins: 4,
-            tables: Tables::Auto,
+            tables: LookupUse::Auto,
         }
     }
 }
@@ -85,7 +85,7 @@ impl CertificateSettings {
     /// than everything.
     pub fn gap(percent: f64) -> Option<f64> {
         // A number such as 0.0001 may come out a little low.
-        let least = Self::MIN_GAP * (1.0 - 1e-12);
-        Some(percent / 100.0).filter(|gap| (least..1.0).contains(gap))
+        let min = Self::MIN_GAP * (1.0 - 1e-12);
+        Some(percent / 100.0).filter(|gap| (min..1.0).contains(gap))
     }
 }

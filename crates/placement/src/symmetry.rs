@@ -5,6 +5,7 @@
 //! of the tool centre point, heading of the spindle against its azimuth, and posture class. The lookup table
 //! ([`super::lookup`]) and the certificate ([`super::certify`]) rest on this.
 
+use super::criterion::{Aggregate, Criterion, Weights};
 use super::problem::{Placement, Problem};
 use nalgebra::Vector3;
 use stead_model::robot::Compliance;
@@ -44,6 +45,12 @@ pub enum Unsupported {
     /// Scores cover errors of the compliances.
     #[error("scores cover errors of the compliances (criterion.confidence)")]
     UncertainCompliances,
+    /// Something else than the mean deflection normal to the wall is minimised.
+    #[error("it covers the mean of the deflection normal to the wall alone, and not another {key}")]
+    OtherCriterion {
+        /// What is different: a key of the table `[criterion]`, or the weights of segments.
+        key: &'static str,
+    },
     /// The bound on conditioning lets the arm come so near to its singularities that nothing can be bounded.
     #[error(
         "constraints.min_inverse_condition must be at least {needed:.3}: nearer to a singularity nothing can be bounded"
@@ -111,6 +118,21 @@ impl Upright {
 pub(super) fn require_constant(problem: &Problem, joints: &[usize]) -> Result<(), Unsupported> {
     let is_law = |j: &&usize| !matches!(problem.robot.joints()[**j].compliance, Compliance::Constant(_));
     joints.iter().find(is_law).map_or(Ok(()), |joint| Err(Unsupported::VaryingCompliance { joint: joint + 1 }))
+}
+
+/// Requires that the mean of the deflection normal to the wall is minimised, whatever the weights of the segments.
+///
+/// # Errors
+/// [`Unsupported::OtherCriterion`] where it is not.
+pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
+    let Criterion { weights, aggregate, .. } = &problem.criterion;
+    if *weights != Weights::WALL {
+        Err(Unsupported::OtherCriterion { key: "criterion.direction" })
+    } else if *aggregate != Aggregate::Mean {
+        Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
+    } else {
+        Ok(())
+    }
 }
 
 /// Requires scores to leave out the uncertainty of the compliances.

@@ -3,6 +3,8 @@
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_format::input::InputFile;
+use stead_numerics::mean_max::MeanAndMax;
+use stead_placement::outcome::DeflectionFigures;
 use stead_placement::problem::Placement;
 
 /// How long a computation took.
@@ -80,6 +82,32 @@ pub fn placement(placement: &Placement) -> Value {
         "z_mm": Unit::PLACE_MM.number(placement.z),
         "q4": Unit::PLAIN.number(placement.q4()),
         "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
+    })
+}
+
+/// The same with every digit, so that whoever reads it again has the same placement.
+pub fn placement_exact(placement: &Placement) -> Value {
+    json!({
+        "x_mm": placement.x * 1e3,
+        "y_mm": placement.y * 1e3,
+        "z_mm": placement.z * 1e3,
+        "yaw_deg": placement.yaw.to_degrees(),
+    })
+}
+
+/// Mean and largest value of a deflection.
+fn mean_and_max(figures: &MeanAndMax) -> Value {
+    json!({ "mean": Unit::DEFLECTION_MM.number(figures.mean), "max": Unit::DEFLECTION_MM.number(figures.max) })
+}
+
+/// How large a deflection is in each direction and altogether, in mm; a surface that the task does not state is null.
+pub fn deflection_mm(figures: &DeflectionFigures) -> Value {
+    json!({
+        "wall": mean_and_max(&figures.wall),
+        "surface": figures.surface.as_ref().map_or(Value::Null, mean_and_max),
+        "feed": mean_and_max(&figures.feed),
+        "axis": mean_and_max(&figures.axis),
+        "total": mean_and_max(&figures.total),
     })
 }
 

@@ -151,7 +151,16 @@ impl Grid {
         }
         let scores = || points.iter().map(|point: &PlanPoint| point.score);
         let (mean, max) = (scores().sum::<f64>() / points.len() as f64, scores().fold(0.0, f64::max));
-        let plan = Plan { postures, mean, max, mean_deviation: None, points };
+        let plan = Plan {
+            postures,
+            objective: mean,
+            mean,
+            max,
+            percentiles: [0.8 * mean, max],
+            deflection: DeflectionFigures::of(&points),
+            mean_deviation: None,
+            points,
+        };
         let transfer = |k: usize| {
             let duration =
                 (placement_sense == Sense::Min || plan_sense == Sense::Min || k != 2).then_some(0.4 * k as f64);
@@ -201,6 +210,7 @@ impl Grid {
             feed_part: state.feed_part,
             normal_part: state.normal_part,
             axial_part: state.axial_part,
+            surface_part: None,
             score: state.score(),
             deviation: state.deviation,
         }

@@ -21,7 +21,8 @@ mod outcome;
 #[cfg(test)]
 mod tests;
 
-pub use outcome::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, NotCompensated, PointError, reduction};
+pub use outcome::{CompensatedPath, CompensatedPoint, Deflection, NotCompensated, PointError, reduction};
+pub use stead_numerics::mean_max::MeanAndMax;
 
 use nalgebra::Vector3;
 use rayon::prelude::*;

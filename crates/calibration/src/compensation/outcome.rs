@@ -5,6 +5,7 @@ use serde::Serialize;
 use std::fmt;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
+use stead_numerics::mean_max::MeanAndMax;
 
 /// Where the loaded tool rests, seen from the target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -45,20 +46,10 @@ pub struct CompensatedPath {
     pub points: Vec<CompensatedPoint>,
 }
 
-/// Mean and largest value over the points of a path.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct MeanAndMax {
-    /// Mean. m
-    pub mean: f64,
-    /// Largest value. m
-    pub max: f64,
-}
-
 impl CompensatedPath {
     /// Figures of a magnitude over the points.
     pub fn figures(&self, value: impl Fn(&CompensatedPoint) -> f64) -> MeanAndMax {
-        let values = || self.points.iter().map(&value);
-        MeanAndMax { mean: values().sum::<f64>() / self.points.len() as f64, max: values().fold(0.0, f64::max) }
+        MeanAndMax::of(self.points.iter().map(value))
     }
 
     /// Deflections before and after.

@@ -1,6 +1,7 @@
 //! Run files.
 
 mod certificate;
+mod criterion;
 mod notes;
 mod stability;
 mod tables;
@@ -8,10 +9,9 @@ mod tables;
 mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
+pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
 pub use stability::PathStabilityTable;
-pub use tables::{
-    CellTable, ConstraintsTable, CriterionTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable,
-};
+pub use tables::{CellTable, ConstraintsTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable};
 
 use crate::document::NamedFile;
 use crate::input::{InputError, InputFile, input_file};
@@ -33,7 +33,7 @@ use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSet
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
-use tables::{check_confidence, check_tables};
+use tables::check_tables;
 
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which its
 /// workpiece may stand.
@@ -52,6 +52,8 @@ pub struct RunFile {
     pub constraints: ConstraintsTable,
     /// By what a placement is scored.
     pub criterion: Option<CriterionTable>,
+    /// Segments of the task that count more or less than the others.
+    pub segment: Option<Vec<SegmentTable>>,
     /// The free rotation of the spindle about the tool axis.
     pub redundancy: RedundancyTable,
     /// How hard to search.
@@ -114,7 +116,6 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
         Some(_) => run.spindle.moving_spindle(&at.key("spindle"))?,
         None => run.spindle.spindle(&at.key("spindle"))?,
     };
-    let criterion = run.criterion.unwrap_or_default().criterion();
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
     let search = run.search.unwrap_or_default().settings();
     let transfer = run.transfer.unwrap_or_default().settings();
@@ -134,7 +135,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
         Some(analysis) => moving_robot_from(&robot_source, analysis.variant >= Variant::Orthogonal)?,
         None => robot_from(&robot_source)?,
     };
-    check_confidence(&criterion, &robot, &at.key("criterion"))?;
+    let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let task_file = task_field.named_file()?;
     let imported = parse_csv(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> =
@@ -145,6 +146,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
         input_file("task", &task_file.name, &task_file.bytes),
     ];
     let task = task_from(imported, &task_file, &task_field, cutting.as_ref(), run.stability.is_some())?;
+    let segments = run.segment.unwrap_or_default();
+    let criterion = run.criterion.unwrap_or_default().criterion(&segments, &robot, &task, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
     check_tables(&search, &problem, &at.key("search"))?;

@@ -5,21 +5,23 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::{Array, Interval};
-use crate::units::{Deg, DegPerMm, Mm, MmPerS, Number, Positive, S, ZeroToTen, ranges};
+use crate::units::{Deg, DegPerMm, Mm, MmPerS, NotNegative, Number, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_model::published::Published;
 use stead_model::robot::{Robot, angles::yaw_from_q4};
 use stead_placement::lookup::LookupTable;
-use stead_placement::problem::{self, Cell, Constraints, Criterion, Problem, Redundancy};
-use stead_placement::settings::{PostureSearch, SearchSettings, Tables, TransferSettings};
+use stead_placement::problem::{self, Cell, Constraints, Problem, Redundancy};
+use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
 
 ranges! {
     /// From -1 to 1.
     PlusMinusOne: Included(-1.0), Included(1.0);
     /// From 0 to below 1.
     BelowOne: Included(0.0), Excluded(1.0);
+    /// A margin of joint angles. deg
+    Margin: Included(0.0), Excluded(180.0);
 }
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
@@ -55,6 +57,10 @@ pub struct ConstraintsTable {
     pub characteristic_length_mm: Mm<Positive>,
     /// Largest deflection of the tool centre point at any path point; no limit where left out.
     pub max_deflection_mm: Option<Mm<Positive>>,
+    /// Distance that every joint keeps from both of its limits; 0 where left out.
+    pub joint_margin_deg: Option<Deg<Margin>>,
+    /// Smallest distance of any path point from axis 1 of the robot, so that no workpiece stands in its column; 0 where left out.
+    pub min_base_distance_mm: Option<Mm<NotNegative>>,
 }
 
 impl ConstraintsTable {
@@ -63,38 +69,24 @@ impl ConstraintsTable {
             min_inverse_condition: self.min_inverse_condition.si(),
             characteristic_length: self.characteristic_length_mm.si(),
             max_deflection: self.max_deflection_mm.map(Quantity::si),
+            min_base_distance: self.min_base_distance_mm.map_or(0.0, Quantity::si),
+            joint_margin: self.joint_margin_deg.map_or(0.0, Quantity::si),
         }
     }
-}
 
-/// By what a placement is scored.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CriterionTable {
-    /// Size of an unknown error of the force, as a share of it, added in the worst direction; 0 where left out.
-    pub force_uncertainty: Option<Number<ZeroToTen>>,
-    /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
-    /// file needs a table `[covariance]`.
-    pub confidence: Option<Number<ZeroToTen>>,
-}
-
-impl CriterionTable {
-    pub(super) fn criterion(&self) -> Criterion {
-        let [force_uncertainty, confidence] =
-            [self.force_uncertainty, self.confidence].map(|value| value.map_or(0.0, Quantity::si));
-        Criterion { force_uncertainty, confidence }
+    /// The robot with the margin taken off the limits of its joints.
+    ///
+    /// # Errors
+    /// [`InputError`] for a margin that leaves nothing of a joint's range.
+    pub(super) fn narrowed(&self, robot: Robot, at: &Place<'_>) -> Result<Robot, InputError> {
+        let Some(margin) = self.joint_margin_deg.filter(|margin| margin.si() > 0.0) else { return Ok(robot) };
+        robot.with_joint_margin(margin.si()).map_err(|e| {
+            let ranges = robot.joints().iter().map(|joint| joint.max - joint.min);
+            let half = (ranges.fold(f64::INFINITY, f64::min) / 2.0).to_degrees();
+            let allowed = format!("less than {half} deg, half the smallest range of a joint");
+            at.key("joint_margin_deg").error(format!("leaves no range: {e}"), allowed)
+        })
     }
-}
-
-/// Refuses a confidence where nothing is known of the errors of the compliances.
-pub(super) fn check_confidence(criterion: &Criterion, robot: &Robot, at: &Place<'_>) -> Result<(), InputError> {
-    if criterion.confidence > 0.0 && robot.uncertainty().is_none() {
-        return Err(at.key("confidence").error(
-            "asks for standard deviations, but the robot file has no table [covariance]",
-            "0, or a robot file that says how well its compliances are known",
-        ));
-    }
-    Ok(())
 }
 
 /// The free rotation of the spindle about the tool axis, beta, along the path.
@@ -136,7 +128,7 @@ impl RedundancyTable {
 }
 
 words!(PostureSearch: "exact" => PostureSearch::Exact, "genetic" => PostureSearch::Genetic);
-words!(Tables: "auto" => Tables::Auto, "always" => Tables::Always, "never" => Tables::Never);
+words!(LookupUse: "auto" => LookupUse::Auto, "always" => LookupUse::Always, "never" => LookupUse::Never);
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -153,7 +145,7 @@ pub struct SearchTable {
     /// Distinct basins of each search that are refined.
     pub basins: Option<Whole<1, 64>>,
     /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
-    pub tables: Option<Word<Tables>>,
+    pub tables: Option<Word<LookupUse>>,
 }
 
 impl SearchTable {
@@ -172,7 +164,7 @@ impl SearchTable {
 
 /// Refuses to promise a lookup table where the problem does not allow one.
 pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
-    if search.tables == Tables::Always
+    if search.tables == LookupUse::Always
         && let Err(unsuited) = LookupTable::shape_for(problem)
     {
         let reason = format!("asks for a table, but there can be none: {unsuited}");
@@ -219,7 +211,7 @@ impl ReferenceTable {
 
 #[cfg(test)]
 mod tests {
-    use super::{PostureSearch, SearchSettings, Tables, TransferSettings};
+    use super::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
     use crate::testing::{RUN, assert_refused, read_text as read};
     use std::f64::consts::PI;
     use stead_placement::problem::Interval;
@@ -237,7 +229,7 @@ mod tests {
         assert_eq!(run.problem.redundancy.beta_count, 50);
         let default = SearchSettings::default();
         let expected = SearchSettings {
-            tables: Tables::Never,
+            tables: LookupUse::Never,
             seed: i64::MAX as u64,
             population: 40,
             postures: PostureSearch::Genetic,

@@ -3,7 +3,7 @@
 use crate::scalars::{Whole, Word};
 use crate::shapes::{Array, Span, Vector};
 use crate::spindle::SpindleTable;
-use crate::tool::{CutTable, FASTEST_RPM, ToolTable};
+use crate::tool::{CutTable, MAX_SPINDLE_SPEED_RPM, ToolTable};
 use crate::units::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,17 +11,17 @@ use std::ops::Bound::{Excluded, Included};
 use stead_simulation::arm::Variant;
 
 /// Damping times more than this is none of an arm.
-pub const MOST_DAMPING_SCALE: f64 = 1e4;
+pub const MAX_DAMPING_SCALE: f64 = 1e4;
 
 ranges! {
     /// A factor on all damping.
-    DampingScale: Included(0.0), Included(MOST_DAMPING_SCALE);
+    DampingScale: Included(0.0), Included(MAX_DAMPING_SCALE);
     /// Length of a pass; more is none of an arm. mm
     PassLength: Excluded(0.0), Included(1e4);
     /// Cutoff of a profile filter. mm
     Cutoff: Included(0.08), Included(25.0);
     /// A spindle speed on an axis of lobes. 1/min
-    LobeSpeed: Included(1.0), Included(FASTEST_RPM);
+    LobeSpeed: Included(1.0), Included(MAX_SPINDLE_SPEED_RPM);
     /// A frequency of a response. Hz
     Frequency: Included(0.0), Included(1e5);
 }

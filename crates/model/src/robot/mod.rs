@@ -33,6 +33,7 @@ mod forward;
 mod geometry;
 mod inertial;
 mod inverse;
+mod margin;
 mod pose;
 pub mod posture;
 mod spindle;

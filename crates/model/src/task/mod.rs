@@ -59,6 +59,7 @@ impl Wrench {
 pub struct ToolPath {
     points: Vec<PathPoint>,
     segments: Vec<Range<usize>>,
+    surface_normals: Option<Vec<Vector3<f64>>>,
 }
 
 /// A tool path with the wrench at every point.
@@ -109,6 +110,14 @@ pub enum TaskError {
         /// The second of the two.
         point: usize,
     },
+    /// There are not as many surface normals as points.
+    #[error("{normals} surface normals for {points} points")]
+    Normals {
+        /// Number of normals.
+        normals: usize,
+        /// Number of points.
+        points: usize,
+    },
     /// Segment numbers do not start at 1 or do not rise by one.
     #[error("point {point}: segment {found} after segment {before}")]
     SegmentOrder {
@@ -142,7 +151,7 @@ impl ToolPath {
     /// # Errors
     /// [`TaskError`] at the first point that breaks a rule.
     pub fn new(points: impl IntoIterator<Item = (u32, PathPoint)>) -> Result<Self, TaskError> {
-        let mut path = Self { points: Vec::new(), segments: Vec::new() };
+        let mut path = Self { points: Vec::new(), segments: Vec::new(), surface_normals: None };
         for (index, (segment, point)) in points.into_iter().enumerate() {
             let point = check_point(index, point)?;
             let before = path.segments.len() as u32;
@@ -159,6 +168,26 @@ impl ToolPath {
             path.points.push(point);
         }
         if path.points.is_empty() { Err(TaskError::Empty) } else { Ok(path) }
+    }
+
+    /// States the normal of the surface to be cut at every point, in the workpiece frame, and makes it exactly unit.
+    ///
+    /// # Errors
+    /// [`TaskError`] where their number is not that of the points, or at the first that is not a unit vector.
+    pub fn with_surface_normals(mut self, mut normals: Vec<Vector3<f64>>) -> Result<Self, TaskError> {
+        if normals.len() != self.points.len() {
+            return Err(TaskError::Normals { normals: normals.len(), points: self.points.len() });
+        }
+        for (point, normal) in normals.iter_mut().enumerate() {
+            *normal = unit(point, "normal", *normal)?;
+        }
+        self.surface_normals = Some(normals);
+        Ok(self)
+    }
+
+    /// The normal of the surface at every point, in the workpiece frame, where the task states them.
+    pub fn surface_normals(&self) -> Option<&[Vector3<f64>]> {
+        self.surface_normals.as_deref()
     }
 
     /// All points, in the order of the cut.
@@ -183,19 +212,24 @@ impl ToolPath {
     }
 }
 
+/// A direction made exactly unit.
+fn unit(point: usize, field: &'static str, vector: Vector3<f64>) -> Result<Vector3<f64>, TaskError> {
+    if vector.iter().any(|v| !v.is_finite()) {
+        return Err(TaskError::NotFinite { point, field });
+    }
+    let length = vector.norm();
+    if (length - 1.0).abs() > UNIT_TOLERANCE {
+        Err(TaskError::NotUnit { point, field, length })
+    } else {
+        Ok(vector / length)
+    }
+}
+
 fn check_point(index: usize, mut point: PathPoint) -> Result<PathPoint, TaskError> {
-    for (field, vector) in [("position", point.position), ("feed", point.feed), ("axis", point.axis)] {
-        if vector.iter().any(|v| !v.is_finite()) {
-            return Err(TaskError::NotFinite { point: index, field });
-        }
+    if point.position.iter().any(|v| !v.is_finite()) {
+        return Err(TaskError::NotFinite { point: index, field: "position" });
     }
-    for (field, vector) in [("feed", &mut point.feed), ("axis", &mut point.axis)] {
-        let length = vector.norm();
-        if (length - 1.0).abs() > UNIT_TOLERANCE {
-            return Err(TaskError::NotUnit { point: index, field, length });
-        }
-        *vector /= length;
-    }
+    (point.feed, point.axis) = (unit(index, "feed", point.feed)?, unit(index, "axis", point.axis)?);
     let angle_deg = 90.0 - point.feed_tilt().to_degrees().abs();
     if angle_deg < MIN_FEED_TO_AXIS_DEG {
         return Err(TaskError::FeedAlongAxis { point: index, angle_deg });

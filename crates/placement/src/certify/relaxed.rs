@@ -1,4 +1,4 @@
-//! The objective of a placement without the limits between neighbouring points, by the ordinary evaluator.
+//! The objective of a placement without the limits between neighbouring points, by the reference evaluator.
 
 use crate::evaluate::reference::state;
 use crate::problem::{Placement, Problem};

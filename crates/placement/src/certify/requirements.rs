@@ -6,7 +6,7 @@ use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
 use super::model::{LEVELS, STEPS};
 use crate::problem::Problem;
-use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 
 /// What tables may take, empty. bytes
 const MAX_BYTES: u64 = 400_000_000;
@@ -17,6 +17,10 @@ const MAX_BYTES: u64 = 400_000_000;
 /// The first reason why not.
 pub fn certifiable(problem: &Problem) -> Result<(), Unsupported> {
     Upright::of(problem)?;
+    require_mean_wall(problem)?;
+    if !problem.criterion.segment_weights.is_empty() {
+        return Err(Unsupported::OtherCriterion { key: "weight of a segment" });
+    }
     require_constant(problem, &[0, 1, 2, 3, 4, 5])?;
     if problem.criterion.force_uncertainty != 0.0 {
         return Err(Unsupported::UncertainForce);

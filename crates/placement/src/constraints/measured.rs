@@ -32,6 +32,13 @@ pub enum Measured {
         /// What it must be at least.
         limit: f64,
     },
+    /// The distance of the tool centre point from axis 1, held against the smallest allowed.
+    BaseDistance {
+        /// What it is. m
+        value: f64,
+        /// What it must be at least. m
+        limit: f64,
+    },
     /// The score of a point, held against c_max.
     MaxDeflection {
         /// What it is. m
@@ -64,6 +71,7 @@ impl Measured {
             Self::Reach(_) => ConstraintKind::Reach,
             Self::JointLimit { joint, .. } => ConstraintKind::JointLimit(joint),
             Self::Conditioning { .. } => ConstraintKind::Conditioning,
+            Self::BaseDistance { .. } => ConstraintKind::BaseDistance,
             Self::MaxDeflection { .. } => ConstraintKind::MaxDeflection,
             Self::JointStep { .. } => ConstraintKind::JointStep,
             Self::BetaRate { .. } => ConstraintKind::BetaRate,
@@ -75,7 +83,7 @@ impl Measured {
         match *self {
             Self::Reach(unreachable) => -unreachable.by(),
             Self::JointLimit { margin, .. } => margin,
-            Self::Conditioning { value, limit } => value - limit,
+            Self::Conditioning { value, limit } | Self::BaseDistance { value, limit } => value - limit,
             Self::MaxDeflection { value, limit } => limit - value,
             Self::JointStep { step, limit, .. } | Self::BetaRate { step, limit } => limit - step,
         }
@@ -86,7 +94,7 @@ impl Measured {
         let rounding = match self {
             Self::JointLimit { .. } => ANGLE_ROUNDING,
             Self::JointStep { .. } | Self::BetaRate { .. } => STEP_ROUNDING,
-            Self::Reach(_) | Self::Conditioning { .. } | Self::MaxDeflection { .. } => 0.0,
+            Self::Reach(_) | Self::Conditioning { .. } | Self::BaseDistance { .. } | Self::MaxDeflection { .. } => 0.0,
         };
         self.margin() >= -rounding
     }
@@ -97,7 +105,9 @@ impl Measured {
         match *self {
             // A point out of reach has no joint angles, so it counts as farther off than any state that has them.
             Self::Reach(_) => 100.0 - self.margin() * 10.0,
-            Self::JointLimit { .. } | Self::JointStep { .. } | Self::BetaRate { .. } => -self.margin() * 10.0,
+            Self::JointLimit { .. } | Self::JointStep { .. } | Self::BetaRate { .. } | Self::BaseDistance { .. } => {
+                -self.margin() * 10.0
+            }
             Self::Conditioning { value, limit } => 1.0 - value / limit,
             Self::MaxDeflection { value, limit } => value / limit - 1.0,
         }
@@ -124,6 +134,13 @@ impl fmt::Display for Measured {
             Self::Conditioning { value, limit } => {
                 write!(f, "1/kappa {value:.4} is {:.4} below {limit}", limit - value)
             }
+            Self::BaseDistance { value, limit } => {
+                let (value, by, limit) = (value * 1e3, (limit - value) * 1e3, limit * 1e3);
+                write!(
+                    f,
+                    "the path is {value:.1} mm from axis 1, {by:.1} mm nearer than min_base_distance = {limit} mm"
+                )
+            }
             Self::MaxDeflection { value, limit } => {
                 let (value, by, limit) = (value * 1e3, (value - limit) * 1e3, limit * 1e3);
                 write!(f, "deflection {value:.4} mm is {by:.4} mm above c_max = {limit} mm")
@@ -148,13 +165,15 @@ pub fn on_joints(problem: &Problem, joints: &[f64; 6]) -> [Measured; 6] {
     })
 }
 
-/// The constraints on a single state beside joint limits: conditioning and the largest score.
+/// The constraints on a single state beside joint limits: conditioning, the distance from axis 1 and the largest score.
 pub fn on_state(problem: &Problem, state: &State<f64>) -> impl Iterator<Item = Measured> + use<> {
     let conditioning =
         Measured::Conditioning { value: state.inverse_condition, limit: problem.constraints.min_inverse_condition };
     let value = state.score();
     let deflection = problem.constraints.max_deflection.map(|limit| Measured::MaxDeflection { value, limit });
-    [Some(conditioning), deflection].into_iter().flatten()
+    let limit = problem.constraints.min_base_distance;
+    let distance = (limit > 0.0).then_some(Measured::BaseDistance { value: state.base_distance, limit });
+    [Some(conditioning), distance, deflection].into_iter().flatten()
 }
 
 /// Whether the steps of all real joint angles (rad) between neighbouring path points are within their limits: the same as

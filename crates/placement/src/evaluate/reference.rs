@@ -1,10 +1,11 @@
 //! The score of one state: one path point, one placement, one beta, one posture.
 //!
-//! This is the ordinary evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
+//! This is the reference evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
 //! batch evaluator of [`super::batch`], which is tested against this one.
 
+use crate::criterion::{ScoredDirections, worst_force_error};
 use crate::problem::{PlacedPoint, Placement, Problem};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, conditioning::inverse_condition};
 use stead_model::stiffness::displacement;
 use stead_numerics::scalar::Scalar;
@@ -12,35 +13,42 @@ use stead_numerics::scalar::Scalar;
 /// A state of the arm at a path point and what the cutting force does to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<T: Scalar> {
-    /// Joint angles as the inverse kinematics gives them, limits not looked at. rad
+    /// Joint angles as the inverse kinematics gives them, limits not checked. rad
     pub joints: [T; 6],
     /// 1/kappa_F of the normalised Jacobian at the tool centre point (Caro 2013, eq. 26).
     pub inverse_condition: T,
+    /// Distance of the tool centre point from axis 1. m
+    pub base_distance: T,
     /// Displacement of the tool centre point in the base frame, `K^-1 w` (eq. 12). m
     pub deflection: Vector3<T>,
     /// Its part along the feed (made normal to the tool axis). m
     pub feed_part: T,
-    /// Its part to the left of the feed, `axis x feed`; its absolute value is c_i (eq. 11). m
+    /// Its part to the left of the feed, `axis x feed`: normal to the wall. m
     pub normal_part: T,
     /// Its part along the tool axis, positive towards the robot. m
     pub axial_part: T,
-    /// What a force error of the given relative size can add to c_i: `eps |w| |K^-1 n|`. m
+    /// Its part along the normal of the surface, where the task states that. m
+    pub surface_part: Option<T>,
+    /// The scored part: with its sign where one direction is scored, else the norm of the parts. Its absolute value is c_i
+    /// (eq. 11, where that is the wall). m
+    pub scored: T,
+    /// What force errors of the given relative size can add to c_i: with one direction n, `eps |w| |K^-1 n|`. m
     pub uncertainty: T,
-    /// Standard deviation sigma_i of the normal part, where the uncertainty of the compliances is known. m
+    /// Standard deviation sigma_i of the scored part, where the uncertainty of the compliances is known. m
     pub deviation: Option<T>,
     /// What the score adds for it: `confidence sigma_i`. m
     pub margin: T,
 }
 
 impl<T: Scalar> State<T> {
-    /// What the point counts in the mean: `c_i + eps |w| |K^-1 n| + confidence sigma_i`. m
+    /// The score of the point: c_i, what force errors can add to it, and `confidence sigma_i`. m
     pub fn score(&self) -> T {
-        self.normal_part.abs() + self.uncertainty + self.margin
+        self.scored.abs() + self.uncertainty + self.margin
     }
 }
 
 /// Evaluates path point `point` for a workpiece at a placement, free angle `beta` (rad) and a
-/// posture. Joint limits are not looked at.
+/// posture. Joint limits are not checked.
 ///
 /// # Errors
 /// [`Unreachable`] when the posture cannot reach the point.
@@ -53,21 +61,31 @@ pub fn state<T: Scalar>(
 ) -> Result<State<T>, Unreachable> {
     let joints = problem.robot.inverse(&problem.base_from_flange(point, placement, beta), posture)?;
     let frames = Frames::new(&problem.robot, &joints);
-    let PlacedPoint { tip, axes, force, moment } = problem.placed(point, placement);
+    let placed = problem.placed(point, placement);
+    let PlacedPoint { tip, axes, force, moment } = &placed;
     let compliances = problem.robot.compliances_at(&joints);
-    let deflection = displacement(&frames, &tip, &compliances, &force, &moment).linear;
-    let normal = axes.column(1).into_owned();
-    let uncertainty = if problem.criterion.force_uncertainty > 0.0 {
-        let response = displacement(&frames, &tip, &compliances, &normal, &Vector3::zeros()).linear;
-        response
-            .dot(&response)
-            .sqrt()
-            .scale(problem.criterion.force_uncertainty * problem.task.wrenches()[point].force.norm())
-    } else {
-        T::zero()
+    let deflection = displacement(&frames, tip, &compliances, force, moment).linear;
+    let moved_by = |force: &Vector3<T>| displacement(&frames, tip, &compliances, force, &Vector3::zeros()).linear;
+    let directions = problem.scored_directions(point, axes);
+    let scored = Scored::new(&directions, &deflection);
+    let size = problem.criterion.force_uncertainty * problem.task.wrenches()[point].force.norm();
+    let uncertainty = match directions.single() {
+        _ if problem.criterion.force_uncertainty == 0.0 => T::zero(),
+        Some(direction) => {
+            let response = moved_by(direction);
+            response.dot(&response).sqrt().scale(size)
+        }
+        None => {
+            // The worst error is held while derivatives are taken, since at a maximum it does not matter how it moves.
+            let gain =
+                directions.rows() * Matrix3::from_columns(&[0, 1, 2].map(|k| moved_by(&Vector3::ith(k, T::one()))));
+            let error = worst_force_error(&gain.map(T::value), &directions.parts(&deflection).map(T::value), size);
+            let parts = directions.parts(&deflection) + gain * error.map(T::constant);
+            parts.dot(&parts).sqrt() - scored.part
+        }
     };
     let deviation = problem.robot.uncertainty().map(|known| {
-        let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
+        let parts = parts_per_compliance(&frames, &placed, &scored.direction);
         known.standard_deviation(&by_parameters(&problem.robot, &joints, &parts))
     });
     let margin = match deviation {
@@ -76,46 +94,71 @@ pub fn state<T: Scalar>(
     };
     Ok(State {
         joints,
-        inverse_condition: inverse_condition(&frames, &tip, problem.constraints.characteristic_length),
+        inverse_condition: inverse_condition(&frames, tip, problem.constraints.characteristic_length),
+        base_distance: problem.base_distance(tip),
         deflection,
         feed_part: deflection.dot(&axes.column(0)),
-        normal_part: deflection.dot(&normal),
+        normal_part: deflection.dot(&axes.column(1)),
         axial_part: deflection.dot(&axes.column(2)),
+        surface_part: problem.surface_normal(point, placement).map(|normal| deflection.dot(&normal)),
+        scored: scored.part,
         uncertainty,
         deviation,
         margin,
     })
 }
 
-/// Derivatives of the normal part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
+/// The scored part of a deflection, and the direction along which it grows fastest, as long as it grows.
+struct Scored<T: Scalar> {
+    part: T,
+    direction: Vector3<T>,
+}
+
+impl<T: Scalar> Scored<T> {
+    fn new(directions: &ScoredDirections<T>, deflection: &Vector3<T>) -> Self {
+        if let Some(direction) = directions.single() {
+            return Self { part: deflection.dot(direction), direction: *direction };
+        }
+        let parts = directions.parts(deflection);
+        let part = parts.dot(&parts).sqrt();
+        let inverse = if part.value() > 0.0 { T::one() / part } else { T::zero() };
+        let direction =
+            directions.vectors().iter().zip(&parts).fold(Vector3::zeros(), |sum, (d, part)| sum + d * *part);
+        Self { part, direction: direction * inverse }
+    }
+}
+
+/// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
 /// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `placement`. m per SI unit of each
 /// parameter; empty where no uncertainty is known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
-pub fn normal_part_by_parameters<T: Scalar>(
+pub fn scored_part_by_parameters<T: Scalar>(
     problem: &Problem,
     point: usize,
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<T> {
     let frames = Frames::new(&problem.robot, joints);
-    let PlacedPoint { tip, axes, force, moment } = problem.placed(point, placement);
-    let normal = axes.column(1).into_owned();
-    let parts = parts_per_compliance(&frames, &tip, &normal, &force, &moment);
-    by_parameters(&problem.robot, joints, &parts)
+    let placed = problem.placed(point, placement);
+    let directions = problem.scored_directions(point, &placed.axes);
+    let direction = match directions.single() {
+        Some(direction) => *direction,
+        None => {
+            let compliances = problem.robot.compliances_at(joints);
+            let moved = displacement(&frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
+            Scored::new(&directions, &moved).direction
+        }
+    };
+    by_parameters(&problem.robot, joints, &parts_per_compliance(&frames, &placed, &direction))
 }
 
-/// What each joint adds to the normal part of the deflection per compliance: `(J_j . n) (J_j . w)`, in m per rad/(N m).
-fn parts_per_compliance<T: Scalar>(
-    frames: &Frames<T>,
-    tip: &Vector3<T>,
-    normal: &Vector3<T>,
-    force: &Vector3<T>,
-    moment: &Vector3<T>,
-) -> [T; 6] {
+/// What each joint adds to the part of the deflection along a direction per compliance: `(J_j . n) (J_j . w)`, in m per
+/// rad/(N m).
+fn parts_per_compliance<T: Scalar>(frames: &Frames<T>, placed: &PlacedPoint<T>, direction: &Vector3<T>) -> [T; 6] {
     std::array::from_fn(|j| {
-        let (velocity, axis) = frames.twist(j, tip);
-        velocity.dot(normal) * (velocity.dot(force) + axis.dot(moment))
+        let (velocity, axis) = frames.twist(j, &placed.tip);
+        velocity.dot(direction) * (velocity.dot(&placed.force) + axis.dot(&placed.moment))
     })
 }
 

@@ -1,4 +1,4 @@
-//! The error of a lookup table against the ordinary evaluator, at random states all over the cell.
+//! The error of a lookup table against the reference evaluator, at random states all over the cell.
 
 use super::{BetaGrid, LookupTable};
 use crate::feasibility::explain;
@@ -37,7 +37,7 @@ struct Sums {
 }
 
 impl LookupTable<'_> {
-    /// Compares states drawn all over the cell with the ordinary evaluator. The draw is always the same.
+    /// Compares states drawn all over the cell with the reference evaluator. The draw is always the same.
     pub fn accuracy(&self) -> Accuracy {
         let sums: Vec<Sums> = (0..DRAWN).into_par_iter().map(|draw| self.compare(draw)).collect();
         let total = sums.into_iter().fold(Sums::default(), |a, b| Sums {

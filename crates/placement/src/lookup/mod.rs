@@ -3,7 +3,7 @@
 //!
 //! With the tool axis along axis 1 ([`super::symmetry`]), a state depends on four things alone: the tool centre point's radius r
 //! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
-//! compliance there is sampled once per robot and spindle, by the ordinary geometry (`sample`, over the grid of `shape`). A placement
+//! compliance there is sampled once per robot and spindle, by the reference geometry (`sample`, over the grid of `shape`). A placement
 //! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
 //! joint steps and turns (`objective`); `coordinate_search` descends on that. With n the wall normal and f the force, both as (radial,
 //! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
@@ -31,7 +31,7 @@ pub use shape::{Axis, Shape};
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{Planner, beta_steps};
-use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant};
+use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
@@ -86,6 +86,7 @@ impl<'a> LookupTable<'a> {
     /// [`Unsupported`], with the reason.
     pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
         Upright::of(problem)?;
+        require_mean_wall(problem)?;
         require_constant(problem, &[0, 3, 4, 5])?;
         require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
@@ -125,8 +126,10 @@ impl<'a> LookupTable<'a> {
 
     /// The constraints that an objective by the table leaves out: only the planner evaluates them.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
-        use ConstraintKind::{BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach};
-        let mut evaluated = vec![Reach, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        use ConstraintKind::{
+            BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach,
+        };
+        let mut evaluated = vec![Reach, BaseDistance, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
     }

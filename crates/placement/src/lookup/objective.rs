@@ -45,7 +45,7 @@ impl LookupTable<'_> {
         workspace: &mut Workspace,
     ) -> Objective {
         let placed = self.place(placement);
-        let mut sum = 0.0;
+        let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index].class().index());
@@ -60,7 +60,7 @@ impl LookupTable<'_> {
                 }
             }
             if best.is_finite() {
-                sum += best;
+                costs.push(self.problem.point_cost(span.start, best));
                 continue;
             }
             let Workspace { scratch, scores, .. } = workspace;
@@ -82,7 +82,7 @@ impl LookupTable<'_> {
         } else if segments > 0 {
             Objective::Infeasible { points, segments }
         } else {
-            Objective::Feasible(sum / self.points.len() as f64)
+            Objective::Feasible(self.problem.objective(costs))
         }
     }
 
@@ -112,9 +112,9 @@ impl LookupTable<'_> {
                 return None;
             }
             if place % RENEWAL == RENEWAL - 1 {
-                let least = costs.iter().copied().fold(f32::INFINITY, f32::min);
-                costs.iter_mut().for_each(|cost| *cost -= least);
-                base += f64::from(least);
+                let min = costs.iter().copied().fold(f32::INFINITY, f32::min);
+                costs.iter_mut().for_each(|cost| *cost -= min);
+                base += f64::from(min);
             }
         }
         let cost = base + f64::from(costs.iter().copied().fold(f32::INFINITY, f32::min));
@@ -128,7 +128,7 @@ const RENEWAL: usize = 64;
 /// Adds to each score the smallest cost within `reach`, cyclically: the new costs. False when none is below `bound`.
 fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
     let count = costs.len();
-    let least = |a: f32, b: f32| if b < a { b } else { a };
+    let min = |a: f32, b: f32| if b < a { b } else { a };
     let mut any = false;
     if 2 * reach + 1 >= count {
         let best = costs.iter().copied().fold(f32::INFINITY, f32::min);
@@ -150,14 +150,14 @@ fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows:
         let kept = length + 1 - 2 * width;
         let (a, b) = (&now[..kept], &now[width..width + kept]);
         for (out, (a, b)) in next[..kept].iter_mut().zip(a.iter().zip(b)) {
-            *out = least(*a, *b);
+            *out = min(*a, *b);
         }
         std::mem::swap(now, next);
         width *= 2;
     }
     let (a, b) = (&now[..count], &now[band - width..band - width + count]);
     for ((cost, score), (a, b)) in costs.iter_mut().zip(scores).zip(a.iter().zip(b)) {
-        *cost = least(*a, *b) + score;
+        *cost = min(*a, *b) + score;
         any |= *cost < bound;
     }
     any

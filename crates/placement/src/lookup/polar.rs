@@ -68,11 +68,14 @@ impl LookupTable<'_> {
         }
     }
 
-    /// Where a path point is at a placement; `None` beyond the table, where the arm does not get.
+    /// Where a path point is at a placement; `None` beyond the table, where the arm does not get, and too near to axis 1.
     pub(super) fn polar_point(&self, placed: &PlacedPath, point: usize) -> Option<PolarPoint> {
         let point = &self.points[point];
         let tip = placed.rotation * point.position + placed.translation;
         let radius = libm::hypot(tip.x, tip.y);
+        if radius < self.problem.constraints.min_base_distance {
+            return None;
+        }
         let (cosine, sine) = if radius > 0.0 { (tip.x / radius, tip.y / radius) } else { (1.0, 0.0) };
         let polar = |v: &Vector3<f64>| {
             let v = placed.rotation * v;

@@ -1,4 +1,4 @@
-//! Sampling a table by the ordinary geometry.
+//! Sampling a table by the reference geometry.
 
 use super::shape::Shape;
 use crate::problem::Problem;
@@ -22,9 +22,9 @@ pub(super) mod field {
 }
 
 /// The smallest bound on 1/kappa that room is measured in units of.
-const LEAST_SLOPE: f64 = 0.05;
+const MIN_SLOPE: f64 = 0.05;
 /// Room is cut off at this.
-const MOST_ROOM: f64 = 0.5;
+const MAX_ROOM: f64 = 0.5;
 
 /// All rows, and which of them (height, radius, posture class) have an allowed state.
 pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64) -> (Vec<f32>, Vec<bool>) {
@@ -104,12 +104,12 @@ fn state(
     }
     let condition = inverse_condition(&frames, &tip, problem.constraints.characteristic_length);
     // In squares, which run straight through the limit of the reach, where 1/kappa comes to nothing like a root.
-    let least = problem.constraints.min_inverse_condition;
-    let conditioned = (condition * condition - least * least) / (2.0 * least.max(LEAST_SLOPE));
+    let bound = problem.constraints.min_inverse_condition;
+    let conditioned = (condition * condition - bound * bound) / (2.0 * bound.max(MIN_SLOPE));
     values[field::MEAN] = 0.5 * (rr + tt);
     values[field::DIFFERENCE] = 0.5 * (rr - tt);
     values[field::MIXED] = rt;
-    values[field::ROOM] = conditioned.min(joint_room(robot, &joints)).min(MOST_ROOM);
+    values[field::ROOM] = conditioned.min(joint_room(robot, &joints)).min(MAX_ROOM);
     if shape.has_vertical {
         values[field::VERTICAL] = rz;
         values[field::VERTICAL + 1] = tz;

@@ -9,7 +9,7 @@ const STEP: f64 = 0.07;
 /// Headings over a full turn, about.
 const HEADINGS: usize = 120;
 /// ... at least and at the most, where a number of the grid of beta can be had.
-const FEWEST_AND_MOST: (usize, usize) = (90, 180);
+const HEADING_COUNTS: (usize, usize) = (90, 180);
 
 /// Evenly spaced values. m
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,11 +69,11 @@ impl Axis {
 /// Headings that go well with a grid of beta: as many as it has, or a multiple, or a part of them, so that places between
 /// headings repeat along the grid.
 fn headings(beta_count: usize) -> usize {
-    let (fewest, most) = FEWEST_AND_MOST;
-    if beta_count <= most {
-        beta_count * fewest.div_ceil(beta_count)
+    let (min_count, max_count) = HEADING_COUNTS;
+    if beta_count <= max_count {
+        beta_count * min_count.div_ceil(beta_count)
     } else {
-        (fewest..=most).rev().find(|count| beta_count.is_multiple_of(*count)).unwrap_or(HEADINGS)
+        (min_count..=max_count).rev().find(|count| beta_count.is_multiple_of(*count)).unwrap_or(HEADINGS)
     }
 }
 
@@ -93,12 +93,12 @@ impl Shape {
         }
         // Beyond the arm and its tool there is nothing to sample.
         let lever = problem.spindle.flange_from_tool.translation.norm() + g.flange.abs();
-        let most = (g.reach() + lever).max(STEP);
-        let min = (nearest.norm() - reach).clamp(0.0, most);
-        let max = (farthest + reach).clamp(min, most);
+        let max_radius = (g.reach() + lever).max(STEP);
+        let min = (nearest.norm() - reach).clamp(0.0, max_radius);
+        let max = (farthest + reach).clamp(min, max_radius);
         let up = g.base_from_root.m33.signum();
         let heights = [z.min + low, z.max + high].map(|height| up * (height - g.root_in_base.z));
-        let (below, above) = (g.shoulder_height - most, g.shoulder_height + most);
+        let (below, above) = (g.shoulder_height - max_radius, g.shoulder_height + max_radius);
         let bottom = heights[0].min(heights[1]).clamp(below, above);
         let top = heights[0].max(heights[1]).clamp(below, above);
         Self {

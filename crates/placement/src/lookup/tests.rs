@@ -1,4 +1,4 @@
-//! The table against the ordinary evaluator and the planner, and with parts of the formula broken on purpose.
+//! The table against the reference evaluator and the planner, and with parts of the formula broken on purpose.
 
 use super::super::candidate::Objective;
 use super::super::candidate::rank;
@@ -31,7 +31,7 @@ fn limited() -> Problem {
     problem
 }
 
-/// What a table says of drawn states beside what the ordinary evaluator says: relative root mean square of the errors, largest
+/// What a table says of drawn states beside what the reference evaluator says: relative root mean square of the errors, largest
 /// error, and share of disputes.
 fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
     let problem = table.problem();

@@ -1,6 +1,6 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
-use super::super::settings::{PostureSearch, Tables};
+use super::super::settings::{LookupUse, PostureSearch};
 use super::super::symmetry::Unsupported;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
@@ -45,25 +45,25 @@ fn a_cell_out_of_reach_says_why() {
 fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 40;
-    let run = |problem: &Problem, tables: Tables| {
+    let run = |problem: &Problem, tables: LookupUse| {
         let settings = SearchSettings { tables, population: 24, generations: 8, basins: 2, ..small() };
         place(problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap()
     };
-    let (with, without) = (run(&problem, Tables::Auto), run(&problem, Tables::Never));
+    let (with, without) = (run(&problem, LookupUse::Auto), run(&problem, LookupUse::Never));
     assert!(
         matches!(with.lookup_summary, Some(Ok(lookup_summary)) if lookup_summary.accuracy.rms < 1e-3),
         "{:?}",
         with.lookup_summary
     );
     assert_eq!(without.lookup_summary, None);
-    // The ordinary evaluator has the last word, and the table never costs more than it finds.
+    // The reference evaluator has the last word, and the table never costs more than it finds.
     assert!(with.cases.best.plan.mean <= without.cases.best.plan.mean * 1.001);
     assert!(with.cases.worst.plan.mean >= without.cases.worst.plan.mean * 0.999);
     let mut tilted = problem.clone();
     let mut wrenches = tilted.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
     tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(run(&tilted, Tables::Auto).lookup_summary, Some(Err(Unsupported::Moment { point: 3 })));
+    assert_eq!(run(&tilted, LookupUse::Auto).lookup_summary, Some(Err(Unsupported::Moment { point: 3 })));
 }
 
 #[test]

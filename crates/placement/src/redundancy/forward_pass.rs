@@ -118,7 +118,8 @@ impl Planner<'_> {
         Step {
             reach,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
-            sign: sense.sign(),
+            sense,
+            aggregate: self.problem.criterion.aggregate,
             instructions: self.instructions,
         }
     }
@@ -148,7 +149,7 @@ impl Planner<'_> {
             for class in PostureClass::ALL {
                 if now.is_alive(class) {
                     if place == 0 {
-                        begin(now, class, step.sign);
+                        begin(now, class, step.sense.sign());
                     } else if !before.is_alive(class) || !advance(before, now, class, &step, record.way(place, class)) {
                         now.clear(class);
                     }

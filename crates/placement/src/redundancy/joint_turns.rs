@@ -16,7 +16,7 @@ use stead_model::robot::{
 pub(super) struct SegmentChoice {
     pub points: Span<usize>,
     pub betas: Vec<f64>,
-    /// Sum of the scores. m
+    /// See [`SegmentPlan::cost`].
     pub cost: f64,
     /// At least one.
     pub joint_paths: Vec<JointPath>,

@@ -40,7 +40,7 @@ pub struct SegmentPlan {
     pub betas: Vec<f64>,
     /// Real joint angles at each point. rad
     pub joints: Vec<[f64; 6]>,
-    /// Sum of the scores. m
+    /// What its points add to the objective ([`Problem::objective`]): by default the sum of the scores. m
     pub cost: f64,
 }
 
@@ -62,7 +62,7 @@ pub struct Planner<'a> {
     evaluators: Vec<BatchEvaluator<'a>>,
     rate_limit: rate_limit::RateLimit,
     steps: Vec<[f64; 6]>,
-    /// Ranges of joints with less than a turn; of none that are looked at modulo a turn.
+    /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
     instructions: Instructions,
 }
@@ -155,7 +155,7 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
-        let mut sum = 0.0;
+        let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index]);
@@ -172,7 +172,7 @@ impl<'a> Planner<'a> {
                 continue;
             }
             match found.choices.first() {
-                Some(choice) => sum += choice.cost,
+                Some(choice) => costs.push(choice.cost),
                 None => segments += 1,
             }
         }
@@ -181,7 +181,7 @@ impl<'a> Planner<'a> {
         } else if segments > 0 {
             Objective::Infeasible { points, segments }
         } else {
-            Objective::Feasible(sum / self.problem.task.points().len() as f64)
+            Objective::Feasible(self.problem.objective(costs))
         }
     }
 

@@ -81,11 +81,12 @@ struct Layer {
 /// The sum of scores and the real joint angles of fixed betas at `placement`, or `None` when they break a constraint there.
 pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> Option<SegmentPlan> {
     let mut replayed = plan.clone();
+    let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
         let node = node(problem, placement, point, plan, place, plan.betas[place])?;
         replayed.joints[place] = node.joints;
-        replayed.cost += node.score;
+        replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
         if place > 0 {
             let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
             let steps = joint_steps_hold(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
@@ -156,7 +157,12 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
                     .map(|(index, old)| (old.cost, index))
                     .min_by(|a, b| a.0.total_cmp(&b.0)),
             };
-            (node.cost, node.from) = best.map_or((f64::INFINITY, 0), |(cost, from)| (cost + sign * node.score, from));
+            let own = sign * problem.point_cost(point, node.score);
+            (node.cost, node.from) = match best {
+                None => (f64::INFINITY, 0),
+                Some((_, from)) if place == 0 => (own, from),
+                Some((cost, from)) => (problem.criterion.aggregate.join_signed(sense, cost, own), from),
+            };
         }
     }
     let end = layers.last().and_then(|layer| {

@@ -22,12 +22,12 @@ impl RateLimit {
     pub fn new(problem: &Problem, grid: &Redundancy) -> Self {
         let count = problem.task.points().len();
         let mut rate_limit = Self { reaches: vec![0; count], strides: vec![1; count] };
-        let most = (grid.beta_count / 2) as f64;
+        let max_reach = (grid.beta_count / 2) as f64;
         for span in problem.task.segments() {
             let (mut saved, mut stride) = (0.0, 0);
             for point in span.clone().skip(1) {
                 let steps = problem.beta_step_limit(point) / grid.beta_step();
-                let reach = (steps + STEP_ROUNDING).min(most) as u32;
+                let reach = (steps + STEP_ROUNDING).min(max_reach) as u32;
                 rate_limit.reaches[point] = reach;
                 if reach > 0 {
                     (saved, stride) = (0.0, 0);

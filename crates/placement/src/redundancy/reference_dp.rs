@@ -17,8 +17,9 @@ use stead_model::robot::{Posture, PostureClass, turns::Range};
 struct Node {
     beta: usize,
     joints: [f64; 6],
+    /// What the point adds to the cost.
     score: f64,
-    /// Smallest sum of signed scores up to here.
+    /// Smallest signed cost up to here.
     cost: f64,
     from: usize,
 }
@@ -128,7 +129,11 @@ impl Search<'_> {
         let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
         connect(before, &mut layer, planner.rate_limit.reach(point), planner.grid.beta_count, &planner.steps[point]);
         layer.retain(|node| node.cost.is_finite());
-        layer.iter_mut().for_each(|node| node.cost += node.score * self.sense.sign());
+        let join = |node: &Node| {
+            let own = node.score * self.sense.sign();
+            planner.problem.criterion.aggregate.join_signed(self.sense, node.cost, own)
+        };
+        layer.iter_mut().for_each(|node| node.cost = join(node));
         Some(layer).filter(|layer| !layer.is_empty())
     }
 }
@@ -171,7 +176,7 @@ fn nodes(
             });
             configurations = extended.collect();
         }
-        let score = state.score();
+        let score = problem.point_cost(point, state.score());
         nodes.extend(configurations.into_iter().map(|joints| Node {
             beta,
             joints,

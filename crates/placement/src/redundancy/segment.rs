@@ -61,7 +61,7 @@ impl Planner<'_> {
 
     /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside its
     /// limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first. Returns
-    /// whether every class has the plan that it was looked at for.
+    /// whether every class that can be cheaper has a plan.
     fn choose(
         &self,
         pass: Pass<'_>,
@@ -124,7 +124,8 @@ impl Planner<'_> {
             if !joint_turns::is_allowed(self.problem, &state) {
                 return None;
             }
-            choice.cost += state.score();
+            choice.cost =
+                self.problem.criterion.aggregate.join(choice.cost, self.problem.point_cost(point, state.score()));
         }
         Some(choice)
     }

@@ -1,11 +1,13 @@
 //! One step of the dynamic programming over the grid of beta, within one posture class: each state of a path point takes the
 //! cheapest predecessor within the band that the rate of beta allows and from which no joint has to step too far.
 //!
-//! Joint steps are looked at on sines and cosines, and first for the cheapest predecessor of each state only: mostly it is
+//! Joint steps are compared by sines and cosines, and first for the cheapest predecessor of each state only: mostly it is
 //! within every step, and then it is the cheapest of those that are.
 
 use super::super::evaluate::batch::StateGrid;
 use crate::constraints::STEP_ROUNDING;
+use crate::criterion::Aggregate;
+use crate::sense::Sense;
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
@@ -19,8 +21,10 @@ pub struct Step {
     pub reach: usize,
     /// Whether each joint can make the step.
     pub joints: [JointStep; 6],
-    /// Scores times this are minimised.
-    pub sign: f64,
+    /// Whether costs are minimised or maximised.
+    pub sense: Sense,
+    /// How the costs of points make up that of a path.
+    pub aggregate: Aggregate,
     /// What the processor is to use.
     pub instructions: Instructions,
 }
@@ -122,7 +126,7 @@ fn advance_by<R: Rules>(
 
 /// The rules of a step; the tests break them one by one, to see that each breach is noticed.
 trait Rules {
-    /// Shifts beyond the reach that are looked at.
+    /// Shifts beyond the reach that are tried.
     const WIDER: usize = 0;
     /// How far the predecessor told is beside the one taken.
     const BESIDE: i16 = 0;
@@ -160,7 +164,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let lanes = Lanes::<S>::COUNT;
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let numbers = Lanes::load(simd, &NUMBERS, 0);
-        let sign = if R::SIGNED { step.sign } else { 1.0 };
+        let sign = if R::SIGNED { step.sense.sign() } else { 1.0 };
         let band = Band::<R> { costs: before.scores(class), reach: step.reach + R::WIDER, rules: PhantomData };
         let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
@@ -187,7 +191,13 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
                 }
             }
             reached |= known.any();
-            known.select(best + score * sign, infinity).store(scores, here);
+            let own = score * sign;
+            let cost = match (step.aggregate, step.sense) {
+                (Aggregate::Mean | Aggregate::Rms, _) => best + own,
+                (Aggregate::Max, Sense::Min) => best.max(own),
+                (Aggregate::Max, Sense::Max) => best.min(own),
+            };
+            known.select(cost, infinity).store(scores, here);
             for (way, from) in way.iter_mut().zip(from.to_whole()) {
                 *way = from + R::BESIDE;
             }
@@ -206,8 +216,8 @@ struct Band<'s, R> {
 }
 
 impl<R: Rules> Band<'_, R> {
-    /// For neighbouring states from `here` the smallest cost of a predecessor, joint steps not looked at, and the shift to
-    /// it. Small shifts are looked at first, so that of equal joint_paths the quietest is taken.
+    /// For neighbouring states from `here` the smallest cost of a predecessor, joint steps not checked, and the shift to
+    /// it. Small shifts come first, so that of equal predecessors the nearest is taken.
     #[inline(always)]
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::load(simd, self.costs, here);
@@ -276,7 +286,7 @@ impl<'s, R: Rules> Joints<'s, R> {
     /// Which of the `asked` states from `here` are too far for some joint from the predecessors `from` beside them.
     #[inline(always)]
     fn too_far<S: Simd>(&self, simd: S, here: usize, asked: Mask<S>, from: Lanes<S>) -> Mask<S> {
-        // Neighbours mostly come by the same shift: all that do are looked at at once.
+        // Neighbours mostly come by the same shift: all that do are checked at once.
         let shifts = from.to_whole();
         let (mut open, mut far) = (asked, Mask::splat(simd, false));
         loop {

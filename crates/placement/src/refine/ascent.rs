@@ -44,17 +44,17 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
             return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
-        if promised < MIN_PROMISE * best.mean() {
+        if promised < MIN_PROMISE * best.objective {
             return ended(best, iterations, RefinementStatus::NoFirstOrderGain);
         }
         let placement = Placement::from(std::array::from_fn(|k| best.placement[k] + step[k] * UNITS[k]));
         let placement = problem.cell.clamp(&placement);
         let candidate = planned(planner, &placement, scheme, spacing, workspace);
-        let Some(next) = candidate.filter(|next| next.mean() - best.mean() > ARMIJO * promised) else {
+        let Some(next) = candidate.filter(|next| next.objective - best.objective > ARMIJO * promised) else {
             trust = trust.min(step.amax()) / 3.0;
             continue;
         };
-        if next.mean() - best.mean() > 0.7 * promised && step.amax() > 0.9 * trust {
+        if next.objective - best.objective > 0.7 * promised && step.amax() > 0.9 * trust {
             trust = (2.0 * trust).min(TRUST.1);
         }
         best = next;

@@ -1,6 +1,6 @@
 //! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
 
-use super::super::evaluate::reference::{State, normal_part_by_parameters, state};
+use super::super::evaluate::reference::{State, scored_part_by_parameters, state};
 use super::super::problem::{Placement, Problem};
 use super::{LENGTH_UNIT, Solution};
 use nalgebra::{Matrix5, SymmetricEigen};
@@ -22,6 +22,9 @@ pub struct Local {
     /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
     /// criterion asks, whose Euclidean norm is [`State::margin`]. Empty elsewhere. m
     pub changes: Vec<Dual<LOCAL>>,
+    /// Where several directions are scored and their norm has its kink near: the parts along them, whose norm is
+    /// [`State::scored`]. Empty elsewhere. m
+    pub parts: Vec<Dual<LOCAL>>,
     /// Real joint angles. rad
     pub joints: [f64; 6],
     /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
@@ -56,28 +59,27 @@ pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Op
                 solution.placement[3],
                 plan.betas[place],
             ];
-            let centre = gradient(problem, point, at, plan.posture)?;
-            let centre = (centre.0, if is_near_kink(&centre.1) { centre.1 } else { Vec::new() });
+            let mut centre = gradient(problem, point, at, plan.posture)?;
+            for kinked in [&mut centre.changes, &mut centre.parts] {
+                if !is_near_kink(kinked) {
+                    kinked.clear();
+                }
+            }
             let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
-            let (state, changes) = centre;
+            let Differentiated { state, changes, parts } = centre;
             let margin = if changes.is_empty() { state.margin } else { Dual::constant(0.0) };
-            locals.push(Local {
-                state,
-                added: state.uncertainty + margin,
-                changes,
-                joints: plan.joints[place],
-                curvature,
-            });
+            let added = state.uncertainty + margin;
+            locals.push(Local { state, added, changes, parts, joints: plan.joints[place], curvature });
         }
     }
     Some(locals)
 }
 
-/// A margin that steps of this size could bring to zero has its kink near; in scaled variables.
+/// A norm that steps of this size could bring to zero has its kink near; in scaled variables.
 const KINK: f64 = 0.1;
 
-/// Whether a margin, the norm of these changes, can vanish nearby. Elsewhere it is smooth, and better followed with its own
-/// curvature: where the changes only turn, that of their norm and their own cancel.
+/// Whether the norm of these numbers can vanish nearby. Elsewhere it is smooth, and better followed with its own
+/// curvature: where the vector only turns, that of its norm and its own cancel.
 fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
     let square = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |sum, number| sum + number * number);
     let size = square(&mut changes.iter().map(|change| change.value));
@@ -85,8 +87,14 @@ fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
     size < KINK * KINK * slope
 }
 
-/// A state and what the margin of its score is made of.
-type Differentiated = (State<Dual<LOCAL>>, Vec<Dual<LOCAL>>);
+/// A state, and the vectors of which the norms of its score are taken.
+struct Differentiated {
+    state: State<Dual<LOCAL>>,
+    /// That of the margin.
+    changes: Vec<Dual<LOCAL>>,
+    /// That of the scored part, where several directions are scored and errors of the force do not smooth it.
+    parts: Vec<Dual<LOCAL>>,
+}
 
 /// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
 fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
@@ -101,12 +109,19 @@ fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture)
     let confidence = problem.criterion.confidence;
     let changes = match problem.robot.uncertainty() {
         Some(known) if confidence > 0.0 => {
-            let slopes = normal_part_by_parameters(problem, point, &placement, &found.joints);
+            let slopes = scored_part_by_parameters(problem, point, &placement, &found.joints);
             known.changes(&slopes).map(|change| change.scale(confidence)).collect()
         }
         _ => Vec::new(),
     };
-    Some((found, changes))
+    let directions = problem.scored_directions(point, &problem.placed(point, &placement).axes);
+    let parts = match directions.single() {
+        None if problem.criterion.force_uncertainty == 0.0 => {
+            directions.vectors().iter().map(|direction| direction.dot(&found.deflection)).collect()
+        }
+        _ => Vec::new(),
+    };
+    Some(Differentiated { state: found, changes, parts })
 }
 
 /// Differences of exact gradients, made symmetric, without negative eigenvalues: what a convex model can use.
@@ -123,16 +138,21 @@ fn curvature(
         Curvature::Beta => LOCAL - 1,
         Curvature::Full => 0,
     };
-    let sign = if centre.0.normal_part.value < 0.0 { -1.0 } else { 1.0 };
-    let margin = centre.0.margin.value;
-    let is_smooth = centre.1.is_empty();
-    // Near a kink the norm of the changes is the subproblem's: here they are followed along their present direction.
-    let share = |change: &Dual<LOCAL>| if margin > 0.0 { change.value / margin } else { 0.0 };
-    let shares: Vec<f64> = centre.1.iter().map(share).collect();
-    let slope = |(s, changes): &Differentiated, k: usize| {
-        let along = shares.iter().zip(changes).map(|(share, change)| share * change.gradient[k]);
-        let margin = if is_smooth { s.margin.gradient[k] } else { along.sum() };
-        sign * s.normal_part.gradient[k] + s.uncertainty.gradient[k] + margin
+    let sign = if centre.state.scored.value < 0.0 { -1.0 } else { 1.0 };
+    // Near a kink the norm is the subproblem's: here the vector is followed along its present direction.
+    let shares = |vector: &[Dual<LOCAL>], norm: f64| -> Vec<f64> {
+        vector.iter().map(|entry| if norm > 0.0 { entry.value / norm } else { 0.0 }).collect()
+    };
+    let changes = shares(&centre.changes, centre.state.margin.value);
+    let parts = shares(&centre.parts, centre.state.scored.value);
+    let along = |shares: &[f64], vector: &[Dual<LOCAL>], k: usize| -> f64 {
+        shares.iter().zip(vector).map(|(share, entry)| share * entry.gradient[k]).sum()
+    };
+    let slope = |there: &Differentiated, k: usize| {
+        let s = &there.state;
+        let margin = if changes.is_empty() { s.margin.gradient[k] } else { along(&changes, &there.changes, k) };
+        let scored = if parts.is_empty() { sign * s.scored.gradient[k] } else { along(&parts, &there.parts, k) };
+        scored + s.uncertainty.gradient[k] + margin
     };
     let mut hessian = Matrix5::zeros();
     for k in from..LOCAL {

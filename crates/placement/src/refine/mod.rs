@@ -9,7 +9,7 @@
 //! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
 //! constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
 //!
-//! A step is only ever taken to a state that the ordinary evaluator finds allowed and better, so the result is never worse
+//! A step is only ever taken to a state that the reference evaluator finds allowed and better, so the result is never worse
 //! or less feasible than the start.
 //!
 //! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one radian in
@@ -43,13 +43,15 @@ pub struct Solution {
     pub placement: Placement,
     /// One entry per segment.
     pub plans: Vec<SegmentPlan>,
+    /// The figure that is minimised: by default the mean score. m
+    pub objective: f64,
 }
 
 impl Solution {
-    /// Mean score. m
-    pub fn mean(&self) -> f64 {
-        let points: usize = self.plans.iter().map(|plan| plan.points.len()).sum();
-        self.plans.iter().map(|plan| plan.cost).sum::<f64>() / points as f64
+    /// Puts the plans of all segments together.
+    pub fn new(problem: &Problem, placement: Placement, plans: Vec<SegmentPlan>) -> Self {
+        let objective = problem.objective(plans.iter().map(|plan| plan.cost));
+        Self { placement, plans, objective }
     }
 }
 
@@ -62,7 +64,7 @@ pub fn planned(
     workspace: &mut Workspace,
 ) -> Option<Solution> {
     let plans = planner.plan_fine(placement, Sense::Min, scheme, spacing, workspace).ok()?;
-    Some(Solution { placement: *placement, plans })
+    Some(Solution::new(planner.problem(), *placement, plans))
 }
 
 /// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the placement has no
@@ -82,21 +84,21 @@ pub fn refine(
     let mut report = Refinement {
         sense,
         start: best.placement,
-        start_mean: best.mean(),
+        start_mean: best.objective,
         end: best.placement,
-        end_mean: best.mean(),
+        end_mean: best.objective,
         rounds: 0,
         iterations: 0,
         kkt_residual: f64::INFINITY,
         statuses: Vec::new(),
     };
-    let is_cancelled = |solution: &Solution| solution.mean() <= CANCELLATION;
+    let is_cancelled = |solution: &Solution| solution.objective <= CANCELLATION;
     if is_cancelled(&best) {
         report.statuses.push(RefinementStatus::Cancelled);
     }
     while report.rounds < ROUNDS && !is_cancelled(&best) {
         report.rounds += 1;
-        let before = best.mean();
+        let before = best.objective;
         let signature = signature(&best);
         let (status, iterations) = match sense {
             Sense::Min => {
@@ -116,11 +118,11 @@ pub fn refine(
         // already the best at its placement.
         if sense == Sense::Min
             && let Some(anew) = planned(planner, &best.placement, scheme, spacing, &mut workspace)
-            && anew.mean() < best.mean()
+            && anew.objective < best.objective
         {
             best = anew;
         }
-        let gained = (before - best.mean()).abs();
+        let gained = (before - best.objective).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
             match poll(evaluator, &best, sense, scheme, &mut workspace, &mut space) {
@@ -136,7 +138,7 @@ pub fn refine(
         Sense::Max => ascent::kkt_residual(planner, &best, scheme),
     };
     report.end = best.placement;
-    report.end_mean = best.mean();
+    report.end_mean = best.objective;
     Some((best, report))
 }
 
@@ -175,8 +177,8 @@ fn poll(
                     continue;
                 }
                 let Some(near) = planned(planner, &placement, scheme, spacing, workspace) else { continue };
-                let known = best.as_ref().map_or(centre.mean() * (1.0 - sign * GAIN), Solution::mean);
-                if near.mean() * sign < known * sign {
+                let known = best.as_ref().map_or(centre.objective * (1.0 - sign * GAIN), |best| best.objective);
+                if near.objective * sign < known * sign {
                     best = Some(near);
                 }
             }
@@ -209,7 +211,7 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
         }
         plans.push(shifted);
     }
-    Some(Solution { placement, plans })
+    Some(Solution::new(problem, placement, plans))
 }
 
 /// The spacing in which betas settle after a step. rad

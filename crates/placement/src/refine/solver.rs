@@ -82,26 +82,26 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
     }
 
     fn init(&mut self, _: &mut ArgminProblem<()>, state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
-        let mean = state.get_param().map_or(f64::INFINITY, Solution::mean);
+        let mean = state.get_param().map_or(f64::INFINITY, |known| known.objective);
         Ok((state.cost(mean), None))
     }
 
     fn next_iter(&mut self, _: &mut ArgminProblem<()>, mut state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
         let known = state.take_param().ok_or_else(|| Error::msg("the iterate is missing"))?;
-        let mean = known.mean();
+        let mean = known.objective;
         let Some(locals) = linearise(self.problem, &known, Curvature::Full) else {
             self.status = Some(RefinementStatus::NotLinearised);
             return Ok((state.param(known).cost(mean), None));
         };
         let next = self.step(&known, mean, &locals).unwrap_or(known);
-        self.lazy = if mean - next.mean() < MIN_GAIN * mean { self.lazy + 1 } else { 0 };
+        self.lazy = if mean - next.objective < MIN_GAIN * mean { self.lazy + 1 } else { 0 };
         if self.lazy >= LAZY_STEPS && self.status.is_none() {
             self.status = Some(RefinementStatus::NoMoreGain);
         }
         if self.trust < LAST_TRUST && self.status.is_none() {
             self.status = Some(RefinementStatus::SmallestTrustRegion);
         }
-        let mean = next.mean();
+        let mean = next.objective;
         Ok((state.param(next).cost(mean), Some(kv!("trust" => self.trust;))))
     }
 
@@ -132,7 +132,7 @@ impl SequentialConvex<'_> {
             let placement = self.problem.cell.clamp(&placement);
             let betas = known.plans.iter().flat_map(|plan| &plan.betas).zip(&answer.betas);
             let betas: Vec<f64> = betas.map(|(beta, step)| beta + step).collect();
-            let gained = |candidate: &Solution| mean - candidate.mean();
+            let gained = |candidate: &Solution| mean - candidate.objective;
             match moved(self.problem, known, placement, &betas) {
                 Some(candidate) if gained(&candidate) > 0.1 * answer.promised => {
                     if gained(&candidate) > 0.7 * answer.promised {

@@ -1,12 +1,15 @@
 //! The convex subproblem of the refinement, solved by clarabel.
 //!
-//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present mean). Minimised
-//! is the mean of t plus the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
+//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
+//! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
+//! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
 //! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out. Where the margin of a
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
-//! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either.
+//! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
+//! likewise for the norm of the parts where several directions are scored.
 
+use super::super::criterion::Aggregate;
 use super::super::problem::{Interval, Placement, Problem};
 use super::super::redundancy::SegmentPlan;
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
@@ -85,15 +88,17 @@ impl Rows {
 /// # Errors
 /// [`Unsolved`] when clarabel refused it or found no solution.
 pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
-    let kinked = (0..locals.len()).filter(|i| !locals[*i].changes.is_empty()).collect();
+    let vectors = |i: usize| [&locals[i].changes[..], &locals[i].parts[..]].map(|vector| (i, vector));
+    let kinked = (0..locals.len()).flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
     let rows = Rows::default();
-    let mut build = Build { problem, solution, locals, question, kinked, unit: solution.mean(), rows };
+    let mut build = Build { problem, solution, locals, question, kinked, unit: solution.objective, rows };
     if question.pose_stays {
         (0..4).for_each(|k| build.rows.add([(k, 1.0)], 0.0));
     }
     let equalities = build.rows.bound.len();
     (0..locals.len()).for_each(|i| build.point(i));
     solution.plans.iter().for_each(|plan| build.steps(plan));
+    build.largest();
     build.trust_region();
     let inequalities = build.rows.bound.len() - equalities;
     let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
@@ -102,14 +107,15 @@ pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question:
 }
 
 /// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each of the
-/// n points, the score of each point (the epigraph variables), and what errors add to the scores that have a kink there.
+/// n points, the score of each point (the epigraph variables), the norms that have a kink there, and the largest score where
+/// that is minimised.
 struct Build<'a> {
     problem: &'a Problem,
     solution: &'a Solution,
     locals: &'a [Local],
     question: Question,
-    /// Points whose score has a second-order cone.
-    kinked: Vec<usize>,
+    /// Points whose score has the norm of a vector in it that needs a second-order cone.
+    kinked: Vec<(usize, &'a [Dual<LOCAL>])>,
     /// Scores are in this unit. m
     unit: f64,
     rows: Rows,
@@ -124,9 +130,18 @@ impl Build<'_> {
         BETA + self.locals.len()
     }
 
-    /// Column of the first margin of a score with a kink.
-    fn margins(&self) -> usize {
+    /// Column of the first norm with a kink.
+    fn norms(&self) -> usize {
         BETA + 2 * self.locals.len()
+    }
+
+    /// Number of variables; the largest score is the last.
+    fn variables(&self) -> usize {
+        self.norms() + self.kinked.len() + usize::from(self.aggregate() == Aggregate::Max)
+    }
+
+    fn aggregate(&self) -> Aggregate {
+        self.problem.criterion.aggregate
     }
 
     /// A gradient by placement and beta as entries of the columns of point `i`.
@@ -143,12 +158,19 @@ impl Build<'_> {
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
     fn point(&mut self, i: usize) {
         let (local, unit) = (&self.locals[i], self.unit);
-        let (epigraph, margins) = (self.epigraph() + i, self.margins());
-        let (c, u) = (&local.state.normal_part, &local.added);
-        for sign in [1.0, -1.0] {
+        let (epigraph, norms) = (self.epigraph() + i, self.norms());
+        let first = self.kinked.partition_point(|(point, _)| *point < i);
+        let own = self.kinked[first..].iter().take_while(|(point, _)| *point == i).count();
+        let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
+        let (c, u) = (&local.state.scored, &local.added);
+        let signs: &[f64] = match self.problem.criterion.weights.is_single() {
+            true => &[1.0, -1.0],
+            false if local.parts.is_empty() => &[1.0],
+            false => &[0.0],
+        };
+        for sign in signs {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let margin = self.kinked.binary_search(&i).ok().map(|place| (margins + place, 1.0));
-            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(margin);
+            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
             self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
@@ -157,6 +179,10 @@ impl Build<'_> {
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
         self.add_between(&Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
+        if self.problem.constraints.min_base_distance > 0.0 {
+            let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
+            self.add_between(&Self::terms(i, &local.state.base_distance.gradient), -spare, f64::INFINITY);
+        }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
             self.add_between(&Self::terms(i, &local.state.joints[j].gradient), joint.min - q, joint.max - q);
@@ -195,35 +221,67 @@ impl Build<'_> {
         }
     }
 
-    /// One second-order cone for each score with a kink.
-    fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
-        let (margins, unit) = (self.margins(), self.unit);
-        let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, i) in self.kinked.iter().enumerate() {
-            self.rows.add([(margins + place, -1.0)], 0.0);
-            let changes = &self.locals[*i].changes;
-            for change in changes {
-                let slopes = change.gradient.map(|slope| -slope / unit);
-                self.rows.add(Self::terms(*i, &slopes), change.value / unit);
+    /// The largest score is above that of every point.
+    fn largest(&mut self) {
+        let (largest, epigraph) = (self.variables() - 1, self.epigraph());
+        if self.aggregate() == Aggregate::Max {
+            for i in 0..self.locals.len() {
+                self.rows.add([(epigraph + i, self.problem.point_weight(i)), (largest, -1.0)], 0.0);
             }
-            cones.push(SecondOrderConeT(1 + changes.len()));
+        }
+    }
+
+    /// One second-order cone for each norm with a kink.
+    fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
+        let (norms, unit) = (self.norms(), self.unit);
+        let mut cones = Vec::with_capacity(self.kinked.len());
+        for (place, (i, vector)) in self.kinked.iter().enumerate() {
+            self.rows.add([(norms + place, -1.0)], 0.0);
+            for entry in *vector {
+                let slopes = entry.gradient.map(|slope| -slope / unit);
+                self.rows.add(Self::terms(*i, &slopes), entry.value / unit);
+            }
+            cones.push(SecondOrderConeT(1 + vector.len()));
         }
         cones
     }
 
-    /// Minimises the mean score.
+    /// What a change of each point's score counts in the objective, to first order, times the sum of all weights: none where the
+    /// largest score is minimised, since which points decide then is for the subproblem to find.
+    fn shares(&self) -> Vec<f64> {
+        let share = |i: usize| match self.aggregate() {
+            Aggregate::Mean => self.problem.point_weight(i),
+            Aggregate::Rms => self.problem.point_weight(i) * self.locals[i].state.score().value / self.unit,
+            Aggregate::Max => 0.0,
+        };
+        (0..self.locals.len()).map(share).collect()
+    }
+
+    /// Minimises the objective: of the mean square half of it, so that its slopes are those of its root.
     fn answer(self, cones: &[SupportedConeT<f64>]) -> Result<Answer, Unsolved> {
         let (n, unit, question) = (self.locals.len(), self.unit, self.question);
-        let variables = self.margins() + self.kinked.len();
-        let mut linear = vec![0.0; variables];
-        linear[self.epigraph()..self.margins()].fill(1.0 / n as f64);
-        let curvature = match question.curved {
-            true => curvature(self.locals, variables, unit),
-            false => CscMatrix::zeros((variables, variables)),
+        let variables = self.variables();
+        let (mut linear, epigraph) = (vec![0.0; variables], self.epigraph());
+        let (shares, total) = (self.shares(), self.problem.total_weight());
+        let mut quadratic = match question.curved {
+            true => curvature(self.locals, &shares, unit * total),
+            false => Triplets::default(),
         };
+        match self.aggregate() {
+            Aggregate::Mean => (0..n).for_each(|i| linear[epigraph + i] = shares[i] / total),
+            Aggregate::Rms => {
+                (0..n).for_each(|i| quadratic.add(epigraph + i, epigraph + i, self.problem.point_weight(i) / total))
+            }
+            Aggregate::Max => linear[variables - 1] = 1.0,
+        }
+        let curvature = quadratic.matrix(variables);
         let Rows { row, column, value, bound } = self.rows;
         let matrix = CscMatrix::new_from_triplets(bound.len(), variables, row, column, value);
         let found = programme(&curvature, &linear, &matrix, &bound, cones)?;
+        let value = match self.problem.criterion.aggregate {
+            Aggregate::Rms => libm::sqrt((2.0 * found.obj_val).max(0.0)),
+            Aggregate::Mean | Aggregate::Max => found.obj_val,
+        };
         let mut pose = [0.0; 4];
         let mut pose_gradient = [0.0; 4];
         for k in 0..4 {
@@ -235,7 +293,7 @@ impl Build<'_> {
         Ok(Answer {
             placement: pose,
             betas: found.x[BETA..BETA + n].to_vec(),
-            promised: ((1.0 - found.obj_val) * unit).max(0.0),
+            promised: ((1.0 - value) * unit).max(0.0),
             pose_gradient,
         })
     }
@@ -333,32 +391,45 @@ pub fn pose_bounds(problem: &Problem, placement: &Placement) -> [Interval; 4] {
     })
 }
 
-/// The curvature of the mean score: an arrow of the pose block, its coupling with every beta, and the diagonal.
-fn curvature(locals: &[Local], variables: usize, unit: f64) -> CscMatrix<f64> {
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
+/// The entries of a symmetric matrix on and above its diagonal.
+#[derive(Default)]
+struct Triplets {
+    row: Vec<usize>,
+    column: Vec<usize>,
+    value: Vec<f64>,
+}
+
+impl Triplets {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.row.push(row);
+        self.column.push(column);
+        self.value.push(value);
+    }
+
+    fn matrix(self, size: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(size, size, self.row, self.column, self.value)
+    }
+}
+
+/// The curvature of the objective, each point's by its share of `whole`: an arrow of the pose block, its coupling with every
+/// beta, and the diagonal.
+fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplets {
+    let mut entries = Triplets::default();
     let mut pose = [[0.0; 4]; 4];
-    let share = 1.0 / (unit * locals.len() as f64);
     for (i, local) in locals.iter().enumerate() {
+        let share = shares[i] / whole;
         for k in 0..4 {
             for j in 0..=k {
                 pose[j][k] += local.curvature[(j, k)] * share;
             }
-            row.push(k);
-            column.push(4 + i);
-            value.push(local.curvature[(k, 4)] * share);
+            entries.add(k, 4 + i, local.curvature[(k, 4)] * share);
         }
-        row.push(4 + i);
-        column.push(4 + i);
-        value.push(local.curvature[(4, 4)] * share);
+        entries.add(4 + i, 4 + i, local.curvature[(4, 4)] * share);
     }
-    for (j, entries) in pose.iter().enumerate() {
-        for (k, entry) in entries.iter().enumerate().skip(j) {
-            row.push(j);
-            column.push(k);
-            value.push(*entry);
-        }
+    for (j, row) in pose.iter().enumerate() {
+        (j..4).for_each(|k| entries.add(j, k, row[k]));
     }
-    CscMatrix::new_from_triplets(variables, variables, row, column, value)
+    entries
 }
 
 /// Trust region in which the linear model is asked what it still promises.

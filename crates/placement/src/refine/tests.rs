@@ -43,7 +43,7 @@ fn best_gets_better_and_stays_allowed() {
                     continue;
                 }
                 let near = planned(&planner, &placement, None, off_grid::Spacing::full(planner.grid()), &mut workspace);
-                assert!(near.is_none_or(|n| n.mean() > solution.mean() * (1.0 - 2e-5)), "variable {k} {side}");
+                assert!(near.is_none_or(|n| n.objective > solution.objective * (1.0 - 2e-5)), "variable {k} {side}");
             }
         }
     }
@@ -141,7 +141,7 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
             let mut at = |side: f64| {
                 let mut moved = placement;
                 moved[k] += side * h * linearise::UNITS[k];
-                planned(&planner, &moved, None, spacing, &mut workspace).unwrap().mean()
+                planned(&planner, &moved, None, spacing, &mut workspace).unwrap().objective
             };
             let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
             assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
@@ -216,6 +216,6 @@ fn argmin_observers_see_every_iteration() {
     let costs = costs.lock().unwrap();
     assert_eq!(costs.len(), run.iterations);
     assert!(costs.len() > 2 && costs.windows(2).all(|pair| pair[1] <= pair[0]));
-    assert_eq!(costs.last().copied(), Some(run.solution.mean()));
+    assert_eq!(costs.last().copied(), Some(run.solution.objective));
     assert_ne!(run.status, RefinementStatus::MaxIterations);
 }

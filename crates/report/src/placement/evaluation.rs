@@ -2,7 +2,7 @@
 
 use super::Context;
 use crate::columns::aligned;
-use crate::document::{placement as placement_json, put_deviation};
+use crate::document::{deflection_mm, placement as placement_json, placement_exact, put_deviation};
 use crate::names;
 use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
@@ -20,8 +20,12 @@ const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
 pub fn score_json(score: &Score, context: &Context) -> Value {
     let plan = |plan: &Plan| {
         let mut value = json!({
+            "objective_mm": Unit::DEFLECTION_MM.number(plan.objective),
             "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
             "max_mm": Unit::DEFLECTION_MM.number(plan.max),
+            "p50_mm": Unit::DEFLECTION_MM.number(plan.percentiles[0]),
+            "p95_mm": Unit::DEFLECTION_MM.number(plan.percentiles[1]),
+            "deflection_mm": deflection_mm(&plan.deflection),
             "postures": plan.postures,
         });
         put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
@@ -29,6 +33,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
     };
     let mut entries = json!({
         "placement": placement_json(&score.placement),
+        "placement_exact": placement_exact(&score.placement),
         "feasible": true,
         "best": plan(&score.best),
         "worst": plan(&score.worst),
@@ -51,6 +56,7 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
     };
     context.document().with(json!({
         "placement": placement_json(&nothing.placement),
+        "placement_exact": placement_exact(&nothing.placement),
         "feasible": false,
         "best": Value::Null,
         "worst": Value::Null,
@@ -61,12 +67,14 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
 /// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
 pub fn score_text(score: &Score, context: &Context) -> String {
     let row = |name: &str, plan: &Plan| {
-        let mut row = vec![name.to_owned(), fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4)];
+        let total = plan.deflection.total;
+        let mut row = vec![name.to_owned()];
+        row.extend([plan.mean, plan.max, total.mean, total.max].map(|value| fixed(value * 1e3, 4)));
         row.extend(plan.mean_deviation.map(|deviation| fixed(deviation * 1e3, 4)));
         row.push(names::postures_within(&plan.postures, 60));
         row
     };
-    let mut header = vec!["plan", "mean mm", "max mm"];
+    let mut header = vec!["plan", "mean mm", "max mm", "total mm", "max total"];
     header.extend(score.best.mean_deviation.map(|_| "std mm"));
     header.push("postures");
     let last = header.len() - 1;
@@ -94,6 +102,7 @@ pub fn explain_json(
             "joints_deg": state.map(|s| s.joints.map(|angle| FINE_DEG.number(angle))),
             "inverse_condition": state.map(|s| Unit::PLAIN.number(s.inverse_condition)),
             "normal_deflection_mm": state.map(|s| FINE_MM.number(s.normal_part.abs())),
+            "total_deflection_mm": state.map(|s| FINE_MM.number(s.deflection.norm())),
             "score_mm": state.map(|s| FINE_MM.number(s.score())),
             "feasible": e.is_allowed(),
             "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -124,7 +133,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         match &e.state {
             Some(s) => {
                 row.extend(s.joints.map(|angle| fixed(angle.to_degrees(), 3)));
-                row.extend([fixed(s.inverse_condition, 4), fixed(s.normal_part.abs() * 1e3, 5)]);
+                row.extend([fixed(s.inverse_condition, 4), fixed(s.scored.abs() * 1e3, 5)]);
                 row.extend(s.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
             }
             None => row.extend((1..last).map(|_| "-".to_owned())),

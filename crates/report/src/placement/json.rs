@@ -4,14 +4,15 @@
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
 use super::Context;
-use crate::document::{Timing, placement, put_deviation};
+use crate::document::{Timing, deflection_mm, placement, placement_exact, put_deviation};
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
+use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{Case, LookupSummary, Outcome, PlanPoint, Refinement, Transfer};
 use stead_placement::problem::{Interval, Problem};
-use stead_placement::settings::{PostureSearch, Tables};
+use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
@@ -106,8 +107,13 @@ fn case(case: &Case, with_plan: bool) -> Value {
     let mut value = json!({
         "case": case.number(),
         "placement": placement(&case.placement),
+        "placement_exact": placement_exact(&case.placement),
+        "objective_mm": number(Unit::DEFLECTION_MM, case.plan.objective),
         "mean_mm": number(Unit::DEFLECTION_MM, case.plan.mean),
         "max_mm": number(Unit::DEFLECTION_MM, case.plan.max),
+        "p50_mm": number(Unit::DEFLECTION_MM, case.plan.percentiles[0]),
+        "p95_mm": number(Unit::DEFLECTION_MM, case.plan.percentiles[1]),
+        "deflection_mm": deflection_mm(&case.plan.deflection),
         "postures": case.plan.postures,
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
@@ -129,6 +135,7 @@ fn plan_point(point: &PlanPoint) -> Value {
         "joints_deg": point.joints.map(|angle| number(Unit::ANGLE_DEG, angle)),
         "inverse_condition": number(Unit::PLAIN, point.inverse_condition),
         "normal_mm": number(Unit::DEFLECTION_MM, point.normal_part),
+        "total_mm": number(Unit::DEFLECTION_MM, point.deflection.norm()),
         "score_mm": number(Unit::DEFLECTION_MM, point.score),
     });
     put_deviation(&mut value, "std_mm", Unit::DEFLECTION_MM, point.deviation);
@@ -163,9 +170,9 @@ fn search(context: &Context) -> Value {
         PostureSearch::Genetic => "genetic",
     };
     let tables = match context.search.tables {
-        Tables::Auto => "auto",
-        Tables::Always => "always",
-        Tables::Never => "never",
+        LookupUse::Auto => "auto",
+        LookupUse::Always => "always",
+        LookupUse::Never => "never",
     };
     json!({
         "population": context.search.population,
@@ -190,7 +197,14 @@ fn cell(problem: &Problem) -> Value {
 
 /// The confidence is stated where there is something to be confident of.
 fn criterion(problem: &Problem) -> Value {
-    let mut value = json!({ "force_uncertainty": problem.criterion.force_uncertainty });
+    let Criterion { weights, aggregate, segment_weights, force_uncertainty, .. } = &problem.criterion;
+    let mut value = json!({
+        "direction": problem.criterion.direction().map(Direction::name),
+        "weights": { "wall": weights.wall, "axis": weights.axis, "feed": weights.feed, "surface": weights.surface },
+        "aggregate": aggregate.name(),
+        "segment_weights": segment_weights,
+        "force_uncertainty": force_uncertainty,
+    });
     if let (Some(_), Value::Object(map)) = (problem.robot.uncertainty(), &mut value) {
         map.insert("confidence".to_owned(), json!(problem.criterion.confidence));
     }
@@ -202,6 +216,8 @@ fn constraints(problem: &Problem) -> Value {
         "min_inverse_condition": problem.constraints.min_inverse_condition,
         "characteristic_length_mm": number(Unit::PLACE_MM, problem.constraints.characteristic_length),
         "max_deflection_mm": optional(Unit::DEFLECTION_MM, problem.constraints.max_deflection),
+        "joint_margin_deg": number(Unit::ANGLE_DEG, problem.constraints.joint_margin),
+        "min_base_distance_mm": number(Unit::PLACE_MM, problem.constraints.min_base_distance),
     })
 }
 

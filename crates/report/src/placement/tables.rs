@@ -8,10 +8,10 @@ use stead_model::published::Published;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
 use stead_placement::feasibility::DeflectionMap;
-use stead_placement::outcome::{Cases, Generation, Plan, PlanPoint, Refinement};
+use stead_placement::outcome::{Cases, DeflectionFigures, Generation, Plan, PlanPoint, Refinement};
 use stead_placement::problem::{Placement, Problem};
 
-const PLAN: [&str; 27] = [
+const PLAN: [&str; 28] = [
     "point",
     "segment",
     "x_mm",
@@ -39,16 +39,19 @@ const PLAN: [&str; 27] = [
     "feed_mm",
     "axial_mm",
     "score_mm",
+    "total_mm",
 ];
 
 /// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
-/// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg. The last column, `std_mm`, is there
-/// where the robot's uncertainty is known: the standard deviation of `normal_mm`.
+/// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg; `total_mm` is the size of the deflection.
+/// Behind it are `surface_mm` where the task states the normal of the surface, and `std_mm` where the robot's uncertainty is
+/// known: the standard deviation of the scored part.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn plan(plan: &Plan) -> Result<Vec<u8>, ReportError> {
     let mut header = PLAN.to_vec();
+    header.extend(plan.deflection.surface.map(|_| "surface_mm"));
     header.extend(plan.mean_deviation.map(|_| "std_mm"));
     table("the table of a plan", &header, plan.points.iter().map(plan_row))
 }
@@ -62,15 +65,17 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
     row.push(Unit::PLAIN.text(point.inverse_condition));
     row.extend(vector(Unit::FORCE_N, &point.force));
     row.extend(vector(Unit::DEFLECTION_MM, &point.deflection));
-    let parts = [point.normal_part, point.feed_part, point.axial_part, point.score];
+    let parts = [point.normal_part, point.feed_part, point.axial_part, point.score, point.deflection.norm()];
     row.extend(parts.map(|part| Unit::DEFLECTION_MM.text(part)));
+    row.extend(point.surface_part.map(|part| Unit::DEFLECTION_MM.text(part)));
     row.extend(point.deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
     row
 }
 
 /// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
-/// the ratio where case 1 is a cancellation. The last column, `mean_std_mm`, is there where the robot's uncertainty is
-/// known: the standard deviation of the mean of |`normal_mm`|.
+/// the ratio where case 1 is a cancellation. `mean_mm` and `max_mm` are of the scores, `objective_mm` is what was minimised. The
+/// last column, `mean_std_mm`, is there where the robot's uncertainty is known: the standard deviation of the mean of the
+/// scored part.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -90,7 +95,15 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         "cutting_s",
         "transfer_s",
         "cycle_s",
+        "objective_mm",
+        "mean_wall_mm",
+        "max_wall_mm",
+        "mean_axis_mm",
+        "max_axis_mm",
+        "mean_total_mm",
+        "max_total_mm",
     ];
+    header.extend(cases.best.plan.deflection.surface.iter().flat_map(|_| ["mean_surface_mm", "max_surface_mm"]));
     header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
     let rows = cases.all().into_iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number().to_string()];
@@ -103,6 +116,10 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         let total = case.cycle.total();
         row.push(Unit::TIME_S.text_or_empty(total.map(|total| total - case.cycle.cutting)));
         row.push(Unit::TIME_S.text_or_empty(total));
+        row.push(Unit::DEFLECTION_MM.text(case.plan.objective));
+        let DeflectionFigures { wall, axis, total, surface, .. } = case.plan.deflection;
+        let figures = [wall, axis, total].into_iter().chain(surface).flat_map(|figures| [figures.mean, figures.max]);
+        row.extend(figures.map(|value| Unit::DEFLECTION_MM.text(value)));
         row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
         row
     });

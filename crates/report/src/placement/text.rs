@@ -12,7 +12,7 @@ use stead_placement::symmetry::Unsupported;
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
 
-/// The four cases: first placements and posture schemes, then mean and largest deflection, the ratio to case 1 beside the
+/// The four cases: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
 /// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
 /// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
@@ -72,7 +72,7 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
 }
 
 fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> Vec<Vec<String>> {
-    let mut header = vec!["case", "mean mm", "max mm"];
+    let mut header = vec!["case", "mean mm", "max mm", "total mm", "max total"];
     header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));
     header.push("ratio");
     if reference.is_some() {
@@ -82,7 +82,8 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     for (index, case) in outcome.cases.all().into_iter().enumerate() {
         let mut row = vec![case.number().to_string()];
-        row.extend([case.plan.mean, case.plan.max].map(|value| fixed(value * 1e3, 4)));
+        let total = case.plan.deflection.total;
+        row.extend([case.plan.mean, case.plan.max, total.mean, total.max].map(|value| fixed(value * 1e3, 4)));
         row.extend(case.plan.mean_deviation.map(|value| fixed(value * 1e3, 4)));
         row.push(outcome.cases.ratio(case).map_or_else(|| "-".to_owned(), |ratio| fixed(ratio, 2)));
         if let Some(Published { figures: case_mm, .. }) = reference {

@@ -1,4 +1,4 @@
-//! Every layer of the certificate against the ordinary evaluator, and with parts of it broken on purpose.
+//! Every layer of the certificate against the reference evaluator, and with parts of it broken on purpose.
 //!
 //! Random placements against the bounds of boxes around them see nothing: slack hides what is missing. So each layer is held
 //! against the truth by itself, over regions as small as that layer's slack asks for, at their corners and ends, and each must
@@ -29,7 +29,7 @@ use stead_model::stiffness::displacement;
 /// What is broken on purpose, and how.
 type Breaking<T> = (&'static str, fn(&mut T));
 
-/// A problem, what its bounds are made of, and the ordinary evaluator in the terms of the certificate.
+/// A problem, what its bounds are made of, and the reference evaluator in the terms of the certificate.
 pub struct Setting {
     pub problem: Problem,
     pub model: Model,

@@ -11,22 +11,23 @@
 //! and all is done in the widest vectors that the processor has ([`stead_numerics::simd`]), to the same bits with each.
 
 mod arm;
+mod deviation;
 mod laws;
 mod limit;
 mod pose;
-mod spread;
 mod states;
 mod wrist;
 
 pub use states::StateGrid;
 
 use crate::constraints::{ConstraintKind, relaxed};
+use crate::criterion::Aggregate;
 use crate::problem::{Placement, Problem, Redundancy};
+use deviation::Deviation;
 use laws::Laws;
 use limit::Limit;
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
-use spread::Spread;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
 use wrist::Demand;
@@ -40,7 +41,7 @@ pub struct BatchEvaluator<'a> {
     sine: Vec<f64>,
     limits: [Limit; 6],
     laws: Laws,
-    spread: Option<Spread>,
+    deviation: Option<Deviation>,
     flips: Flips,
     forearm_sin_cos: (f64, f64),
     instructions: Instructions,
@@ -102,10 +103,13 @@ struct PointGeometry {
     y6: Turning,
     z6: Turning,
     lever: Turning,
-    normal: Vector3<f64>,
+    /// See [`ScoredDirections`](crate::criterion::ScoredDirections); zero beyond their number.
+    directions: [Vector3<f64>; 3],
     force: Vector3<f64>,
     moment: Vector3<f64>,
+    /// Size of the force error that scores cover. N
     uncertainty: f64,
+    weight: f64,
 }
 
 impl<'a> BatchEvaluator<'a> {
@@ -122,7 +126,7 @@ impl<'a> BatchEvaluator<'a> {
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
             laws: Laws::new(&problem.robot),
-            spread: Spread::new(problem),
+            deviation: Deviation::new(problem),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
             instructions: Instructions::best(),
@@ -132,8 +136,8 @@ impl<'a> BatchEvaluator<'a> {
     /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint limits are
     /// seen joint by joint, in either flip of the wrist.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
-        use ConstraintKind::{Conditioning, JointLimit, MaxDeflection, Reach};
-        let mut evaluated = vec![Reach, Conditioning, MaxDeflection];
+        use ConstraintKind::{BaseDistance, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, BaseDistance, Conditioning, MaxDeflection];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
     }
@@ -150,9 +154,9 @@ impl<'a> BatchEvaluator<'a> {
 
     /// Evaluates path point `point` with the workpiece at a placement into `states`.
     ///
-    /// Allowed states get their score (m) and the sines and cosines of their joint angles (theta_5 not negative), all others
+    /// Allowed states get what they add to the cost of a plan ([`Problem::point_cost`]; by default their score, m) and the sines and cosines of their joint angles (theta_5 not negative), all others
     /// an infinite score. A state is allowed when one of the postures asked for is inside the limits of every joint by
-    /// itself; turns, and limits that tell two postures apart, are for the planner to look at.
+    /// itself; turns, and limits that tell two postures apart, are checked by the planner.
     pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
         self.evaluate_classes(point, placement, [true; 4], states);
     }
@@ -162,6 +166,9 @@ impl<'a> BatchEvaluator<'a> {
         let geometry = self.point_geometry(point, placement);
         for class in PostureClass::ALL {
             states.clear(class);
+        }
+        if libm::hypot(geometry.tip.x, geometry.tip.y) < self.problem.constraints.min_base_distance {
+            return;
         }
         self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
     }
@@ -184,10 +191,11 @@ impl<'a> BatchEvaluator<'a> {
             y6: flange_axis(1),
             z6: flange_axis(2),
             lever: Turning::new(&axes, &(tool_from_flange.rotation * lever)),
-            normal: axes.column(1).into_owned(),
+            directions: *self.problem.scored_directions(point, &axes).padded(),
             force: rotation * wrench.force,
             moment: rotation * wrench.moment,
             uncertainty: self.problem.criterion.force_uncertainty * wrench.force.norm(),
+            weight: self.problem.point_weight(point),
         }
     }
 }
@@ -205,18 +213,22 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        if self.geometry.uncertainty > 0.0 || self.evaluator.spread.is_some() {
-            self.batches::<S, true>(simd);
-        } else {
-            self.batches::<S, false>(simd);
+        let is_robust = self.geometry.uncertainty > 0.0 || self.evaluator.deviation.is_some();
+        match (self.evaluator.problem.criterion.weights.is_single(), is_robust) {
+            (true, false) => self.batches::<S, false, 1>(simd),
+            (true, true) => self.batches::<S, true, 1>(simd),
+            (false, false) => self.batches::<S, false, 3>(simd),
+            (false, true) => self.batches::<S, true, 3>(simd),
         }
     }
 }
 
 impl Evaluation<'_> {
+    /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `ROBUST` where scores cover errors.
     #[inline(always)]
-    fn batches<S: Simd, const ROBUST: bool>(self, simd: S) {
+    fn batches<S: Simd, const ROBUST: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, states } = self;
+        let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
         for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
             let cosine = Lanes::load(simd, &evaluator.cosine, start);
             let sine = Lanes::load(simd, &evaluator.sine, start);
@@ -226,15 +238,16 @@ impl Evaluation<'_> {
                 if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
                     continue;
                 }
-                let demand = Demand::new(simd, geometry, &arm, cosine, sine);
+                let demand = Demand::<S, N>::new(simd, geometry, &arm, cosine, sine);
                 for (negative, elbow) in arm.elbows.iter().enumerate() {
                     let class = PostureClass::ALL[2 * usize::from(back) + negative];
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
-                    let found = evaluator.wrist::<S, ROBUST>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    let found = evaluator.wrist::<S, ROBUST, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
-                        states.set_lanes(class, start, score, &directions);
+                        let cost = if is_squared { score * score } else { score };
+                        states.set_lanes(class, start, cost * geometry.weight, &directions);
                     }
                 }
             }

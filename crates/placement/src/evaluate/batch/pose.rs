@@ -1,8 +1,10 @@
 //! Configurations of the arm in lanes: their conditioning and their score. Everything is in the frame turned with joint 1: x
 //! along the arm, y to its left, z along axis 1.
 
+use crate::criterion::worst_gain;
+use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, MAX_LANES};
 
 /// Vectors in the frame of joint 1.
 #[derive(Clone, Copy)]
@@ -71,10 +73,10 @@ pub(super) fn turned<S: Simd>(v: [Lanes<S>; 3], sin1: Lanes<S>, cos1: Lanes<S>) 
 /// Sine and cosine of the six joint angles.
 pub(super) type Directions<S> = [[Lanes<S>; 2]; 6];
 
-/// What acts on the tool, and the direction in which its deflection counts.
+/// What acts on the tool, and the directions in which its deflection is scored: one, or three that may be zero.
 #[derive(Clone, Copy)]
-pub(super) struct Load<S: Simd> {
-    pub normal: Vector<S>,
+pub(super) struct Load<S: Simd, const N: usize> {
+    pub directions: [Vector<S>; N],
     pub force: Vector<S>,
     pub moment: Vector<S>,
 }
@@ -159,32 +161,53 @@ impl<S: Simd> Pose<S> {
         Lanes::splat(simd, 6.0) / (norm2 * inverse_norm2).sqrt()
     }
 
-    /// The score: |n . K^-1 w| as a sum over joints, and the force uncertainty's share; and what each joint adds to
-    /// n . K^-1 w per compliance.
+    /// Torque of a unit force along a direction on each joint; `px` and `py` are the tool centre point from axis 1. m
     #[inline(always)]
-    pub fn score<const ROBUST: bool>(
+    fn torques(&self, n: Vector<S>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
+        let [(r2x, r2z), (r3x, r3z)] = self.reaches();
+        let turn = self.lever.cross(n);
+        [
+            px * n.y - py * n.x,
+            r2x * n.z - r2z * n.x,
+            r3x * n.z - r3z * n.x,
+            self.z4.dot(turn),
+            self.z5.dot(turn),
+            self.z6.dot(turn),
+        ]
+    }
+
+    /// Velocity of the tool centre point per speed of each joint. m
+    #[inline(always)]
+    fn velocities(&self, simd: S, [px, py]: [Lanes<S>; 2]) -> [Vector<S>; 6] {
+        let [(r2x, r2z), (r3x, r3z)] = self.reaches();
+        let (zero, t) = (Lanes::splat(simd, 0.0), self.lever);
+        [
+            Vector { x: -py, y: px, z: zero },
+            Vector { x: -r2z, y: zero, z: r2x },
+            Vector { x: -r3z, y: zero, z: r3x },
+            self.z4.cross(t),
+            self.z5.cross(t),
+            self.z6.cross(t),
+        ]
+    }
+
+    /// The score, the norm of the parts of K^-1 w along the scored directions, with the share of force errors; and what each
+    /// joint adds to it per compliance.
+    #[inline(always)]
+    pub fn score<const ROBUST: bool, const N: usize>(
         &self,
         simd: S,
         lateral: f64,
         compliances: &[Lanes<S>; 6],
-        load: &Load<S>,
+        load: &Load<S, N>,
         uncertainty: f64,
     ) -> (Lanes<S>, [Lanes<S>; 6]) {
         let t = self.lever;
         let (px, py) = (self.forward + t.x, t.y + lateral);
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
-        let Load { normal, force, moment } = *load;
-        let turn_n = t.cross(normal);
+        let Load { directions, force, moment } = *load;
+        // Torque on each joint: of a unit force along each direction, and of the wrench.
         let turn_f = t.cross(force).plus(moment);
-        // Torque of a unit normal force, and of the wrench, on each joint.
-        let torque_n = [
-            px * normal.y - py * normal.x,
-            r2x * normal.z - r2z * normal.x,
-            r3x * normal.z - r3z * normal.x,
-            self.z4.dot(turn_n),
-            self.z5.dot(turn_n),
-            self.z6.dot(turn_n),
-        ];
         let torque_f = [
             px * force.y - py * force.x + moment.z,
             r2x * force.z - r2z * force.x - moment.y,
@@ -193,29 +216,96 @@ impl<S: Simd> Pose<S> {
             self.z5.dot(turn_f),
             self.z6.dot(turn_f),
         ];
+        let zero = Lanes::splat(simd, 0.0);
+        // What each joint adds to the part along each direction per compliance.
+        let mut torque_n = [torque_f; N];
         let mut parts = torque_n;
-        let mut deflection = Lanes::splat(simd, 0.0);
-        for j in 0..6 {
-            parts[j] = torque_n[j] * torque_f[j];
-            deflection = deflection + parts[j] * compliances[j];
-        }
-        let mut score = deflection.abs();
-        if ROBUST && uncertainty > 0.0 {
-            let zero = Lanes::splat(simd, 0.0);
-            let velocities = [
-                Vector { x: -py, y: px, z: zero },
-                Vector { x: -r2z, y: zero, z: r2x },
-                Vector { x: -r3z, y: zero, z: r3x },
-                self.z4.cross(t),
-                self.z5.cross(t),
-                self.z6.cross(t),
-            ];
-            let mut response = Vector { x: zero, y: zero, z: zero };
+        let mut deflection = [zero; N];
+        for k in 0..N {
+            torque_n[k] = self.torques(directions[k], [px, py]);
             for j in 0..6 {
-                response = response.plus(velocities[j].scale(torque_n[j] * compliances[j]));
+                parts[k][j] = torque_n[k][j] * torque_f[j];
+                deflection[k] = deflection[k] + parts[k][j] * compliances[j];
             }
-            score = score + response.dot(response).sqrt() * uncertainty;
         }
-        (score, parts)
+        if N == 1 {
+            let mut score = deflection[0].abs();
+            if ROBUST && uncertainty > 0.0 {
+                let response = response(simd, &self.velocities(simd, [px, py]), &torque_n[0], compliances);
+                score = score + response.dot(response).sqrt() * uncertainty;
+            }
+            return (score, parts[0]);
+        }
+        let mut square = zero;
+        for part in deflection {
+            square = square + part * part;
+        }
+        let scored = square.sqrt();
+        let mut score = scored;
+        if ROBUST {
+            // Along the deflection itself, where there is one.
+            let inverse = zero.less(scored).select(Lanes::splat(simd, 1.0) / scored, zero);
+            let mut along = [zero; 6];
+            for k in 0..N {
+                for j in 0..6 {
+                    along[j] = along[j] + parts[k][j] * (deflection[k] * inverse);
+                }
+            }
+            parts[0] = along;
+            if uncertainty > 0.0 {
+                let velocities = self.velocities(simd, [px, py]);
+                let mut gains = [Vector { x: zero, y: zero, z: zero }; N];
+                for k in 0..N {
+                    gains[k] = response(simd, &velocities, &torque_n[k], compliances);
+                }
+                score = worst(simd, &gains, &deflection, square, uncertainty);
+            }
+        }
+        (score, parts[0])
     }
+}
+
+/// The deflection under a unit force of these torques. m/N
+#[inline(always)]
+fn response<S: Simd>(
+    simd: S,
+    velocities: &[Vector<S>; 6],
+    torques: &[Lanes<S>; 6],
+    compliances: &[Lanes<S>; 6],
+) -> Vector<S> {
+    let zero = Lanes::splat(simd, 0.0);
+    let mut response = Vector { x: zero, y: zero, z: zero };
+    for j in 0..6 {
+        response = response.plus(velocities[j].scale(torques[j] * compliances[j]));
+    }
+    response
+}
+
+/// The norm of the parts of a deflection under the worst error of the force of this size (N), from how the parts grow with the
+/// force: [`worst_gain`], one state after the other.
+#[inline(always)]
+fn worst<S: Simd, const N: usize>(
+    simd: S,
+    gains: &[Vector<S>; N],
+    parts: &[Lanes<S>; N],
+    square: Lanes<S>,
+    size: f64,
+) -> Lanes<S> {
+    let zero = Lanes::splat(simd, 0.0);
+    let [mut xx, mut yy, mut zz, mut xy, mut xz, mut yz, mut x, mut y, mut z] = [zero; 9];
+    for (gain, part) in gains.iter().zip(parts) {
+        (xx, yy, zz) = (xx + gain.x * gain.x, yy + gain.y * gain.y, zz + gain.z * gain.z);
+        (xy, xz, yz) = (xy + gain.x * gain.y, xz + gain.x * gain.z, yz + gain.y * gain.z);
+        (x, y, z) = (x + gain.x * *part, y + gain.y * *part, z + gain.z * *part);
+    }
+    let [xx, yy, zz] = [xx.to_array(), yy.to_array(), zz.to_array()];
+    let [xy, xz, yz] = [xy.to_array(), xz.to_array(), yz.to_array()];
+    let [x, y, z] = [x.to_array(), y.to_array(), z.to_array()];
+    let mut gained = [0.0; MAX_LANES];
+    for lane in 0..Lanes::<S>::COUNT {
+        let [xy, xz, yz] = [xy[lane], xz[lane], yz[lane]];
+        let curvature = Matrix3::new(xx[lane], xy, xz, xy, yy[lane], yz, xz, yz, zz[lane]);
+        gained[lane] = worst_gain(curvature, Vector3::new(x[lane], y[lane], z[lane]), size);
+    }
+    (square + Lanes::load(simd, &gained, 0)).sqrt()
 }

@@ -4,7 +4,8 @@ use pulp::Simd;
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::{Lanes, MAX_LANES};
 
-/// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta.
+/// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta. The score is what
+/// the state adds to the cost of a plan.
 ///
 /// Joint angles are kept as sines and cosines. Each row is continued cyclically by `pad` values at both ends, so that a
 /// planner can look to either side of beta without taking remainders: entry `pad + k` belongs to beta number k.

@@ -1,12 +1,13 @@
-//! The batch evaluator against the ordinary one.
+//! The batch evaluator against the reference evaluator.
 
 use super::*;
+use crate::criterion::{Aggregate, Criterion, Weights};
 use crate::evaluate::reference::state;
-use crate::problem::Criterion;
 use crate::testing::{compensated, five_segments, with_laws, with_uncertainty};
 use stead_model::robot::angles::{wrap, yaw_from_q4};
 use stead_model::robot::testing::odd_arms;
 use stead_model::robot::{Compensator, Compliance, Posture, Robot};
+use stead_model::task::{Task, Wrench};
 
 /// Holds every state of some points against [`state`]; returns how many were allowed.
 fn compare(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize> + Clone) -> usize {
@@ -68,10 +69,48 @@ fn reference(problem: &Problem, placement: &Placement, point: usize, k: usize, p
             margin = margin.min((real - range.min).min(range.max - real));
         }
     }
+    if problem.constraints.min_base_distance > 0.0 {
+        margin = margin.min(s.base_distance - problem.constraints.min_base_distance);
+    }
     if let Some(limit) = problem.constraints.max_deflection {
         margin = margin.min((limit - s.score()) * 1e3);
     }
-    Expected { margin, score: s.score(), joints: s.joints }
+    Expected { margin, score: problem.point_cost(point, s.score()), joints: s.joints }
+}
+
+/// A path with the normal of a surface at every point, and forces and moments in every direction.
+fn with_surface() -> Problem {
+    let mut problem = crate::testing::slanted();
+    let normals = (0..105).map(|k| {
+        let (sine, cosine) = libm::sincos(0.1 * f64::from(k));
+        Vector3::new(0.6 * sine, 0.8, 0.6 * cosine)
+    });
+    let path = problem.task.path().clone().with_surface_normals(normals.collect()).unwrap();
+    let wrenches = problem.task.wrenches().iter().map(|w| Wrench { moment: Vector3::new(3.0, -5.0, 11.0), ..*w });
+    problem.task = Task::new(path, wrenches.collect()).unwrap();
+    problem
+}
+
+#[test]
+fn agrees_whatever_is_scored() {
+    let plain = with_surface();
+    let mixed = Weights { wall: 1.0, axis: 0.5, feed: 0.0, surface: 2.0 };
+    for weights in [Weights::SURFACE, Weights::AXIS, Weights::TOTAL, mixed] {
+        for (force_uncertainty, confidence) in [(0.0, 0.0), (0.1, 0.0), (0.0, 2.0), (0.1, 2.0)] {
+            for aggregate in [Aggregate::Mean, Aggregate::Rms] {
+                let mut problem = with_uncertainty(plain.clone(), 0.1);
+                let segment_weights = vec![1.0, 2.0, 0.5, 3.0, 1.0];
+                problem.criterion = Criterion { weights, aggregate, segment_weights, force_uncertainty, confidence };
+                problem.constraints.max_deflection = Some(2.5e-3);
+                problem.constraints.min_base_distance = 1.9;
+                let mut allowed = 0;
+                for placement in [[2.2e-3, -1.6435, -0.5564, 2.1], [0.2, -1.9, -0.3, -1.0]].map(Placement::from) {
+                    allowed += compare(&problem, &placement, (0..105).step_by(9));
+                }
+                assert!(allowed > 300, "{allowed} {weights:?} {force_uncertainty} {confidence}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -160,7 +199,7 @@ fn agrees_with_uncertain_compliances() {
         for force_uncertainty in [0.0, 0.1] {
             let mut problem = with_uncertainty(with_laws(constant.clone(), &laws), 0.1);
             let sure = problem.clone();
-            problem.criterion = Criterion { force_uncertainty, confidence: 2.0 };
+            problem.criterion = Criterion { force_uncertainty, confidence: 2.0, ..Criterion::default() };
             problem.constraints.max_deflection = Some(1.5e-3);
             let mut allowed = 0;
             for placement in
@@ -178,7 +217,7 @@ fn agrees_with_uncertain_compliances() {
 
 #[test]
 fn agrees_for_every_sign_of_twist_and_with_offsets() {
-    // Springs at every joint, so that each angle's sine and cosine is held against the ordinary evaluator too.
+    // Springs at every joint, so that each angle's sine and cosine is held against the reference evaluator too.
     let compensator = Compensator { spring_stiffness: 4e4, a: 0.5, l: 0.3, alpha: 0.7, free_length: 0.5 };
     let sprung = Compliance::Compensated { alone: 1e-6, compensator };
     for (arm, is_sprung) in odd_arms().into_iter().flat_map(|arm| [(arm.clone(), false), (arm, true)]) {
@@ -244,7 +283,9 @@ fn every_processor_gives_the_same_bits() {
         [[0.0, 0.0, 0.5, 0.0], [0.0, -4.0, -0.4, 0.0], [0.0, -2.55, 0.2, 1.0], [1e-9, 1e-9, 2.0, -3.0]]
             .map(Placement::from),
     );
-    for problem in [plain, narrow, sprung] {
+    let mut whole = narrow.clone();
+    whole.criterion.weights = Weights::TOTAL;
+    for problem in [plain, narrow, sprung, whole] {
         // Counts that fill the last lanes and that do not; fewer values than lanes.
         for count in [120, 121, 37, 5, 3] {
             let mut problem = problem.clone();

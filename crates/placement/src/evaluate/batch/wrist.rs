@@ -8,15 +8,15 @@ use pulp::Simd;
 use stead_numerics::simd::Lanes;
 
 /// What the tool is to do, in the frame of joint 1: the same for both elbows.
-pub(super) struct Demand<S: Simd> {
+pub(super) struct Demand<S: Simd, const N: usize> {
     x6: Vector<S>,
     y6: Vector<S>,
     z6: Vector<S>,
     lever: Vector<S>,
-    load: Load<S>,
+    load: Load<S, N>,
 }
 
-impl<S: Simd> Demand<S> {
+impl<S: Simd, const N: usize> Demand<S, N> {
     #[inline(always)]
     pub fn new(simd: S, geometry: &PointGeometry, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Self {
         Self {
@@ -25,7 +25,7 @@ impl<S: Simd> Demand<S> {
             z6: Self::turning(&geometry.z6, arm, cosine, sine),
             lever: Self::turning(&geometry.lever, arm, cosine, sine),
             load: Load {
-                normal: Self::constant(simd, &geometry.normal, arm),
+                directions: std::array::from_fn(|k| Self::constant(simd, &geometry.directions[k], arm)),
                 force: Self::constant(simd, &geometry.force, arm),
                 moment: Self::constant(simd, &geometry.moment, arm),
             },
@@ -48,11 +48,11 @@ impl BatchEvaluator<'_> {
     /// (theta_5 not negative); nothing where none is allowed. `ROBUST` where scores cover errors of the force or of the
     /// compliances.
     #[inline(always)]
-    pub(super) fn wrist<S: Simd, const ROBUST: bool>(
+    pub(super) fn wrist<S: Simd, const ROBUST: bool, const N: usize>(
         &self,
         simd: S,
         uncertainty: f64,
-        demand: &Demand<S>,
+        demand: &Demand<S, N>,
         arm: &Arm<S>,
         elbow: &Elbow<S>,
     ) -> Option<(Lanes<S>, Directions<S>)> {
@@ -116,9 +116,9 @@ impl BatchEvaluator<'_> {
             turned[5] = [-sixth[0], -sixth[1]];
         }
         let compliances = self.laws.at(simd, &self.limits, &turned);
-        let (mut score, parts) = pose.score::<ROBUST>(simd, g.lateral, &compliances, &demand.load, uncertainty);
-        if ROBUST && let Some(spread) = &self.spread {
-            score = score + spread.margin(simd, &self.limits, &parts, &turned, &compliances);
+        let (mut score, parts) = pose.score::<ROBUST, N>(simd, g.lateral, &compliances, &demand.load, uncertainty);
+        if ROBUST && let Some(deviation) = &self.deviation {
+            score = score + deviation.margin(simd, &self.limits, &parts, &turned, &compliances);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));

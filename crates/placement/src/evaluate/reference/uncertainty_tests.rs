@@ -1,7 +1,8 @@
 //! Standard deviations of the normal part: against drawn compliances, the matrix product and differences.
 
 use super::*;
-use crate::problem::{Criterion, Placement};
+use crate::criterion::Criterion;
+use crate::problem::Placement;
 use crate::testing::{five_segments, five_segments_compensated, with_uncertainty};
 use nalgebra::Vector6;
 use proptest::prelude::*;
@@ -49,7 +50,7 @@ fn drawn_compliances_scatter_the_normal_part_as_much_as_its_deviation_says() {
             let change = drawn[k].normal_part - nominal[k].normal_part;
             *square += change * change;
             // Nothing is lost by linearising: the normal part is linear in the compliances.
-            let gradient = normal_part_by_parameters(&problem, points[k], &placement, &nominal[k].joints);
+            let gradient = scored_part_by_parameters(&problem, points[k], &placement, &nominal[k].joints);
             let directions = problem.robot.uncertainty().unwrap().directions();
             let shift =
                 |k: usize| steps.iter().zip(directions).map(|(step, direction)| step * direction[k]).sum::<f64>();
@@ -71,7 +72,7 @@ fn a_score_adds_deviations_as_often_as_asked() {
     let sure = at(&problem);
     assert_eq!((sure.margin, sure.score()), (0.0, at(&five_segments()).score()));
     assert_eq!(at(&five_segments()).deviation, None);
-    problem.criterion = Criterion { force_uncertainty: 0.1, confidence: 2.0 };
+    problem.criterion = Criterion { force_uncertainty: 0.1, confidence: 2.0, ..Criterion::default() };
     let found = at(&problem);
     assert_eq!(found.deviation, sure.deviation);
     assert!(found.uncertainty > 0.0 && found.margin == 2.0 * sure.deviation.unwrap());

@@ -14,8 +14,9 @@ type State = (f64, [f64; 6]);
 struct Case {
     count: usize,
     reach: usize,
-    sign: f64,
-    /// Of joints that are not looked at modulo a turn.
+    sense: Sense,
+    aggregate: Aggregate,
+    /// Of joints not treated modulo a turn.
     ranges: [Option<Range>; 6],
     limits: [f64; 6],
     /// Before and now, over beta: what is not there is not allowed.
@@ -53,7 +54,8 @@ impl Case {
         Self {
             count,
             reach: random.random_range(0..4),
-            sign: if random.random() { -1.0 } else { 1.0 },
+            sense: if random.random() { Sense::Max } else { Sense::Min },
+            aggregate: if random.random_range(0..3) == 0 { Aggregate::Max } else { Aggregate::Mean },
             ranges,
             limits,
             points,
@@ -85,7 +87,8 @@ impl Case {
         let reach = self.reach as isize;
         let before = (-reach..=reach).filter_map(|shift| self.points[0][self.turned(here, shift)]);
         let costs = before.filter(|(_, old)| self.is_within(old, &joints)).map(|(cost, _)| cost);
-        costs.fold(f64::INFINITY, f64::min) + self.sign * score
+        let cost = costs.fold(f64::INFINITY, f64::min);
+        if cost.is_finite() { self.aggregate.join_signed(self.sense, cost, self.sense.sign() * score) } else { cost }
     }
 
     fn turned(&self, here: usize, shift: isize) -> usize {
@@ -95,7 +98,7 @@ impl Case {
     /// What is wrong with a step under the given rules, if anything is.
     fn fault<R: Rules>(&self, instructions: Instructions, wrap_around: fn(&mut StateGrid)) -> Option<String> {
         let joints = std::array::from_fn(|j| JointStep::new(self.limits[j], self.ranges[j]));
-        let step = Step { reach: self.reach, joints, sign: self.sign, instructions };
+        let step = Step { reach: self.reach, joints, sense: self.sense, aggregate: self.aggregate, instructions };
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
@@ -111,8 +114,10 @@ impl Case {
             }
             if let Some((score, joints)) = self.points[1][here].filter(|_| expected.is_finite()) {
                 let from = self.points[0][self.turned(here, isize::from(way[here]))];
-                let right = from
-                    .is_some_and(|(cost, old)| self.is_within(&old, &joints) && cost + self.sign * score == expected);
+                let right = from.is_some_and(|(cost, old)| {
+                    self.is_within(&old, &joints)
+                        && self.aggregate.join_signed(self.sense, cost, self.sense.sign() * score) == expected
+                });
                 if !right {
                     return Some(format!("way {} at {here}", way[here]));
                 }
@@ -184,7 +189,7 @@ fn every_breach_of_the_rules_is_noticed() {
         ("predecessor beside the one taken", noticed::<PredecessorBeside>(wrap_around)),
         ("limit of the next joint", noticed::<LimitOfTheNextJoint>(wrap_around)),
         ("no second look where a joint steps too far", noticed::<NeverLooksAgain>(wrap_around)),
-        ("joint steps not looked at", noticed::<NoJointSteps>(wrap_around)),
+        ("joint steps not checked", noticed::<NoJointSteps>(wrap_around)),
         ("smallest instead of largest", noticed::<AlwaysSmallest>(wrap_around)),
         ("cyclic continuation one off", noticed::<Right>(wrap_one_off)),
     ];

@@ -9,7 +9,7 @@ use stead_numerics::simd::Lanes;
 
 /// The uncertainty of an arm's compliances, ready for lanes.
 #[derive(Debug, Clone)]
-pub(super) struct Spread {
+pub(super) struct Deviation {
     confidence: f64,
     /// For each parameter its joint, and how the compliance of that joint answers to it.
     slopes: Vec<(usize, Slope)>,
@@ -86,7 +86,7 @@ impl Slope {
     }
 }
 
-impl Spread {
+impl Deviation {
     /// Nothing where the score does not ask for it, or where nothing is known.
     pub fn new(problem: &Problem) -> Option<Self> {
         let confidence = problem.criterion.confidence;

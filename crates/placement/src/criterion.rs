@@ -1,0 +1,286 @@
+//! What is minimised: which part of a path point's deflection is scored, and how the points make up one figure.
+//!
+//! The score of a point is `c_i = sqrt(sum_k w_k d_k^2)`, d_k being the parts of its deflection along the directions of
+//! [`Weights`], with what errors of forces and compliances can add to it. With one direction alone that is `|d|`: the wall,
+//! `axis x feed`, gives c_i of Caro et al. 2013, eq. 11.
+
+mod force_error;
+
+pub use force_error::worst_force_error;
+pub(crate) use force_error::worst_gain;
+
+use super::problem::Problem;
+use super::sense::Sense;
+use nalgebra::{Matrix3, Vector3};
+use stead_numerics::scalar::Scalar;
+
+/// How much the parts of a deflection count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Weights {
+    /// Along the feed, made normal to the tool axis.
+    pub feed: f64,
+    /// Along `axis x feed`: what spoils a wall cut by the tool's side.
+    pub wall: f64,
+    /// Along the tool axis: what spoils a floor.
+    pub axis: f64,
+    /// Along the normal of the surface that the task states.
+    pub surface: f64,
+}
+
+impl Weights {
+    /// Nothing counts.
+    pub const NONE: Self = Self { feed: 0.0, wall: 0.0, axis: 0.0, surface: 0.0 };
+    /// The wall alone (Caro et al. 2013).
+    pub const WALL: Self = Self { wall: 1.0, ..Self::NONE };
+    /// The normal of the surface alone.
+    pub const SURFACE: Self = Self { surface: 1.0, ..Self::NONE };
+    /// The tool axis alone.
+    pub const AXIS: Self = Self { axis: 1.0, ..Self::NONE };
+    /// The size of the whole deflection.
+    pub const TOTAL: Self = Self { feed: 1.0, wall: 1.0, axis: 1.0, surface: 0.0 };
+
+    /// Whether one direction alone is scored, so that a score is the absolute value of a signed part.
+    pub fn is_single(&self) -> bool {
+        [self.feed, self.wall, self.axis, self.surface].iter().filter(|weight| **weight > 0.0).count() == 1
+    }
+}
+
+/// What is scored alone, in the words of the field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// The part normal to the wall, `axis x feed`.
+    Wall,
+    /// The part normal to the surface that the task states.
+    Surface,
+    /// The part along the tool axis.
+    Axis,
+    /// The size of the whole deflection.
+    Total,
+}
+
+impl Direction {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Wall, Self::Surface, Self::Axis, Self::Total];
+
+    /// As weights.
+    pub fn weights(self) -> Weights {
+        match self {
+            Self::Wall => Weights::WALL,
+            Self::Surface => Weights::SURFACE,
+            Self::Axis => Weights::AXIS,
+            Self::Total => Weights::TOTAL,
+        }
+    }
+
+    /// As files state it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wall => "wall",
+            Self::Surface => "surface",
+            Self::Axis => "axis",
+            Self::Total => "total",
+        }
+    }
+}
+
+/// How the scores of the points make up the figure that is minimised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Aggregate {
+    /// Their mean, f_MQC (Caro et al. 2013, eq. 13).
+    #[default]
+    Mean,
+    /// The root of the mean of their squares.
+    Rms,
+    /// The largest.
+    Max,
+}
+
+impl Aggregate {
+    /// As files state it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Rms => "rms",
+            Self::Max => "max",
+        }
+    }
+
+    /// What a point of this weight and score (m) adds to the cost of a plan.
+    pub fn point_cost(self, weight: f64, score: f64) -> f64 {
+        match self {
+            Self::Mean | Self::Max => weight * score,
+            Self::Rms => weight * score * score,
+        }
+    }
+
+    /// The cost of two parts of a plan together.
+    pub fn join(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Mean | Self::Rms => a + b,
+            Self::Max => a.max(b),
+        }
+    }
+
+    /// The same of costs times the sign of a sense ([`Sense::sign`]).
+    pub fn join_signed(self, sense: Sense, a: f64, b: f64) -> f64 {
+        match (self, sense) {
+            (Self::Mean | Self::Rms, _) => a + b,
+            (Self::Max, Sense::Min) => a.max(b),
+            (Self::Max, Sense::Max) => a.min(b),
+        }
+    }
+}
+
+/// How a placement is scored.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Criterion {
+    /// Which part of the deflection counts.
+    pub weights: Weights,
+    /// How points make up one figure.
+    pub aggregate: Aggregate,
+    /// The weight of every segment; empty where all are 1.
+    pub segment_weights: Vec<f64>,
+    /// Relative size eps of the force error in any direction that a score must cover: the score is the largest over all
+    /// errors up to `eps |f|`, with one direction n alone `c_i + eps |f| |K^-1 n|`. Zero leaves it out.
+    pub force_uncertainty: f64,
+    /// How many standard deviations sigma_i of c_i a score must cover, from the uncertainty of the robot's compliances: this
+    /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
+    /// uncertainty is not known.
+    pub confidence: f64,
+}
+
+impl Criterion {
+    /// The direction that is scored alone, where it is one of [`Direction::ALL`].
+    pub fn direction(&self) -> Option<Direction> {
+        Direction::ALL.into_iter().find(|direction| direction.weights() == self.weights)
+    }
+}
+
+impl Default for Criterion {
+    /// As published: the mean of the part normal to the wall.
+    fn default() -> Self {
+        Self {
+            weights: Weights::WALL,
+            aggregate: Aggregate::Mean,
+            segment_weights: Vec::new(),
+            force_uncertainty: 0.0,
+            confidence: 0.0,
+        }
+    }
+}
+
+/// The directions that are scored at a path point, each as long as the root of its weight: the score is the norm of the
+/// deflection's parts along them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScoredDirections<T: Scalar = f64> {
+    vectors: [Vector3<T>; 3],
+    count: usize,
+}
+
+impl<T: Scalar> ScoredDirections<T> {
+    /// The directions, from one to three.
+    pub fn vectors(&self) -> &[Vector3<T>] {
+        &self.vectors[..self.count]
+    }
+
+    /// All three, zero where there are fewer.
+    pub fn padded(&self) -> &[Vector3<T>; 3] {
+        &self.vectors
+    }
+
+    /// The only one, where there is one.
+    pub fn single(&self) -> Option<&Vector3<T>> {
+        if self.count == 1 { self.vectors.first() } else { None }
+    }
+
+    /// The parts of a deflection along them, zero beyond their number. m
+    pub fn parts(&self, deflection: &Vector3<T>) -> Vector3<T> {
+        Vector3::from(self.vectors.map(|vector| vector.dot(deflection)))
+    }
+
+    /// As a matrix with a row each.
+    pub fn rows(&self) -> Matrix3<T> {
+        Matrix3::from_columns(&self.vectors).transpose()
+    }
+}
+
+impl Problem {
+    /// The directions that are scored at a path point, in the frame in which its axes (feed, left of the feed, tool axis) are
+    /// given as columns.
+    pub fn scored_directions<T: Scalar>(&self, point: usize, axes: &Matrix3<T>) -> ScoredDirections<T> {
+        let Weights { feed, wall, axis, surface } = self.criterion.weights;
+        let normal = self.task.path().surface_normals().filter(|_| surface > 0.0).map(|normals| {
+            self.task.points()[point].workpiece_from_point().tr_mul(&normals[point]) * libm::sqrt(surface)
+        });
+        let mut directions = ScoredDirections { vectors: [Vector3::zeros(); 3], count: 0 };
+        let mut add = |coefficients: [f64; 3]| {
+            let mut vector = Vector3::zeros();
+            for k in (0..3).filter(|k| coefficients[*k] != 0.0) {
+                vector += axes.column(k).map(|entry| entry.scale(coefficients[k]));
+            }
+            directions.vectors[directions.count] = vector;
+            directions.count += 1;
+        };
+        match normal {
+            Some(normal) if self.criterion.weights.is_single() => add(normal.into()),
+            Some(normal) => {
+                let metric = Matrix3::from_diagonal(&Vector3::new(feed, wall, axis)) + normal * normal.transpose();
+                factor(metric).into_iter().filter(|column| column.iter().any(|entry| *entry != 0.0)).for_each(add);
+            }
+            None => {
+                for (k, weight) in [feed, wall, axis].into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
+                    add(std::array::from_fn(|j| if j == k { libm::sqrt(weight) } else { 0.0 }));
+                }
+            }
+        }
+        directions
+    }
+
+    /// The weight of the segment of a path point.
+    pub fn point_weight(&self, point: usize) -> f64 {
+        let weights = &self.criterion.segment_weights;
+        if weights.is_empty() { 1.0 } else { weights[self.task.path().segment_of(point)] }
+    }
+
+    /// What a path point of this score (m) adds to the cost of a plan.
+    pub fn point_cost(&self, point: usize, score: f64) -> f64 {
+        self.criterion.aggregate.point_cost(self.point_weight(point), score)
+    }
+
+    /// The figure that is minimised, from the costs of plans that together cover the whole path. m
+    pub fn objective(&self, costs: impl IntoIterator<Item = f64>) -> f64 {
+        let aggregate = self.criterion.aggregate;
+        let cost = costs.into_iter().fold(0.0, |sum, cost| aggregate.join(sum, cost));
+        match aggregate {
+            Aggregate::Mean => cost / self.total_weight(),
+            Aggregate::Rms => libm::sqrt(cost / self.total_weight()),
+            Aggregate::Max => cost,
+        }
+    }
+
+    /// Sum of the weights of all points.
+    pub fn total_weight(&self) -> f64 {
+        let points = |(weight, span): (&f64, &std::ops::Range<usize>)| weight * span.len() as f64;
+        match &self.criterion.segment_weights[..] {
+            [] => self.task.points().len() as f64,
+            weights => weights.iter().zip(self.task.segments()).map(points).sum(),
+        }
+    }
+}
+
+/// Columns whose products with themselves sum up to a positive semidefinite matrix (Cholesky).
+fn factor(mut matrix: Matrix3<f64>) -> [[f64; 3]; 3] {
+    let mut columns = [[0.0; 3]; 3];
+    let floor = 1e-14 * matrix.trace();
+    for k in 0..3 {
+        if matrix[(k, k)] > floor {
+            let column = matrix.column(k) / libm::sqrt(matrix[(k, k)]);
+            matrix -= column * column.transpose();
+            columns[k] = column.into();
+        }
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests;
