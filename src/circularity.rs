@@ -64,10 +64,6 @@ impl Report for Circularity {
         circularity_text(&self.file, &self.roundness)
     }
 
-    fn notes(&self) -> &[String] {
-        &[]
-    }
-
     fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

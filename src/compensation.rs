@@ -1,7 +1,7 @@
 //! Paths corrected so that the loaded tool follows the path that is wanted.
 
+use crate::Error;
 use crate::result::{Report, result};
-use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -82,10 +82,6 @@ impl Report for CompensatedPath {
 
     fn notes(&self) -> &[String] {
         &self.run.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
     }
 }
 

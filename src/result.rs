@@ -8,16 +8,22 @@ use stead_report::Folder;
 
 /// A result as files, as a document and as a text; [`result!`] makes the public methods of it.
 pub(crate) trait Report {
-    /// Writes the files that the command of the same name leaves.
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error>;
+    /// Writes the files that the command of the same name leaves, if it leaves any.
+    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(Vec::new())
+    }
     /// What the command prints with `--json`.
     fn document(&self) -> Value;
     /// What the command prints.
     fn table(&self) -> String;
     /// What the result rests on.
-    fn notes(&self) -> &[String];
+    fn notes(&self) -> &[String] {
+        &[]
+    }
     /// Why the result may not be what was wanted.
-    fn warnings(&self) -> &[Warning];
+    fn warnings(&self) -> &[Warning] {
+        &[]
+    }
 }
 
 /// The public face of a [`Report`].

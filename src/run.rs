@@ -260,10 +260,6 @@ impl Explanations {
 }
 
 impl Report for PlacementScore {
-    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(Vec::new())
-    }
-
     fn document(&self) -> Value {
         evaluation::score_json(&self.score, &self.context)
     }
@@ -282,10 +278,6 @@ impl Report for PlacementScore {
 }
 
 impl Report for Explanations {
-    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(Vec::new())
-    }
-
     fn document(&self) -> Value {
         evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
     }

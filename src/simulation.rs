@@ -170,10 +170,6 @@ impl Report for StabilityAnalysis {
     fn notes(&self) -> &[String] {
         &self.analysis.notes
     }
-
-    fn warnings(&self) -> &[Warning] {
-        &[]
-    }
 }
 
 result!(SimulatedPass, StabilityAnalysis);

@@ -2,7 +2,9 @@
 
 use super::help;
 use super::values::{damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
@@ -88,25 +90,8 @@ pub(super) struct SchemaOptions {
 #[derive(Debug, Args)]
 pub(super) struct CompletionsOptions {
     /// Shell that the script is for
+    #[arg(value_parser = PossibleValuesParser::new(["bash", "zsh", "fish"]).try_map(|name| name.parse::<Shell>()))]
     pub shell: Shell,
-}
-
-/// The shells that there is a completion script for.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum Shell {
-    Bash,
-    Zsh,
-    Fish,
-}
-
-impl From<Shell> for clap_complete::Shell {
-    fn from(shell: Shell) -> Self {
-        match shell {
-            Shell::Bash => Self::Bash,
-            Shell::Zsh => Self::Zsh,
-            Shell::Fish => Self::Fish,
-        }
-    }
 }
 
 #[derive(Debug, Args)]

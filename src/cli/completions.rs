@@ -5,7 +5,7 @@ use super::{Failure, print};
 
 pub(super) fn run(options: &CompletionsOptions) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(clap_complete::Shell::from(options.shell), &mut super::command(), "stead", &mut script);
+    clap_complete::generate(options.shell, &mut super::command(), "stead", &mut script);
     print(&script);
     Ok(())
 }

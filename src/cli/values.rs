@@ -52,8 +52,8 @@ pub(super) fn quaternion(text: &str) -> Result<f64, String> {
 
 /// Seeds are what a run file can hold too.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
-    const MOST: u64 = i64::MAX as u64;
-    text.parse().ok().filter(|n| *n <= MOST).ok_or_else(|| format!("allowed: a whole number from 0 to {MOST}"))
+    const MAX: u64 = i64::MAX as u64;
+    text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
 }
 
 pub(super) fn point(text: &str) -> Result<usize, String> {
@@ -61,11 +61,11 @@ pub(super) fn point(text: &str) -> Result<usize, String> {
 }
 
 /// More threads than this help nobody.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     text.parse()
         .ok()
-        .filter(|n| (1..=MOST_THREADS).contains(n))
-        .ok_or_else(|| format!("allowed: a whole number from 1 to {MOST_THREADS}"))
+        .filter(|n| (1..=MAX_THREADS).contains(n))
+        .ok_or_else(|| format!("allowed: a whole number from 1 to {MAX_THREADS}"))
 }

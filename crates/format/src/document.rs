@@ -7,7 +7,6 @@
 //! use stead_format::units::{Mm, Positive};
 //! # fn main() -> Result<(), stead_format::input::InputError> {
 //! #[derive(Deserialize)]
-//! #[serde(deny_unknown_fields)]
 //! struct Cell {
 //!     x_mm: Interval<Mm>,
 //!     wall_mm: Mm<Positive>,
@@ -27,7 +26,7 @@
 //! ```
 
 use crate::deserialize::Node;
-use crate::input::InputError;
+use crate::input::{InputError, InputFile, input_file};
 use crate::place::Place;
 use crate::toml_file::{TomlFile, shorten};
 use serde::de::DeserializeOwned;
@@ -102,6 +101,16 @@ impl Place<'_> {
     /// [`InputError`] at the first value that is unknown, missing, of the wrong kind or out of range.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         T::deserialize(Node::new(self.clone())).map_err(|problem| problem.located(self, "another value"))
+    }
+
+    /// The TOML file named here, as [`Place::named_file`], and its entry among the files that a result came from.
+    ///
+    /// # Errors
+    /// As [`Place::named_file`] and [`TomlFile::new`].
+    pub(crate) fn named_toml(&self, role: &'static str) -> Result<(TomlFile, InputFile), InputError> {
+        let NamedFile { name, file, bytes } = self.named_file()?;
+        let input = input_file(role, name, &bytes);
+        Ok((TomlFile::new(&file, bytes)?, input))
     }
 
     /// The file named here, by a path relative to the folder of this one, read.

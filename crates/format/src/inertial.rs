@@ -16,7 +16,6 @@ pub(super) const INERTIA: &str = "inertia_kg_m2";
 
 /// An inertia tensor about the centre of mass. The entries beside the diagonal are those of the tensor; 0 where left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct InertiaTable {
     /// Moment of inertia about the x direction.
     pub xx: KgM2<Positive>,

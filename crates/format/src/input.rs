@@ -62,6 +62,12 @@ impl InputError {
         self
     }
 
+    /// Adds the value found, if there is one.
+    pub fn found_if(mut self, value: Option<String>) -> Self {
+        self.found = value;
+        self
+    }
+
     /// Adds what would have been accepted.
     pub fn allowed(mut self, allowed: impl Into<String>) -> Self {
         self.allowed = Some(allowed.into());

@@ -58,10 +58,7 @@ impl<'a> Place<'a> {
     /// An error here, with the value found.
     pub fn error(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
         let error = InputError::new(self.file.file(), problem).at_line(self.line()).in_field(&self.path);
-        match self.value {
-            Some(_) => error.found(self.written()).allowed(allowed),
-            None => error.allowed(allowed),
-        }
+        error.found_if(self.value.map(|_| self.written())).allowed(allowed)
     }
 
     /// An error about a value that is not here.

@@ -30,12 +30,8 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
         InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable CSV file of points")
     })?;
     let mut table = CsvTable::new(file, &bytes)?;
-    let fail = |name: &str, problem: &str| {
-        InputError::new(file, problem)
-            .at_line(1)
-            .in_field(name)
-            .allowed("a header with x_mm,y_mm or x_mm,y_mm,z_mm, each once")
-    };
+    let fail =
+        |name: &str, problem: &str| table.fail(name, problem, "a header with x_mm,y_mm or x_mm,y_mm,z_mm, each once");
     for name in ["x_mm", "y_mm", "z_mm"] {
         if table.is_doubled(name) {
             return Err(fail(name, "this column is there twice"));
@@ -92,10 +88,7 @@ impl PointFile {
                     .in_field("--exclude-deg")
             }
         };
-        match found {
-            Some(found) => located.found(found).allowed(allowed),
-            None => located.allowed(allowed),
-        }
+        located.found_if(found).allowed(allowed)
     }
 }
 

@@ -15,7 +15,6 @@ use stead_model::published::Published;
 
 /// Published tables. Rows by force, accuracy or side may be shorter than their head: the rest are dashes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PublishedTablesFile {
     /// Where they were published.
     pub source: String,
@@ -31,7 +30,6 @@ pub struct PublishedTablesFile {
 
 /// What was published of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PublishedRobot {
     /// Name of the robot, as in its robot file.
     pub name: String,
@@ -47,7 +45,6 @@ pub struct PublishedRobot {
 
 /// Published circularities of a robot with its elbow up or down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PublishedCircularities {
     /// Under the test load: smallest, largest, and in the middle of the map.
     pub test_mm: Array<Mm<Positive>, 3>,
@@ -85,8 +82,8 @@ impl PublishedRobot {
         let by_force = under(&file.forces_n, &self.accuracy_mm, &at.key("accuracy_mm"))?;
         published.accuracies.extend(by_force.into_iter().map(|(force, value)| (named(), force, value)));
         let forces = file.forces_n.si();
-        for (accuracy, most) in under(&file.accuracies_mm, &self.largest_force_n, &at.key("largest_force_n"))? {
-            let reached = forces.iter().filter(|force| most.is_some_and(|most| **force <= most));
+        for (accuracy, max) in under(&file.accuracies_mm, &self.largest_force_n, &at.key("largest_force_n"))? {
+            let reached = forces.iter().filter(|force| max.is_some_and(|max| **force <= max));
             published.capable.extend(reached.map(|force| (accuracy, *force, named())));
         }
         for (elbow, table, at) in [(Elbow::Up, &self.up, at.key("up")), (Elbow::Down, &self.down, at.key("down"))] {

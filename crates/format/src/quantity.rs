@@ -3,7 +3,6 @@
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
 use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
@@ -32,6 +31,20 @@ macro_rules! expecting {
     };
 }
 pub(crate) use expecting;
+
+/// What schemas of values have in common, once for all: they stand where the value is, not by name among the definitions.
+macro_rules! inline_schema {
+    ($name:expr) => {
+        fn inline_schema() -> bool {
+            true
+        }
+
+        fn schema_name() -> std::borrow::Cow<'static, str> {
+            $name.into()
+        }
+    };
+}
+pub(crate) use inline_schema;
 
 /// A unit of a file and what it is in SI units and radians.
 pub trait Unit: Copy + Debug + PartialEq + 'static {
@@ -135,13 +148,7 @@ impl<U, R> Serialize for Quantity<U, R> {
 }
 
 impl<U: Unit, R: Range> JsonSchema for Quantity<U, R> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        format!("{} in {}", Self::expected(), U::SYMBOL).into()
-    }
+    inline_schema!(format!("{} in {}", Self::expected(), U::SYMBOL));
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut schema = json_schema!({ "type": "number", "x-unit": U::SYMBOL });

@@ -2,12 +2,11 @@
 
 use crate::input::InputError;
 use crate::place::Place;
-use crate::quantity::{Expects, Reading, expecting};
+use crate::quantity::{Expects, Reading, expecting, inline_schema};
 use crate::shapes::List;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// A whole number from `MIN` to `MAX`.
@@ -60,13 +59,7 @@ impl<const MIN: u64, const MAX: u64> Visitor<'_> for Reading<Whole<MIN, MAX>> {
 }
 
 impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        Self::expected().into()
-    }
+    inline_schema!(Self::expected());
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "integer", "minimum": MIN, "maximum": MAX })
@@ -141,13 +134,7 @@ impl<T: Words> Serialize for Word<T> {
 }
 
 impl<T: Words> JsonSchema for Word<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        Self::expected().into()
-    }
+    inline_schema!(Self::expected());
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let words: Vec<&str> = T::words().into_iter().map(|(word, _)| word).collect();

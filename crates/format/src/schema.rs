@@ -65,7 +65,9 @@ pub fn schema(name: &str) -> Result<String, UnknownSchema> {
 }
 
 fn of<T: JsonSchema>() -> Schema {
-    let settings = SchemaSettings::draft07().with_transform(RecursiveTransform(without_null));
+    let settings = SchemaSettings::draft07();
+    let settings = settings.with_transform(RecursiveTransform(without_null));
+    let settings = settings.with_transform(RecursiveTransform(closed));
     settings.into_generator().into_root_schema_for::<T>()
 }
 
@@ -75,6 +77,13 @@ fn requiring(mut schema: Schema, keys: &[&str]) -> Schema {
         required.extend(keys.iter().map(|key| Value::from(*key)));
     }
     schema
+}
+
+/// Refuses keys that a table does not declare, as the reader does.
+fn closed(schema: &mut Schema) {
+    if schema.get("properties").is_some() {
+        schema.insert("additionalProperties".to_owned(), false.into());
+    }
 }
 
 /// Takes the null out that an optional key may be in JSON: TOML has none, a key is left out.

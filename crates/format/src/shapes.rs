@@ -1,12 +1,11 @@
 //! Values of a file that are several: vectors, matrices, intervals, lists.
 
-use crate::quantity::{Expects, Quantity, Range, Reading, Unit, expecting};
+use crate::quantity::{Expects, Quantity, Range, Reading, Unit, expecting, inline_schema};
 use crate::units::Number;
 use nalgebra::{Matrix3, Vector3};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// `N` values of a kind.
@@ -89,13 +88,7 @@ impl<T: Serialize, const N: usize> Serialize for Array<T, N> {
 }
 
 impl<T: JsonSchema + Expects, const N: usize> JsonSchema for Array<T, N> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        Self::expected().into()
-    }
+    inline_schema!(Self::expected());
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let items = generator.subschema_for::<T>();
@@ -103,19 +96,17 @@ impl<T: JsonSchema + Expects, const N: usize> JsonSchema for Array<T, N> {
     }
 }
 
+/// Two numbers in ascending order; `APART` where they may not be equal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Ends<Q, const APART: bool>(Array<Q, 2>);
+
 /// Two numbers, the first not above the second.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[serde(transparent)]
-#[schemars(inline)]
-pub struct Interval<Q: Expects>(Array<Q, 2>);
-
+pub type Interval<Q> = Ends<Q, false>;
 /// Two numbers, the first below the second.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[serde(transparent)]
-#[schemars(inline)]
-pub struct Span<Q: Expects>(Array<Q, 2>);
+pub type Span<Q> = Ends<Q, true>;
 
-impl<U: Unit, R: Range> Interval<Quantity<U, R>> {
+impl<U: Unit, R: Range, const APART: bool> Ends<Quantity<U, R>, APART> {
     /// Both ends in the unit of the file.
     pub fn written(self) -> [f64; 2] {
         self.0.0.map(Quantity::written)
@@ -127,22 +118,16 @@ impl<U: Unit, R: Range> Interval<Quantity<U, R>> {
     }
 }
 
-impl<U: Unit, R: Range> Span<Quantity<U, R>> {
-    /// Both ends in SI units and radians.
-    pub fn si(self) -> [f64; 2] {
-        self.0.si()
-    }
-}
-
-/// Two numbers with their range but without what else is said of them: `two numbers %s from -1 to 1`.
-fn two_ends(of_each: &str, ends: &str, rule: &str) -> String {
-    let (noun, range) = of_each.split_once("numbers").unwrap_or((of_each, ""));
-    format!("two {noun}numbers {ends}{range}{rule}")
-}
-
-impl<U: Unit, R: Range> Expects for Interval<Quantity<U, R>> {
+impl<U: Unit, R: Range, const APART: bool> Expects for Ends<Quantity<U, R>, APART> {
     fn expected() -> String {
-        two_ends(&Quantity::<U, R>::expected_of_each(), "[min, max]", " with min not above max")
+        // The range of the numbers stands between what else is said of them: `two numbers [min, max] from -1 to 1 with ..`.
+        let of_each = Quantity::<U, R>::expected_of_each();
+        let (noun, range) = of_each.split_once("numbers").unwrap_or((&of_each, ""));
+        let (ends, rule) = match APART {
+            false => ("[min, max]", " with min not above max"),
+            true => ("[from, to]", ", the first below the second"),
+        };
+        format!("two {noun}numbers {ends}{range}{rule}")
     }
 
     fn expected_of_each() -> String {
@@ -150,45 +135,35 @@ impl<U: Unit, R: Range> Expects for Interval<Quantity<U, R>> {
     }
 }
 
-impl<U: Unit, R: Range> Expects for Span<Quantity<U, R>> {
-    fn expected() -> String {
-        two_ends(&Quantity::<U, R>::expected_of_each(), "[from, to]", ", the first below the second")
-    }
-}
-
-impl<'de, U: Unit, R: Range> Deserialize<'de> for Interval<Quantity<U, R>> {
+impl<'de, U: Unit, R: Range, const APART: bool> Deserialize<'de> for Ends<Quantity<U, R>, APART> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_tuple_struct("Interval", 2, Reading::<Self>(PhantomData))
+        deserializer.deserialize_tuple_struct("Ends", 2, Reading::<Self>(PhantomData))
     }
 }
 
-impl<'de, U: Unit, R: Range> Visitor<'de> for Reading<Interval<Quantity<U, R>>> {
-    type Value = Interval<Quantity<U, R>>;
+impl<'de, U: Unit, R: Range, const APART: bool> Visitor<'de> for Reading<Ends<Quantity<U, R>, APART>> {
+    type Value = Ends<Quantity<U, R>, APART>;
 
-    expecting!(Interval<Quantity<U, R>>);
+    expecting!(Self::Value);
 
     fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Self::Value, A::Error> {
         let ends = Reading::<Array<Quantity<U, R>, 2>>(PhantomData).visit_seq(values)?;
-        let [from, to] = ends.0.map(Quantity::written);
-        if from > to { Err(A::Error::custom("has its lower end above its upper end")) } else { Ok(Interval(ends)) }
+        match ends.0.map(Quantity::written) {
+            [from, to] if from > to => Err(A::Error::custom("has its lower end above its upper end")),
+            [from, to] if APART && from == to => Err(A::Error::custom("has no width")),
+            _ => Ok(Ends(ends)),
+        }
     }
 }
 
-impl<'de, U: Unit, R: Range> Deserialize<'de> for Span<Quantity<U, R>> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_tuple_struct("Span", 2, Reading::<Self>(PhantomData))
-    }
-}
+impl<Q: JsonSchema + Expects, const APART: bool> JsonSchema for Ends<Q, APART> {
+    inline_schema!(Array::<Q, 2>::schema_name());
 
-impl<'de, U: Unit, R: Range> Visitor<'de> for Reading<Span<Quantity<U, R>>> {
-    type Value = Span<Quantity<U, R>>;
-
-    expecting!(Span<Quantity<U, R>>);
-
-    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Self::Value, A::Error> {
-        let ends = Reading::<Interval<Quantity<U, R>>>(PhantomData).visit_seq(values)?.0;
-        let [from, to] = ends.0.map(Quantity::written);
-        if from < to { Ok(Span(ends)) } else { Err(A::Error::custom("has no width")) }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = Array::<Q, 2>::json_schema(generator);
+        let rule = if APART { "below" } else { "not above" };
+        schema.insert("description".to_owned(), format!("Two numbers, the first {rule} the second.").into());
+        schema
     }
 }
 
@@ -236,13 +211,7 @@ impl<T: Serialize> Serialize for List<T> {
 }
 
 impl<T: JsonSchema> JsonSchema for List<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        format!("list of {}", T::schema_name()).into()
-    }
+    inline_schema!(format!("list of {}", T::schema_name()));
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let items = generator.subschema_for::<T>();

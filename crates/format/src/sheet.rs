@@ -1,8 +1,7 @@
 //! Measurement sheets from CSV.
 
 use crate::input::InputError;
-use crate::input::csv_table::{CsvTable, Row};
-use nalgebra::Vector3;
+use crate::input::csv_table::{CsvTable, Row, try_each};
 use std::collections::BTreeMap;
 use std::path::Path;
 use stead_calibration::identification::{Configuration, Reading, Sheet};
@@ -35,19 +34,13 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
-        let fail = |name: &str, problem: &str| InputError::new(file, problem).at_line(1).in_field(name).allowed(HEADER);
-        let one = |name: &str| {
-            if table.is_doubled(name) {
-                return Err(fail(name, "this column is there twice"));
-            }
-            table.column(name).ok_or_else(|| fail(name, "missing column"))
+    fn new(table: &CsvTable<'_>) -> Result<Self, InputError> {
+        let one = |name: &str| match table.is_doubled(name) {
+            true => Err(table.fail(name, "this column is there twice", HEADER)),
+            false => table.column(name).ok_or_else(|| table.fail(name, "missing column", HEADER)),
         };
-        let three = |[x, y, z]: [&str; 3]| Ok([one(x)?, one(y)?, one(z)?]);
-        let mut theta = [0; 6];
-        for (slot, name) in theta.iter_mut().zip(THETA) {
-            *slot = one(name)?;
-        }
+        let three = |names: [&str; 3]| try_each(names, one);
+        let theta = try_each(THETA, one)?;
         let has_turns = UNLOADED_TURN.iter().chain(&LOADED_TURN).any(|name| table.column(name).is_some());
         let turns = if has_turns { Some([three(UNLOADED_TURN)?, three(LOADED_TURN)?]) } else { None };
         Ok(Self {
@@ -80,7 +73,7 @@ struct Entry {
 /// no load, or a loaded place equal to the unloaded one.
 pub(super) fn sheet_from(file: &Path, bytes: &[u8], robot: &Robot) -> Result<Sheet, InputError> {
     let mut table = CsvTable::new(file, bytes)?;
-    let columns = Columns::new(file, &table)?;
+    let columns = Columns::new(&table)?;
     let mut points: Vec<String> = Vec::new();
     let mut point_of: BTreeMap<String, usize> = BTreeMap::new();
     let mut entries: Vec<Entry> = Vec::new();
@@ -130,10 +123,6 @@ fn name(row: &Row<'_>, column: usize) -> Result<String, InputError> {
     }
 }
 
-fn vector(row: &Row<'_>, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
-    Ok(Vector3::new(row.number(columns[0])?, row.number(columns[1])?, row.number(columns[2])?))
-}
-
 fn configuration(row: &Row<'_>, columns: &Columns, robot: &Robot) -> Result<Configuration, InputError> {
     let mut theta = [0.0; 6];
     for ((slot, column), joint) in theta.iter_mut().zip(columns.theta).zip(robot.joints()) {
@@ -144,7 +133,7 @@ fn configuration(row: &Row<'_>, columns: &Columns, robot: &Robot) -> Result<Conf
         }
         *slot = angle;
     }
-    let (force, moment) = (vector(row, columns.force)?, vector(row, columns.moment)?);
+    let (force, moment) = (row.vector(columns.force)?, row.vector(columns.moment)?);
     if force.norm() == 0.0 && moment.norm() == 0.0 {
         return Err(row.fail(columns.force[0], "force and moment are all zero", "a load"));
     }
@@ -160,7 +149,7 @@ fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize)
             "a finite decimal number, the coordinate read in mm",
         ));
     }
-    let (unloaded, loaded) = (vector(row, columns.unloaded)? / 1e3, vector(row, columns.loaded)? / 1e3);
+    let (unloaded, loaded) = (row.vector(columns.unloaded)? / 1e3, row.vector(columns.loaded)? / 1e3);
     if unloaded == loaded {
         let problem = "the loaded place is the unloaded one, coordinate by coordinate";
         return Err(row.fail(columns.loaded[0], problem, "the place read under load"));
@@ -168,7 +157,7 @@ fn reading(row: &Row<'_>, columns: &Columns, configuration: usize, point: usize)
     let turn = match columns.turns {
         None => None,
         Some([before, after]) => {
-            let rotation = |columns| vector(row, columns).map(|v| rotation_from_vector(&v.map(f64::to_radians)));
+            let rotation = |columns| row.vector(columns).map(|v| rotation_from_vector(&v.map(f64::to_radians)));
             Some(rotation_vector(&(rotation(after)? * rotation(before)?.transpose())))
         }
     };

@@ -12,7 +12,6 @@ use stead_model::robot::Spindle;
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
 /// point and its z axis along the tool, out of the spindle to the work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SpindleTable {
     /// Tool centre point in the flange frame.
     pub xyz_mm: Vector<Mm>,

@@ -1,7 +1,7 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
 use crate::input::InputError;
-use crate::input::csv_table::{CsvTable, Row};
+use crate::input::csv_table::{CsvTable, Row, try_each};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
@@ -43,21 +43,21 @@ pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
 /// As [`read_csv`].
 pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let mut table = CsvTable::new(file, bytes)?;
-    let columns = Columns::find(file, &table)?;
+    let columns = Columns::find(&table)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut normals = columns.normal.map(|_| Vec::new());
     let mut lines = Vec::new();
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
-        let at = |k: usize| vector(&row, [columns.required[k], columns.required[k + 1], columns.required[k + 2]]);
+        let at = |k: usize| row.vector([0, 1, 2].map(|axis| columns.required[k + axis]));
         points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }));
         if let (Some(wrenches), Some(force)) = (wrenches.as_mut(), columns.force) {
-            let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| vector(&row, moment))?;
-            wrenches.push(Wrench { force: vector(&row, force)?, moment });
+            let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| row.vector(moment))?;
+            wrenches.push(Wrench { force: row.vector(force)?, moment });
         }
         if let (Some(normals), Some(normal)) = (normals.as_mut(), columns.normal) {
-            normals.push(vector(&row, normal)?);
+            normals.push(row.vector(normal)?);
         }
         lines.push(row.line());
     }
@@ -78,14 +78,10 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(file: &Path, table: &CsvTable<'_>) -> Result<Self, InputError> {
+    fn find(table: &CsvTable<'_>) -> Result<Self, InputError> {
         let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL);
-        let fail = |column: &str, problem: &str| {
-            InputError::new(file, problem)
-                .at_line(1)
-                .in_field(column)
-                .allowed(all().copied().collect::<Vec<_>>().join(","))
-        };
+        let allowed = all().copied().collect::<Vec<_>>().join(",");
+        let fail = |column: &str, problem: &str| table.fail(column, problem, &allowed);
         for name in table.header() {
             if !all().any(|known| *known == name) {
                 let nearest = all().max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));
@@ -97,10 +93,7 @@ impl Columns {
             }
         }
         let place = |name: &str| table.column(name);
-        let mut required = [0; 10];
-        for (slot, name) in required.iter_mut().zip(REQUIRED) {
-            *slot = place(name).ok_or_else(|| fail(name, "missing column"))?;
-        }
+        let required = try_each(REQUIRED, |name| place(name).ok_or_else(|| fail(name, "missing column")))?;
         let group = |names: [&'static str; 3]| -> Result<Option<[usize; 3]>, InputError> {
             let places = names.map(place);
             match places {
@@ -118,10 +111,6 @@ impl Columns {
         }
         Ok(Self { required, force, moment, normal })
     }
-}
-
-fn vector(row: &Row<'_>, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
-    Ok(Vector3::new(row.number(columns[0])?, row.number(columns[1])?, row.number(columns[2])?))
 }
 
 fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
@@ -153,14 +142,11 @@ fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
             (*point, "segment", Some(found.to_string()), allowed)
         }
     };
-    let located = InputError::new(file, error.to_string())
+    InputError::new(file, error.to_string())
         .at_line(lines.get(point).copied().unwrap_or(0))
         .in_field(field)
-        .allowed(allowed);
-    match found {
-        Some(found) => located.found(found),
-        None => located,
-    }
+        .found_if(found)
+        .allowed(allowed)
 }
 
 #[cfg(test)]

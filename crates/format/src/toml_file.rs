@@ -35,10 +35,7 @@ impl TomlFile {
             let valid = e.utf8_error().valid_up_to();
             let (before, rest) = e.as_bytes().split_at(valid);
             let error = InputError::new(file, "is not UTF-8 text").at_line(line_after(before)).allowed("UTF-8 text");
-            match rest.first() {
-                Some(byte) => error.found(format!("byte 0x{byte:02x}")),
-                None => error,
-            }
+            error.found_if(rest.first().map(|byte| format!("byte 0x{byte:02x}")))
         })?;
         Ok(Self { file: file.to_owned(), text })
     }

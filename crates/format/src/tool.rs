@@ -37,7 +37,6 @@ words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "
 /// depends on what is computed: forces along a path need `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
 /// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ToolTable {
     /// Diameter of the cutter.
     pub cutter_diameter_mm: Mm<Positive>,
@@ -80,7 +79,6 @@ pub struct ToolTable {
 /// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes with
 /// it, and `feed_per_tooth_mm`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CutTable {
     /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
     pub milling: Option<Word<MillingDirection>>,

@@ -17,6 +17,8 @@ use stead_numerics::monitor::Monitor;
 #[derive(Debug, Clone)]
 pub struct Evaluator<'a> {
     planner: &'a Planner<'a>,
+    /// Decides where the grid of the planner is too coarse to get through a segment.
+    finer: Option<&'a Planner<'a>>,
     table: Option<&'a LookupTable<'a>>,
     grid: BetaGrid,
 }
@@ -25,6 +27,7 @@ pub struct Evaluator<'a> {
 #[derive(Debug)]
 pub struct Workspace {
     planner: Option<redundancy::Workspace>,
+    finer: Option<redundancy::Workspace>,
     table: Option<lookup::Workspace>,
 }
 
@@ -76,12 +79,19 @@ const CANDIDATES: usize = 3;
 impl<'a> Evaluator<'a> {
     /// Scores candidates by the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
-        Self { planner, table, grid: BetaGrid::of(planner) }
+        Self { planner, finer: None, table, grid: BetaGrid::of(planner) }
     }
 
     /// The same, reading the table on a grid of beta that many times finer than the planner's.
     pub fn with_finer_lookup(mut self, parts: usize) -> Self {
         self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
+        self
+    }
+
+    /// The same with a planner on a finer grid, for placements whose every point is allowed but that the coarse grid does not get
+    /// through: a coarse plan may propose a placement, but not refuse it.
+    pub fn with_finer_planner(mut self, finer: &'a Planner<'a>) -> Self {
+        self.finer = Some(finer).filter(|finer| finer.grid().beta_count > self.planner.grid().beta_count);
         self
     }
 
@@ -98,8 +108,8 @@ impl<'a> Evaluator<'a> {
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
         match self.table {
-            Some(table) => Workspace { planner: None, table: Some(table.workspace(&self.grid)) },
-            None => Workspace { planner: Some(self.planner.workspace()), table: None },
+            Some(table) => Workspace { planner: None, finer: None, table: Some(table.workspace(&self.grid)) },
+            None => Workspace { planner: Some(self.planner.workspace()), finer: None, table: None },
         }
     }
 
@@ -120,7 +130,13 @@ impl<'a> Evaluator<'a> {
         workspace: &mut Workspace,
     ) -> Objective {
         let space = workspace.planner.get_or_insert_with(|| self.planner.workspace());
-        self.planner.objective(placement, Sense::Min, scheme, space)
+        match (self.planner.objective(placement, Sense::Min, scheme, space), self.finer) {
+            (Objective::Infeasible { points: 0, .. }, Some(finer)) => {
+                let space = workspace.finer.get_or_insert_with(|| finer.workspace());
+                finer.objective(placement, Sense::Min, scheme, space)
+            }
+            (objective, _) => objective,
+        }
     }
 
     /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of them are
@@ -135,7 +151,9 @@ impl<'a> Evaluator<'a> {
     ) -> SelectedBasins {
         let Some(table) = self.table else {
             let mut basins = sorted;
-            basins.truncate(max_count);
+            if basins.first().is_some_and(|best| best.objective.mean().is_some()) {
+                basins.truncate(max_count);
+            }
             return SelectedBasins { basins, evaluations: 0, lookup_rejected: false };
         };
         let improved: Vec<(Candidate, usize)> = sorted[..sorted.len().min(CANDIDATES * max_count)]
@@ -177,8 +195,8 @@ impl<'a> Evaluator<'a> {
         let mut selected: Vec<Candidate> = planned.into_iter().map(|(candidate, _)| candidate).collect();
         selected.sort_by(|a, b| rank(sense, a.objective, b.objective));
         // What the planner refuses goes on only where there is nothing else.
-        if let Some(first) = selected.iter().position(|i| i.objective.mean().is_none()) {
-            selected.truncate(first.max(1));
+        if let Some(first @ 1..) = selected.iter().position(|i| i.objective.mean().is_none()) {
+            selected.truncate(first);
         }
         let found = selected.first().and_then(|candidate| candidate.objective.mean());
         let lookup_rejected = match (promised, found) {

@@ -1,6 +1,6 @@
 //! The placement job: search, refine, plan, map.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Objective};
 use super::criterion::Criterion;
 use super::evaluate::reference::{scored_part_by_parameters, state};
 use super::evaluator::Evaluator;
@@ -11,7 +11,7 @@ use super::outcome::{
 };
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, off_grid};
-use super::refine::{Solution, planned, refine};
+use super::refine::{Solution, found_again, planned, refine};
 use super::search::{self, SearchResult};
 use super::sense::Sense;
 use super::settings::{LookupUse, SearchSettings, TransferSettings};
@@ -75,42 +75,11 @@ pub fn place(
     transfer: &TransferSettings,
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
-    let planner = Planner::new(problem);
-    let table = match settings.tables {
-        LookupUse::Auto | LookupUse::Always => Some(LookupTable::new(problem)),
-        LookupUse::Never => None,
-    };
-    let mut lookup_summary = table.as_ref().map(|table| match table {
-        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
-        Err(unsuited) => Err(unsuited.clone()),
-    });
-    let mut table = table.and_then(Result::ok);
-    let search = |table: Option<&LookupTable<'_>>| {
-        let evaluator = Evaluator::new(&planner, table);
-        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
-    };
-    let mut found = search(table.as_ref());
-    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
-        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
-        found = search(None);
-        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
-    }
-    // A search that met nothing feasible goes on from what the other met.
-    match found.each_ref().map(|f| f.basins.first().is_some_and(|i| i.objective.mean().is_some())) {
-        [true, true] => {}
-        [true, false] => found[1].basins = found[0].basins.clone(),
-        [false, true] => found[0].basins = found[1].basins.clone(),
-        [false, false] => {
-            let nearest = &found[0].basins[0];
-            return Err(infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true));
-        }
-    }
     let planner = Planner::finer(problem);
-    let (solutions, refinements) =
-        refine_basins(&Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2), &found, monitor).ok_or_else(
-            || infeasible(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true),
-        )?;
+    let Searched { found, table, lookup_summary, evaluations } = search_cell(&planner, settings, monitor)?;
+    let refused = || infeasible(&planner, &found[0].basins[0].placement, found[0].basins[0].scheme.as_deref(), true);
+    let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
+    let (solutions, refinements) = refine_basins(&evaluator, &found, monitor).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let case = |placement_sense, solution: &Refined, plan_sense| {
@@ -147,6 +116,71 @@ pub fn place(
         interrupted,
         warnings: cancellation(problem, mean).into_iter().chain(interrupted.then(interruption)).collect(),
     })
+}
+
+/// What the searches of both senses come to.
+struct Searched<'a> {
+    found: [SearchResult; 2],
+    table: Option<LookupTable<'a>>,
+    lookup_summary: Option<Result<LookupSummary, Unsupported>>,
+    evaluations: usize,
+}
+
+/// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last word on
+/// what is feasible.
+fn search_cell<'a>(
+    finer: &Planner<'a>,
+    settings: &SearchSettings,
+    monitor: &Monitor,
+) -> Result<Searched<'a>, Infeasible> {
+    let problem = finer.problem();
+    if let Some(placement) = problem.cell.pinned() {
+        let found = Sense::BOTH.map(|sense| search::pinned(finer, placement, sense));
+        return match found[0].basins[0].objective {
+            Objective::Feasible(_) => Ok(Searched { found, table: None, lookup_summary: None, evaluations: 1 }),
+            Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false)),
+        };
+    }
+    let planner = Planner::new(problem);
+    let table = match settings.tables {
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::new(problem)),
+        LookupUse::Never => None,
+    };
+    let mut lookup_summary = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
+        Err(unsuited) => Err(unsuited.clone()),
+    });
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&LookupTable<'_>>| {
+        let evaluator = Evaluator::new(&planner, table).with_finer_planner(finer);
+        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
+        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
+    let is_feasible = |f: &SearchResult| f.basins.first().is_some_and(|i| i.objective.mean().is_some());
+    if !found.iter().any(is_feasible) {
+        evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
+        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+            search::evaluate_finer(finer, sense, &mut found.basins);
+            found.basins.truncate(settings.basins);
+        }
+    }
+    // A search that met nothing feasible goes on from what the other met.
+    match found.each_ref().map(is_feasible) {
+        [true, true] => {}
+        [true, false] => found[1].basins = found[0].basins.clone(),
+        [false, true] => found[0].basins = found[1].basins.clone(),
+        [false, false] => {
+            let nearest = &found[0].basins[0];
+            return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true));
+        }
+    }
+    Ok(Searched { found, table, lookup_summary, evaluations })
 }
 
 /// What one given placement is worth.
@@ -281,7 +315,7 @@ fn refine_one(
         (planned(planner, placement, scheme, spacing, &mut planner.workspace())?, None)
     } else {
         let (solution, report) = refine(evaluator, placement, sense, scheme)?;
-        (solution, Some(report))
+        (found_again(evaluator.planner(), solution, scheme), Some(report))
     };
     Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
 }

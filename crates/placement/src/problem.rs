@@ -53,6 +53,20 @@ impl Cell {
         self.yaw.width() >= TAU - 1e-9
     }
 
+    /// A cell that leaves one placement.
+    pub fn at(placement: &Placement) -> Self {
+        let only = |value: f64| Interval { min: value, max: value };
+        let Placement { x, y, z, yaw } = *placement;
+        Self { position: [only(x), only(y), only(z)], yaw: only(yaw) }
+    }
+
+    /// The only placement in the cell, where its bounds leave no other.
+    pub fn pinned(&self) -> Option<Placement> {
+        let [x, y, z] = self.position;
+        let is_pinned = [x, y, z, self.yaw].iter().all(|bounds| bounds.width() == 0.0);
+        is_pinned.then_some(Placement { x: x.min, y: y.min, z: z.min, yaw: self.yaw.min })
+    }
+
     /// The nearest placement inside the cell.
     pub fn clamp(&self, placement: &Placement) -> Placement {
         let [x, y, z] = self.position;

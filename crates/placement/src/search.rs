@@ -15,6 +15,7 @@ use super::candidate::{Candidate, Objective, rank};
 use super::evaluator::Evaluator;
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
+use super::redundancy::Planner;
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
@@ -28,7 +29,7 @@ use stead_numerics::monitor::{Monitor, Progress};
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchResult {
-    /// The best candidates of distinct basins, best first; if nothing was feasible, the one that came nearest.
+    /// The best candidates of distinct basins, best first; if nothing was feasible, those that came nearest.
     pub basins: Vec<Candidate>,
     /// Generation by generation.
     pub history: Vec<Generation>,
@@ -99,7 +100,9 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
             break;
         }
     }
-    archive.extend(if archive.is_empty() { population.drain(..1).next() } else { None });
+    if archive.is_empty() {
+        archive = distinct(cell, &population, ARCHIVE);
+    }
     evaluator.check(&mut history, &best, sense);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
@@ -110,6 +113,28 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
         lookup_rejected: selected.lookup_rejected,
         interrupted,
     }
+}
+
+/// In place of a search, the only placement of a cell that leaves no other, on a planner's grid.
+pub fn pinned(planner: &Planner<'_>, placement: Placement, sense: Sense) -> SearchResult {
+    let objective = planner.objective(&placement, Sense::Min, None, &mut planner.workspace());
+    let candidate = Candidate { placement, scheme: None, objective };
+    let history = vec![figures(sense, 0, std::slice::from_ref(&candidate), 1)];
+    SearchResult { basins: vec![candidate], history, evaluations: 1, lookup_rejected: false, interrupted: false }
+}
+
+/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest alone.
+pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<Candidate>) {
+    candidates.par_iter_mut().for_each_init(
+        || planner.workspace(),
+        |workspace, candidate| {
+            let scheme = candidate.scheme.as_deref();
+            candidate.objective = planner.objective(&candidate.placement, Sense::Min, scheme, workspace);
+        },
+    );
+    candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
+    let feasible = candidates.iter().filter(|candidate| candidate.objective.mean().is_some()).count();
+    candidates.truncate(feasible.max(1));
 }
 
 /// The name of a search in reports of progress.

@@ -118,6 +118,10 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
     text
 }
 
+/// Columns of points in the plane and in space.
+const PLANAR: &str = "point,line,x_mm,y_mm,angle_deg,excluded";
+const SPATIAL: &str = "point,line,x_mm,y_mm,z_mm,angle_deg,excluded,height_mm";
+
 /// `deviations.csv`: every point with its polar angle (by which `--exclude-deg` goes), whether it was left out, its height
 /// above the plane where there is one, and about each of the four centres its radius and that less the reference circle's.
 ///
@@ -125,15 +129,9 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn deviations(file: &PointFile, found: &Roundness) -> Result<Vec<u8>, ReportError> {
     let is_spatial = found.plane.is_some();
-    let mut header = vec!["point", "line", "x_mm", "y_mm", "z_mm", "angle_deg", "excluded", "height_mm"];
-    if !is_spatial {
-        header.retain(|name| !["z_mm", "height_mm"].contains(name));
-    }
-    let columns: Vec<String> = circles(found)
-        .iter()
-        .flat_map(|(name, ..)| [format!("{name}_radius_mm"), format!("{name}_deviation_mm")])
-        .collect();
-    header.extend(columns.iter().map(String::as_str));
+    let places = if is_spatial { SPATIAL } else { PLANAR }.split(',').map(str::to_owned);
+    let about = |(name, ..): (&str, _, _)| [format!("{name}_radius_mm"), format!("{name}_deviation_mm")];
+    let header = places.chain(circles(found).into_iter().flat_map(about));
     let rows = found.points.iter().enumerate().map(|(index, point)| {
         let mut row = vec![index.to_string(), file.lines.get(index).map_or_else(String::new, ToString::to_string)];
         match &file.measured {
@@ -151,5 +149,5 @@ pub fn deviations(file: &PointFile, found: &Roundness) -> Result<Vec<u8>, Report
         }
         row
     });
-    table("the table of deviations", &header, rows)
+    table("the table of deviations", header, rows)
 }

@@ -13,6 +13,7 @@ use stead_calibration::compensation::{
     CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, reduction,
 };
 use stead_format::CompensateRun;
+use stead_format::scalars::Word;
 
 /// Places and deflections, from m to mm, to a tenth of the finest tolerance that is of use.
 const PLACE_MM: Unit = Unit { factor: 1e3, decimals: 7 };
@@ -40,37 +41,11 @@ pub fn write_compensation(
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }
 
-const CORRECTED_PATH: [&str; 29] = [
-    "point",
-    "segment",
-    "target_x_mm",
-    "target_y_mm",
-    "target_z_mm",
-    "corrected_x_mm",
-    "corrected_y_mm",
-    "corrected_z_mm",
-    "axis_x",
-    "axis_y",
-    "axis_z",
-    "rotation_x_deg",
-    "rotation_y_deg",
-    "rotation_z_deg",
-    "theta1_deg",
-    "theta2_deg",
-    "theta3_deg",
-    "theta4_deg",
-    "theta5_deg",
-    "theta6_deg",
-    "before_x_mm",
-    "before_y_mm",
-    "before_z_mm",
-    "before_normal_mm",
-    "after_x_mm",
-    "after_y_mm",
-    "after_z_mm",
-    "after_normal_mm",
-    "iterations",
-];
+const CORRECTED_PATH: &str = "\
+    point,segment,target_x_mm,target_y_mm,target_z_mm,corrected_x_mm,corrected_y_mm,corrected_z_mm,axis_x,axis_y,\
+     axis_z,rotation_x_deg,rotation_y_deg,rotation_z_deg,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,\
+     theta6_deg,before_x_mm,before_y_mm,before_z_mm,before_normal_mm,after_x_mm,after_y_mm,after_z_mm,\
+     after_normal_mm,iterations";
 
 /// `corrected-path.csv`: one row for each path point. Places are those of the tool centre point, and all vectors are in the
 /// robot base frame: the target, the corrected command with its tool axis (from the workpiece to the robot) and the rotation
@@ -80,7 +55,7 @@ const CORRECTED_PATH: [&str; 29] = [
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn corrected_path(outcome: &CompensatedPath) -> Result<Vec<u8>, ReportError> {
-    table("the table of the corrected path", &CORRECTED_PATH, outcome.points.iter().enumerate().map(row))
+    table("the table of the corrected path", CORRECTED_PATH.split(','), outcome.points.iter().enumerate().map(row))
 }
 
 fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
@@ -107,7 +82,7 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
     document(run).with(json!({
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
-        "model": model(settings.model),
+        "model": Word(settings.model),
         "alpha": settings.alpha,
         "tolerance_mm": settings.tolerance * 1e3,
         "max_iterations": settings.max_iterations,
@@ -146,13 +121,6 @@ fn figures(figures: &MeanAndMax) -> Value {
 
 fn percent(pair: [MeanAndMax; 2]) -> Value {
     reduction(pair).map_or(Value::Null, |share| json!(PER_CENT.number(share)))
-}
-
-fn model(model: DeflectionModel) -> &'static str {
-    match model {
-        DeflectionModel::Equilibrium => "equilibrium",
-        DeflectionModel::Linear => "linear",
-    }
 }
 
 /// The table for people.

@@ -9,10 +9,10 @@ pub(crate) fn vector(unit: Unit, vector: &Vector3<f64>) -> [String; 3] {
     [vector.x, vector.y, vector.z].map(|value| unit.text(value))
 }
 
-/// A CSV file with a header.
+/// A CSV file with the names of its columns.
 pub(crate) fn table(
     what: &'static str,
-    header: &[&str],
+    header: impl IntoIterator<Item = impl AsRef<[u8]>>,
     rows: impl IntoIterator<Item = Vec<String>>,
 ) -> Result<Vec<u8>, ReportError> {
     let fail = |cause: csv::Error| ReportError::Format { what, cause: cause.to_string() };

@@ -24,17 +24,8 @@ pub fn turn(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
 }
 
 fn rows(what: &'static str, angle: &'static str, samples: &[Sample]) -> Result<Vec<u8>, ReportError> {
-    let header = [
-        angle,
-        "force_feed_n",
-        "force_left_n",
-        "force_axis_n",
-        "force_n",
-        "moment_feed_nm",
-        "moment_left_nm",
-        "moment_axis_nm",
-        "moment_nm",
-    ];
+    const PARTS: &str =
+        "force_feed_n,force_left_n,force_axis_n,force_n,moment_feed_nm,moment_left_nm,moment_axis_nm,moment_nm";
     let row = |Sample { phi, wrench }: &Sample| {
         let mut row = vec![Unit::ANGLE_DEG.text(*phi)];
         for (unit, part) in [(Unit::FORCE_N, wrench.force), (Unit::MOMENT_NM, wrench.moment)] {
@@ -43,7 +34,7 @@ fn rows(what: &'static str, angle: &'static str, samples: &[Sample]) -> Result<V
         }
         row
     };
-    table(what, &header, samples.iter().map(row))
+    table(what, std::iter::once(angle).chain(PARTS.split(',')), samples.iter().map(row))
 }
 
 #[cfg(test)]

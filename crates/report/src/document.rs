@@ -1,7 +1,7 @@
 //! What all JSON documents have in common: what they state first, their bytes, and views that several of them hold.
 
 use crate::units::Unit;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::outcome::DeflectionFigures;
@@ -21,19 +21,19 @@ pub const FORMAT: u32 = 1;
 
 /// A JSON document of stead: whatever it reports, it states `format`, `version`, `inputs`, `notes` and `warnings`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Document(Map<String, Value>);
+pub struct Document(Value);
 
 impl Document {
     /// A document on what was computed from these files, without notes and warnings yet.
     pub fn new(inputs: &[InputFile]) -> Self {
-        let inputs = inputs.iter().map(|file| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 }));
-        Self(Map::from_iter([
-            ("format".to_owned(), json!(FORMAT)),
-            ("version".to_owned(), json!(env!("CARGO_PKG_VERSION"))),
-            ("inputs".to_owned(), inputs.collect()),
-            ("notes".to_owned(), json!([])),
-            ("warnings".to_owned(), json!([])),
-        ]))
+        let input = |file: &InputFile| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 });
+        Self(json!({
+            "format": FORMAT,
+            "version": env!("CARGO_PKG_VERSION"),
+            "inputs": inputs.iter().map(input).collect::<Value>(),
+            "notes": [],
+            "warnings": [],
+        }))
     }
 
     /// States what the result rests on: assumptions made and values left at their defaults.
@@ -54,12 +54,17 @@ impl Document {
     }
 
     /// The document with the entries of a result, which is a JSON object.
-    pub fn with(mut self, result: Value) -> Value {
-        if let Value::Object(entries) = result {
-            self.0.extend(entries);
-        }
-        Value::Object(self.0)
+    pub fn with(self, result: Value) -> Value {
+        joined(self.0, result)
     }
+}
+
+/// The entries of two JSON objects as one.
+pub(super) fn joined(mut object: Value, more: Value) -> Value {
+    if let (Value::Object(entries), Value::Object(more)) = (&mut object, more) {
+        entries.extend(more);
+    }
+    object
 }
 
 /// A document as the bytes of a file or of standard output: indented, with a line break at the end.

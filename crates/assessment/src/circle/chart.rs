@@ -219,9 +219,9 @@ fn extreme<C: Chart, const SIGN: i8>(at: &C::At, points: &[Point]) -> (Point, f6
             }
         }
         let rest = groups.remainder().iter().map(key).fold(f64::NEG_INFINITY, f64::max);
-        let most = lanes.into_iter().fold(rest, f64::max);
-        if most > best.1 {
-            best = (index, most);
+        let max = lanes.into_iter().fold(rest, f64::max);
+        if max > best.1 {
+            best = (index, max);
         }
     }
     let block = &points[best.0 * BLOCK..points.len().min((best.0 + 1) * BLOCK)];

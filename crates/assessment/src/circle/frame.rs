@@ -4,8 +4,8 @@ use super::chart::{Centre, Chart, Far, Middle, Point};
 use super::{Circle, CircleError, Fit, Radius};
 
 /// Largest coordinate, and smallest extent, whose powers up to the fourth can be computed with.
-const LARGEST: f64 = 1e60;
-const SMALLEST: f64 = 1e-60;
+const MAX_COORDINATE: f64 = 1e60;
+const MIN_ALLOWANCE: f64 = 1e-60;
 /// Part of the largest coordinate within which points count as equal, and as on one line.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -38,7 +38,7 @@ impl Spread {
             }
             visit(q);
         }
-        let spread = Self { origin, extent: squared.sqrt(), direction, allowance: ROUNDING * largest + SMALLEST };
+        let spread = Self { origin, extent: squared.sqrt(), direction, allowance: ROUNDING * largest + MIN_ALLOWANCE };
         if spread.extent > spread.allowance { Ok(spread) } else { Err(CircleError::TooFew { distinct: 1 }) }
     }
 
@@ -67,11 +67,11 @@ fn mean(points: &[Point]) -> Result<Point, CircleError> {
     let first = *points.first().ok_or(CircleError::TooFew { distinct: 0 })?;
     let (mut sum, mut is_good) = ([0.0; 2], true);
     for p in points {
-        is_good &= p[0].abs() <= LARGEST && p[1].abs() <= LARGEST;
+        is_good &= p[0].abs() <= MAX_COORDINATE && p[1].abs() <= MAX_COORDINATE;
         sum = [sum[0] + (p[0] - first[0]), sum[1] + (p[1] - first[1])];
     }
     if !is_good {
-        let is_bad = |p: &Point| !(p[0].abs() <= LARGEST && p[1].abs() <= LARGEST);
+        let is_bad = |p: &Point| !(p[0].abs() <= MAX_COORDINATE && p[1].abs() <= MAX_COORDINATE);
         return Err(CircleError::NotFinite { point: points.iter().position(is_bad).unwrap_or(0) });
     }
     let count = points.len() as f64;
@@ -119,12 +119,12 @@ impl Frame {
 
     /// The reference circle about a centre in this frame, for points in theirs.
     pub fn fit(&self, middle: Middle, points: &[Point], radius: Radius) -> Fit {
-        let Reaches { least, most, mean } = match middle {
+        let Reaches { min, max, mean } = match middle {
             Middle::Near(coordinates) => self.reaches::<Centre>(coordinates, points),
             Middle::Far(coordinates) => self.reaches::<Far>(coordinates, points),
         };
         let (constant, sign) = middle.distance_from_reach();
-        let (low, high) = if sign > 0.0 { (least, most) } else { (-most, -least) };
+        let (low, high) = if sign > 0.0 { (min, max) } else { (-max, -min) };
         let distance = |reach: f64| (constant + reach) * self.unit;
         let radius = match radius {
             Radius::Smallest => low,
@@ -145,19 +145,19 @@ impl Frame {
     fn reaches<C: Chart>(&self, coordinates: Point, points: &[Point]) -> Reaches {
         let at = C::at(coordinates);
         let first = C::reach(C::key(&at, &self.localised(points[0])));
-        let (mut least, mut most, mut excess) = (first, first, 0.0);
+        let (mut min, mut max, mut excess) = (first, first, 0.0);
         for p in points {
             let reach = C::reach(C::key(&at, &self.localised(*p)));
-            (least, most) = (least.min(reach), most.max(reach));
+            (min, max) = (min.min(reach), max.max(reach));
             excess += reach - first;
         }
-        Reaches { least, most, mean: first + excess / points.len() as f64 }
+        Reaches { min, max, mean: first + excess / points.len() as f64 }
     }
 }
 
 /// Reaches of points from a centre.
 struct Reaches {
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
     mean: f64,
 }

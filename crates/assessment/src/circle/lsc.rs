@@ -168,9 +168,9 @@ impl State {
     /// it is damped enough to go downhill.
     fn step(&self, damping: f64) -> (Point, bool) {
         let [xx, xy, yy] = self.hessian;
-        let least = 0.5 * (xx + yy) - libm::hypot(0.5 * (xx - yy), xy);
+        let min = 0.5 * (xx + yy) - libm::hypot(0.5 * (xx - yy), xy);
         let floor = 1e-14 * self.stiffness();
-        let damping = if least > floor { damping } else { damping.max(1e-3 * self.stiffness()) + floor - least };
+        let damping = if min > floor { damping } else { damping.max(1e-3 * self.stiffness()) + floor - min };
         let (xx, yy) = (xx + damping, yy + damping);
         let determinant = xx * yy - xy * xy;
         let [gx, gy] = self.gradient;

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Part of the largest coordinate within which points count as equal, and as on one line.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Largest coordinate whose square can be computed with.
-const LARGEST: f64 = 1e60;
+const MAX_COORDINATE: f64 = 1e60;
 /// Largest cosine of the angle between normal and x axis for which x of the plane is the projection of x.
 const NEARLY_NORMAL: f64 = 0.9;
 
@@ -32,7 +32,7 @@ impl FittedPlane {
     /// [`CircleError`] but [`CircleError::Straight`].
     pub fn fit(points: &[[f64; 3]]) -> Result<Self, CircleError> {
         let vectors = || points.iter().map(|p| Vector3::from(*p));
-        if let Some(point) = points.iter().position(|p| p.iter().any(|c| !c.is_finite() || c.abs() > LARGEST)) {
+        if let Some(point) = points.iter().position(|p| p.iter().any(|c| !c.is_finite() || c.abs() > MAX_COORDINATE)) {
             return Err(CircleError::NotFinite { point });
         }
         let first = vectors().next().ok_or(CircleError::TooFew { distinct: 0 })?;
@@ -42,7 +42,7 @@ impl FittedPlane {
         let eigen = scatter.symmetric_eigen();
         let axis = |index: usize| eigen.eigenvectors.column(index).into_owned();
         let long = axis(eigen.eigenvalues.imax());
-        let allowance = ROUNDING * vectors().fold(0.0_f64, |most, p| most.max(p.amax()));
+        let allowance = ROUNDING * vectors().fold(0.0_f64, |max, p| max.max(p.amax()));
         if vectors().all(|p| (p - center - long * long.dot(&(p - center))).norm() <= allowance) {
             return Err(on_a_line(points, allowance));
         }

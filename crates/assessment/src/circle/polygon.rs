@@ -58,7 +58,7 @@ impl Polygon {
         let count = self.corners.len() as f64;
         let mut centroid = [sum[0] / count, sum[1] / count];
         // Rounding may put the centroid of a sliver outside; its mean is inside.
-        let spread = self.corners.iter().map(seen).fold(0.0_f64, |most, a| most.max(a[0] * a[0] + a[1] * a[1]));
+        let spread = self.corners.iter().map(seen).fold(0.0_f64, |max, a| max.max(a[0] * a[0] + a[1] * a[1]));
         if area > 1e-6 * spread {
             centroid = [moment[0] / (3.0 * area), moment[1] / (3.0 * area)];
         }

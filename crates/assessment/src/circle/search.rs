@@ -16,7 +16,7 @@ use std::rc::Rc;
 const RELATIVE: f64 = 1e-13;
 const ABSOLUTE: f64 = 2e-15;
 /// A cell of this size has no better centre in it than its own, but for rounding.
-const SMALLEST: f64 = 1e-15;
+const MIN_SIZE: f64 = 1e-15;
 /// A cut that leaves this part of a cell, or more, calls for a split.
 const TOO_LITTLE: f64 = 0.7;
 /// Of lists longer than this only one in [`STRIDE`] points is looked at first, which gives weaker cuts for less work.
@@ -89,7 +89,7 @@ impl CentreSearch<'_> {
             if thin.is_none() && is_inside && view.objective() < best.objective {
                 *best = BestCentre { coordinates: middle, objective: view.objective() };
             }
-            if size <= SMALLEST {
+            if size <= MIN_SIZE {
                 // Seen in part only, it is looked at once more in full.
                 thin.take()?;
                 continue;

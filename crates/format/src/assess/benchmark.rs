@@ -101,7 +101,7 @@ fn wrench_from(
             moment: table.moment_nm.map_or_else(Vector3::zeros, |moment| moment.vector()),
         },
     };
-    if libm::hypot(wrench.force.x, wrench.force.y) >= LEAST_FORCE {
+    if libm::hypot(wrench.force.x, wrench.force.y) >= MIN_FORCE {
         return Ok(wrench);
     }
     let rule =
@@ -111,7 +111,7 @@ fn wrench_from(
 }
 
 /// No force in the plane is smaller than this. N
-const LEAST_FORCE: f64 = 1e-6;
+const MIN_FORCE: f64 = 1e-6;
 
 /// A direction, made exactly one long.
 pub(super) fn direction(given: Vector<Number>, at: &Place<'_>) -> Result<Vector3<f64>, InputError> {

@@ -22,7 +22,6 @@ ranges! {
 
 /// A comparison of robots for `stead assess`: how round a circle each would mill, wherever in a plane it is put.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct AssessmentFile {
     /// The robot files, relative to the folder of this file.
     pub robots: List<String>,
@@ -52,7 +51,6 @@ pub struct AssessmentFile {
 
 /// The circle and its load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct BenchmarkTable {
     /// Radius of the circle.
     pub radius_mm: Mm<Radius>,
@@ -94,7 +92,6 @@ words!(ElbowNames: "geometric" => ElbowNames::Geometric, "swapped" => ElbowNames
 
 /// The plane of the circle: an origin and two directions in the base frame, of length 1 and normal to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PlaneTable {
     /// Origin of the plane in the base frame; the origin of the base frame where left out.
     pub origin_mm: Option<Vector<Mm>>,
@@ -106,7 +103,6 @@ pub struct PlaneTable {
 
 /// The grid of centres, in the coordinates of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MapTable {
     /// Range `[min, max]` along the first direction of the plane.
     pub x_mm: Interval<Mm>,
@@ -118,7 +114,6 @@ pub struct MapTable {
 
 /// Square zones of centres.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ZonesTable {
     /// Sides of the zones, whole multiples of the step of the map.
     pub sides_mm: List<Mm<Positive>>,
@@ -126,7 +121,6 @@ pub struct ZonesTable {
 
 /// How the arm yields.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct StiffnessTable {
     /// Numbers of the joints that yield; all where left out.
     pub joints: Option<List<Whole<1, 6>>>,
@@ -139,7 +133,6 @@ pub struct StiffnessTable {
 
 /// The rated load.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LoadTable {
     /// Rated force over the weight of the payload; 0.8 where left out.
     pub rated_share: Option<Number<RatedShare>>,
@@ -149,7 +142,6 @@ pub struct LoadTable {
 
 /// Asks which robots reach an accuracy under a force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SelectionTable {
     /// Accuracies, in ascending order.
     pub accuracies_mm: List<Mm<Positive>>,
@@ -161,7 +153,6 @@ pub struct SelectionTable {
 
 /// Published tables to print beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ReferenceFileTable {
     /// The file of published tables, relative to the folder of this file.
     pub tables: String,

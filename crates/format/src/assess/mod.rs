@@ -10,8 +10,7 @@ pub use file::*;
 use super::published_tables::published_tables_from;
 use super::robot::robot_from;
 use super::toml_file::TomlFile;
-use crate::document::NamedFile;
-use crate::input::{InputError, InputFile, input_file};
+use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::shapes::List;
@@ -56,14 +55,9 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let document = source.parse()?;
     let at = document.root();
     let file: AssessmentFile = document.read()?;
-    let plane = match &file.plane {
-        Some(table) => plane_from(table, &at.key("plane"))?,
-        None => Plane::XOZ,
-    };
-    let flange_from_tool = match &file.spindle {
-        Some(table) => table.spindle(&at.key("spindle"))?.flange_from_tool,
-        None => Pose::identity(),
-    };
+    let plane = file.plane.map(|table| plane_from(&table, &at.key("plane"))).transpose()?.unwrap_or(Plane::XOZ);
+    let spindle = file.spindle.map(|table| table.spindle(&at.key("spindle"))).transpose()?;
+    let flange_from_tool = spindle.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
     let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
     let force_history = cut.map(|cut| cut.force_history());
@@ -71,10 +65,8 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let setting = Setting { plane, flange_from_tool, yields, force_history: force_history.as_ref() };
     let (benchmark, elbow_names) = benchmark_from(&file.benchmark, &at, &setting)?;
     let grid = grid_from(&file.map, &at.key("map"))?;
-    let zones = match &file.zones {
-        Some(table) => zones_from(&table.sides_mm, &at.key("zones").key("sides_mm"), &grid)?,
-        None => Vec::new(),
-    };
+    let zones = file.zones.map(|table| zones_from(&table.sides_mm, &at.key("zones").key("sides_mm"), &grid));
+    let zones = zones.transpose()?.unwrap_or_default();
     let load = file.load.unwrap_or_default();
     let rated_share = load.rated_share.map_or(RATED, Quantity::si);
     let gravity = load.gravity_m_per_s2.map_or(GRAVITY, Quantity::si);
@@ -87,9 +79,9 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let robots = robots_from(&file.robots, &at.key("robots"), yields.range_share, &mut inputs)?;
     let published = match file.reference {
         Some(_) => {
-            let named = at.key("reference").key("tables").named_file()?;
-            inputs.push(input_file("reference", named.name.as_str(), &named.bytes));
-            Some(published_tables_from(&TomlFile::new(&named.file, named.bytes)?)?)
+            let (source, input) = at.key("reference").key("tables").named_toml("reference")?;
+            inputs.push(input);
+            Some(published_tables_from(&source)?)
         }
         None => None,
     };
@@ -114,9 +106,9 @@ fn robots_from(
     let mut robots: Vec<Robot> = Vec::new();
     for number in 1..=names.0.len() {
         let entry = at.element(number);
-        let NamedFile { name, file, bytes } = entry.named_file()?;
-        inputs.push(input_file("robot", name, &bytes));
-        let robot = robot_from(&TomlFile::new(&file, bytes)?)?;
+        let (source, input) = entry.named_toml("robot")?;
+        inputs.push(input);
+        let robot = robot_from(&source)?;
         if robots.iter().any(|other| other.name() == robot.name()) {
             let problem = format!("names a second robot called '{}'", robot.name());
             return Err(entry.error(problem, "robot files with different names in them"));
@@ -143,7 +135,7 @@ fn plane_from(table: &PlaneTable, at: &Place<'_>) -> Result<Plane, InputError> {
 }
 
 /// More places than this are refused.
-const MOST_NODES: f64 = 4e6;
+const MAX_NODES: f64 = 4e6;
 
 fn grid_from(table: &MapTable, at: &Place<'_>) -> Result<Grid, InputError> {
     let (across, up, step) = (table.x_mm, table.y_mm, table.step_mm);
@@ -152,8 +144,8 @@ fn grid_from(table: &MapTable, at: &Place<'_>) -> Result<Grid, InputError> {
         ((to - from) / step.written() + 1e-9).floor() + 1.0
     });
     let nodes = counts[0] * counts[1];
-    if nodes > MOST_NODES {
-        let allowed = format!("a step that makes at most {MOST_NODES} of them");
+    if nodes > MAX_NODES {
+        let allowed = format!("a step that makes at most {MAX_NODES} of them");
         return Err(at.key("step_mm").error(format!("makes {nodes} places"), allowed));
     }
     let origin = [across.si()[0], up.si()[0]];

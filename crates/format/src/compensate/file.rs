@@ -19,7 +19,6 @@ words!(DeflectionModel:
 
 /// The compensation of the deflections of a plan, for `stead compensate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CompensationFile {
     /// The run file of `stead place`, relative to the folder of this file.
     pub run: String,
@@ -34,7 +33,6 @@ pub struct CompensationFile {
 
 /// How deflections are compensated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CompensationTable {
     /// Share of the error that an iteration corrects (Klimchik et al. 2017, eq. 27); 1 where left out.
     pub alpha: Option<Number<Share>>,

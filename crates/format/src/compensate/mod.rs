@@ -65,19 +65,20 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));
 
     let real = match (reality, file.reality) {
-        (Some(path), _) => Some((path.to_string_lossy().replace('\\', "/"), TomlFile::read(path)?)),
-        (None, Some(_)) => {
-            let named = at.key("reality").named_file()?;
-            Some((named.name, TomlFile::new(&named.file, named.bytes)?))
+        (Some(path), _) => {
+            let (name, source) = (path.to_string_lossy().replace('\\', "/"), TomlFile::read(path)?);
+            let input = input_file("reality", name, source.bytes());
+            Some((source, input))
         }
+        (None, Some(_)) => Some(at.key("reality").named_toml("reality")?),
         (None, None) => None,
     };
     let has_reality = real.is_some();
     let robot = run.problem.robot;
     let reality = match real {
         None => robot.clone(),
-        Some((name, source)) => {
-            inputs.push(input_file("reality", name, source.bytes()));
+        Some((source, input)) => {
+            inputs.push(input);
             reality_from(&source, &robot)?
         }
     };
@@ -91,7 +92,7 @@ impl CompensationTable {
         Settings {
             alpha: self.alpha.map_or(default.alpha, Quantity::si),
             tolerance: self.tolerance_mm.map_or(default.tolerance, Quantity::si),
-            max_iterations: self.max_iterations.map_or(default.max_iterations, |most| most.count()),
+            max_iterations: self.max_iterations.map_or(default.max_iterations, |max| max.count()),
             model: self.model.map_or(default.model, |word| word.0),
             ..default
         }

@@ -1,7 +1,7 @@
 //! The rows of a plan file, as `stead place` writes them: one for each path point.
 
 use crate::input::InputError;
-use crate::input::csv_table::{CsvTable, Row};
+use crate::input::csv_table::{CsvTable, Row, try_each};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::robot::Posture;
@@ -51,7 +51,7 @@ const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection
 /// the path in their order.
 pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Vec<PlanRow>, InputError> {
     let mut table = CsvTable::new(file, bytes)?;
-    let columns = columns(file, &table)?;
+    let columns = columns(&table)?;
     let count = path.points().len();
     let mut rows = Vec::with_capacity(count);
     let mut last_line = 1;
@@ -76,7 +76,7 @@ pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Ve
     Ok(rows)
 }
 
-fn columns(file: &Path, table: &CsvTable<'_>) -> Result<Columns, InputError> {
+fn columns(table: &CsvTable<'_>) -> Result<Columns, InputError> {
     let column = |name: &str| {
         let allowed = format!(
             "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",
@@ -84,18 +84,15 @@ fn columns(file: &Path, table: &CsvTable<'_>) -> Result<Columns, InputError> {
             JOINTS.join(", "),
             FORCE.join(", ")
         );
-        let fail = |problem: &str| InputError::new(file, problem).at_line(1).in_field(name).allowed(allowed);
+        let fail = |problem: &str| table.fail(name, problem, &allowed);
         match table.column(name) {
             None => Err(fail("missing column").found(format!("'{}'", table.header().collect::<Vec<_>>().join(",")))),
             Some(_) if table.is_doubled(name) => Err(fail("this column is there twice")),
             Some(column) => Ok(column),
         }
     };
-    let three = |[x, y, z]: [&str; 3]| -> Result<[usize; 3], InputError> { Ok([column(x)?, column(y)?, column(z)?]) };
-    let mut joints = [0; 6];
-    for (slot, name) in joints.iter_mut().zip(JOINTS) {
-        *slot = column(name)?;
-    }
+    let three = |names: [&str; 3]| try_each(names, column);
+    let joints = try_each(JOINTS, column)?;
     let has_deflection = DEFLECTION.iter().any(|name| table.column(name).is_some());
     Ok(Columns {
         point: column("point")?,
@@ -117,21 +114,15 @@ fn number_is(row: &Row<'_>, column: usize, expected: usize) -> Result<(), InputE
 }
 
 fn plan_row(row: &Row<'_>, columns: &Columns) -> Result<PlanRow, InputError> {
-    let vector = |[x, y, z]: [usize; 3]| -> Result<Vector3<f64>, InputError> {
-        Ok(Vector3::new(row.number(x)?, row.number(y)?, row.number(z)?))
-    };
+    let joints = try_each(columns.joints, |column| row.number(column).map(f64::to_radians))?;
     let posture = row.text(columns.posture).parse().ok().and_then(Posture::from_number);
-    let mut joints = [0.0; 6];
-    for (angle, column) in joints.iter_mut().zip(columns.joints) {
-        *angle = row.number(column)?.to_radians();
-    }
     Ok(PlanRow {
         line: row.line(),
-        position: vector(columns.position)? / 1e3,
+        position: row.vector(columns.position)? / 1e3,
         beta: row.number(columns.beta)?.to_radians(),
         posture: posture.ok_or_else(|| row.fail(columns.posture, "not a posture", "a whole number from 1 to 8"))?,
         joints,
-        force: vector(columns.force)?,
-        deflection: columns.deflection.map(|columns| vector(columns).map(|mm| mm / 1e3)).transpose()?,
+        force: row.vector(columns.force)?,
+        deflection: columns.deflection.map(|columns| row.vector(columns).map(|mm| mm / 1e3)).transpose()?,
     })
 }

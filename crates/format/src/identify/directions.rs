@@ -1,13 +1,12 @@
 //! Directions of a load: one of some words, or a list.
 
-use crate::quantity::{Expects, Reading, expecting};
+use crate::quantity::{Expects, Reading, expecting, inline_schema};
 use crate::scalars::{Word, words};
 use crate::shapes::{List, Vector};
 use crate::units::Number;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// Directions that have a word.
@@ -65,13 +64,7 @@ impl<'de> Visitor<'de> for Reading<Directions> {
 }
 
 impl JsonSchema for Directions {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Directions".into()
-    }
+    inline_schema!("Directions");
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let word = generator.subschema_for::<Word<NamedDirections>>();

@@ -15,7 +15,6 @@ ranges! {
 
 /// Joint compliances from measured deflections: the file of `stead identify fit` and `stead identify plan`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct IdentificationFile {
     /// The robot file to start from, relative to the folder of this file: geometry, limits, compliances of about the right
     /// size.
@@ -42,7 +41,6 @@ pub struct IdentificationFile {
 
 /// Known geometry of a gravity compensator, a spring between two points, one on either link of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CompensatorGeometryTable {
     /// Number of the joint.
     pub joint: Whole<1, 6>,
@@ -56,7 +54,6 @@ pub struct CompensatorGeometryTable {
 
 /// Where the tracker stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct BaseTable {
     /// Rotation from the base frame of the robot to the tracker's frame, by rows, to start the search from; without it all
     /// orientations are tried.
@@ -65,7 +62,6 @@ pub struct BaseTable {
 
 /// What is identified.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct FitTable {
     /// Whether parameters that the readings do not determine keep their values of the robot file; false where left out, and
     /// then such a sheet is refused.

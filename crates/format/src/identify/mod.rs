@@ -100,30 +100,21 @@ const TOLERANCE_DEG: f64 = 0.05;
 
 impl Shared {
     fn new(file: &IdentificationFile, at: &Place<'_>) -> Result<Self, InputError> {
-        let robot_file = at.key("robot").named_file()?;
-        let robot_source = TomlFile::new(&robot_file.file, robot_file.bytes)?;
+        let (robot_source, robot_input) = at.key("robot").named_toml("robot")?;
         let robot = robot_from(&robot_source)?;
-        let given = match &file.compensator {
-            Some(table) => Some(compensator_from(table, &at.key("compensator"), &robot)?),
-            None => None,
-        };
-        let start = match &file.base {
-            Some(table) => Some(base_from(table, &at.key("base"))?),
-            None => None,
-        };
+        let given =
+            file.compensator.map(|table| compensator_from(&table, &at.key("compensator"), &robot)).transpose()?;
+        let start = file.base.map(|table| base_from(&table, &at.key("base"))).transpose()?;
         let fit = file.fit.clone().unwrap_or_default();
-        let hold = match &fit.hold {
-            Some(joints) => held_from(joints, &at.key("fit").key("hold"))?,
-            None => [false; 6],
-        };
+        let hold = fit.hold.map(|joints| held_from(&joints, &at.key("fit").key("hold"))).transpose()?;
         let (varying, note) = varying_from(&robot, given, fit.distinct_q2.unwrap_or_default());
         Ok(Self {
             robot,
-            robot_input: input_file("robot", &robot_file.name, robot_source.bytes()),
+            robot_input,
             robot_text: robot_source.without_schema().to_owned(),
             load_point: file.load_point_mm.vector(),
             angle_tolerance: fit.angle_tolerance_deg.map_or(TOLERANCE_DEG.to_radians(), Quantity::si),
-            hold,
+            hold: hold.unwrap_or_default(),
             varying,
             note,
             start,

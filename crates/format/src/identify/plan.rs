@@ -21,7 +21,6 @@ use stead_model::robot::Robot;
 
 /// Which measurements to choose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PlanTable {
     /// Number of configurations to measure.
     pub configurations: Whole<1, 1000>,
@@ -61,7 +60,6 @@ pub struct PlanTable {
 
 /// Where wrist, flange, tip, load and reference points must be, in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct VolumeTable {
     /// Range `[min, max]` of the x coordinate; any where left out.
     pub x_mm: Option<Interval<Mm>>,
@@ -75,7 +73,6 @@ pub struct VolumeTable {
 
 /// A pose and a load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TestTable {
     /// Joint angles.
     pub joints_deg: Array<Deg, 6>,
@@ -113,7 +110,7 @@ const RANDOM_SETS: usize = 1000;
 /// Per cent of a compliance above which its standard deviation is large, where the file does not say; as in the report of fit.
 const HARDLY_PERCENT: f64 = 20.0;
 /// Largest deflection where the file does not say. mm
-const MOST_MM: f64 = 10.0;
+const MAX_DEFLECTION_MM: f64 = 10.0;
 /// Levels where the file does not say.
 const LEVELS: usize = 5;
 
@@ -178,7 +175,7 @@ impl PlanTable {
             loads,
             load: self.load_n.si(),
             volume: self.volume.map_or(Volume::OPEN, |table| table.volume()),
-            max_deflection: self.max_deflection_mm.map_or(MOST_MM / 1e3, Quantity::si),
+            max_deflection: self.max_deflection_mm.map_or(MAX_DEFLECTION_MM / 1e3, Quantity::si),
             tip: self.tip_mm.map_or(shared.load_point, |tip| tip.vector()),
             tests,
             configurations: size,

@@ -1,10 +1,11 @@
 //! CSV files: a header of named columns, rows with their lines, numbers that must be finite.
 
 use super::InputError;
+use nalgebra::Vector3;
 use std::path::Path;
 
 /// No number in a CSV file is larger than this in its unit.
-pub const LARGEST: f64 = 1e9;
+pub const MAX_NUMBER: f64 = 1e9;
 
 /// A CSV file being read, its header already.
 pub struct CsvTable<'a> {
@@ -48,6 +49,11 @@ impl<'a> CsvTable<'a> {
     /// Whether a column is there more than once.
     pub fn is_doubled(&self, name: &str) -> bool {
         self.header().filter(|column| *column == name).count() > 1
+    }
+
+    /// What is wrong with a column of the header.
+    pub fn fail(&self, column: &str, problem: &str, allowed: &str) -> InputError {
+        InputError::new(self.file, problem).at_line(1).in_field(column).allowed(allowed)
     }
 
     /// The next row, until there is none.
@@ -97,13 +103,33 @@ impl Row<'_> {
     /// The number in a column.
     ///
     /// # Errors
-    /// [`InputError`] unless it is finite and within [`LARGEST`].
+    /// [`InputError`] unless it is finite and within [`MAX_NUMBER`].
     pub fn number(&self, column: usize) -> Result<f64, InputError> {
         match self.record[column].parse::<f64>() {
-            Ok(value) if value.abs() <= LARGEST => Ok(value),
+            Ok(value) if value.abs() <= MAX_NUMBER => Ok(value),
             _ => Err(self.fail(column, "not a finite number", "a finite decimal number of at most 1e9")),
         }
     }
+
+    /// The vector in three columns.
+    ///
+    /// # Errors
+    /// As [`Row::number`].
+    pub fn vector(&self, columns: [usize; 3]) -> Result<Vector3<f64>, InputError> {
+        try_each(columns, |column| self.number(column)).map(Vector3::from)
+    }
+}
+
+/// What a function gives for each of some things, or its first error.
+pub(crate) fn try_each<A, B: Copy + Default, E, const N: usize>(
+    things: [A; N],
+    mut function: impl FnMut(A) -> Result<B, E>,
+) -> Result<[B; N], E> {
+    let mut results = [B::default(); N];
+    for (result, thing) in results.iter_mut().zip(things) {
+        *result = function(thing)?;
+    }
+    Ok(results)
 }
 
 /// Tells the line of a row. The reader's own count takes a row to begin right behind the row before it, so it is early

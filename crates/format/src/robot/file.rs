@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 /// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm and
 /// angles in deg, as the keys say; every number needs a source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct RobotFile {
     /// Name of the robot, on one line.
     pub name: String,
@@ -31,7 +30,6 @@ pub struct RobotFile {
 /// One joint, with the link behind it. The frame of a row is that of modified Denavit-Hartenberg parameters: its z axis is
 /// the joint axis, its origin is reached after `alpha`, `a` and `d`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct JointRow {
     /// Angle from the previous joint axis to this one, about the previous x axis (modified Denavit-Hartenberg).
     pub alpha_deg: Deg,
@@ -78,7 +76,6 @@ pub struct JointRow {
 
 /// A spring between two points, one on either link of a joint (Klimchik et al. 2017).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CompensatorTable {
     /// Stiffness of the spring.
     pub spring_stiffness_n_per_mm: NPerMm<Positive>,
@@ -94,7 +91,6 @@ pub struct CompensatorTable {
 
 /// Covariance of parameters of the joint compliances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CovarianceTable {
     /// Names of the parameters, as their keys are named: `joints[1].compliance_urad_per_nm`, with `[1]` or `[2]` behind for
     /// the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`.

@@ -1,12 +1,11 @@
 //! A compliance as a robot file states it: one number, or two at the ends of the range of the joint.
 
-use crate::quantity::{Expects, Reading, expecting};
+use crate::quantity::{Expects, Reading, expecting, inline_schema};
 use crate::shapes::Array;
 use crate::units::{Positive, UradPerNm};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// One compliance, or two: at the lower and at the upper limit of the joint.
@@ -50,13 +49,7 @@ impl<'de> Visitor<'de> for Reading<OneOrRange> {
 }
 
 impl JsonSchema for OneOrRange {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "OneOrRange".into()
-    }
+    inline_schema!("OneOrRange");
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let one = generator.subschema_for::<UradPerNm<Positive>>();

@@ -1,11 +1,10 @@
 //! The arm of a simulation file and the pass that it makes.
 
 use super::file::{PassTable, SimulationFile};
-use crate::input::{InputError, InputFile, input_file};
+use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::robot::moving_robot_from;
 use crate::scalars::Words;
-use crate::toml_file::TomlFile;
 use stead_model::robot::{Robot, Spindle};
 use stead_simulation::arm::Variant;
 use stead_simulation::motion::{Motion, MotionError, Pass, Ramp};
@@ -36,10 +35,9 @@ pub(super) fn setup_from(
     let variant = overrides.variant.or(file.variant.map(|word| word.0)).unwrap_or(Variant::Springs);
     let damping_scale = overrides.damping_scale.or(file.damping_scale.map(|scale| scale.si())).unwrap_or(1.0);
     let spindle = file.spindle.moving_spindle(&at.key("spindle"))?;
-    let named = at.key("robot").named_file()?;
-    let source = TomlFile::new(&named.file, named.bytes)?;
+    let (source, input) = at.key("robot").named_toml("robot")?;
     let robot = moving_robot_from(&source, variant >= Variant::Orthogonal)?;
-    inputs.push(input_file("robot", named.name, source.bytes()));
+    inputs.push(input);
     let motion = motion_from(&file.pass, &at.key("pass"), &robot, &spindle)?;
     Ok(Setup { robot, spindle, variant, damping_scale, motion })
 }

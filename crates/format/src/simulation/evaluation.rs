@@ -102,9 +102,9 @@ pub(super) fn check_step(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result
 }
 
 /// More steps than these are not kept in memory.
-const MOST_STEPS: f64 = 5e6;
+const MAX_STEPS: f64 = 5e6;
 /// Nor is a pass that takes longer. s
-const LONGEST: f64 = 2e4;
+const MAX_DURATION: f64 = 2e4;
 
 /// Refuses a pass that takes so long that its steps cannot be kept.
 ///
@@ -112,10 +112,13 @@ const LONGEST: f64 = 2e4;
 /// [`InputError`] at the feed.
 pub(super) fn check_duration(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result<(), InputError> {
     let duration = setup.motion.duration();
-    let longest = LONGEST.min(MOST_STEPS * cut.step());
+    let longest = MAX_DURATION.min(MAX_STEPS * cut.step());
     if duration <= longest {
         return Ok(());
     }
     let problem = format!("makes a pass of {duration:.3e} s, {:.3e} steps", duration / cut.step());
-    Err(at.error(problem, format!("at most {MOST_STEPS:e} steps and {LONGEST:e} s: a faster feed, or a shorter pass")))
+    Err(at.error(
+        problem,
+        format!("at most {MAX_STEPS:e} steps and {MAX_DURATION:e} s: a faster feed, or a shorter pass"),
+    ))
 }

@@ -29,7 +29,6 @@ ranges! {
 /// A straight milling pass of `stead simulate` and `stead stability`: the arm with its masses and damping, the cutter, and
 /// what it cuts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SimulationFile {
     /// The robot file, relative to the folder of this file; it needs masses and damping.
     pub robot: String,
@@ -57,7 +56,6 @@ pub struct SimulationFile {
 
 /// A straight pass from a standing start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PassTable {
     /// Joint angles at the start, in the angles of the robot file.
     pub start_joints_deg: Array<Deg, 6>,
@@ -73,7 +71,6 @@ pub struct PassTable {
 
 /// The workpiece, along the feed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct WorkTable {
     /// Length of the work.
     pub length_mm: Mm<Positive>,
@@ -85,7 +82,6 @@ pub struct WorkTable {
 
 /// Steps of the simulation, and how its outcome is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SettingsTable {
     /// Slices of the cutter along its axis; 32 where left out.
     pub slices: Option<Whole<1, 1024>>,
@@ -101,7 +97,6 @@ pub struct SettingsTable {
 
 /// The stability analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct AnalysisTable {
     /// Where on the pass the arm is analysed, from the start; 0 where left out.
     pub way_mm: Option<Mm<NotNegative>>,
@@ -117,7 +112,6 @@ pub struct AnalysisTable {
 
 /// Published figures of the pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PublishedTable {
     /// Where they were published.
     pub source: String,
@@ -135,7 +129,6 @@ pub struct PublishedTable {
 
 /// Published forces: smallest, largest, mean and root mean square.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ForcesTable {
     /// Along the feed: smallest, largest, mean and root mean square.
     pub force_x_n: Array<N, 4>,
@@ -145,7 +138,6 @@ pub struct ForcesTable {
 
 /// Published roughness.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ProfileTable {
     /// Arithmetical mean height Ra.
     pub ra_um: Um<Positive>,

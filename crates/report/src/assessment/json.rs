@@ -1,34 +1,27 @@
 //! The JSON documents of an assessment: what `stead assess --json` prints, and `summary.json`.
 
 use super::AssessmentContext;
-use crate::document::{Document, Timing};
+use crate::document::{Document, Timing, joined};
 use crate::units::Unit;
 use nalgebra::Vector3;
-use serde_json::{Map, Value, json};
-use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
-use stead_assessment::comparison::{Assessment, Comparison, Configuration, ElbowNames, MapPoint, RobotResult, Zones};
+use serde_json::{Value, json};
+use stead_assessment::benchmark::{Benchmark, StiffnessModel};
+use stead_assessment::comparison::{Assessment, Comparison, Configuration, MapPoint, RobotResult, Zones};
 use stead_assessment::published::Agreement;
+use stead_format::scalars::Word;
 
 /// What `stead assess --json` prints.
 pub fn assess_json(assessment: &Assessment, context: &AssessmentContext, timing: &Timing) -> Value {
-    let mut entries = common(assessment, context);
-    entries.insert("threads".to_owned(), json!(timing.threads));
-    entries.insert("wall_s".to_owned(), json!(Unit::TIME_S.number(timing.wall)));
-    document(assessment, context, entries)
+    let timing = json!({ "threads": timing.threads, "wall_s": Unit::TIME_S.number(timing.wall) });
+    joined(document(assessment, context), timing)
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs.
 pub fn summary_json(comparison: &Comparison, assessment: &Assessment, context: &AssessmentContext) -> Value {
-    let mut entries = common(assessment, context);
-    entries.insert("benchmark".to_owned(), benchmark(comparison, context.range_share));
-    document(assessment, context, entries)
+    joined(document(assessment, context), json!({ "benchmark": benchmark(comparison, context.range_share) }))
 }
 
-fn document(assessment: &Assessment, context: &AssessmentContext, entries: Map<String, Value>) -> Value {
-    Document::new(&context.inputs).notes(&context.notes).warnings(&assessment.warnings).with(Value::Object(entries))
-}
-
-fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, Value> {
+fn document(assessment: &Assessment, context: &AssessmentContext) -> Value {
     let accuracies = assessment.accuracies.iter().map(|cell| {
         json!({
             "robot": cell.robot,
@@ -44,13 +37,13 @@ fn common(assessment: &Assessment, context: &AssessmentContext) -> Map<String, V
         })
     });
     let agreement = context.published.as_ref().map(|(published, agreement)| reference(&published.source, agreement));
-    Map::from_iter([
-        ("robots".to_owned(), assessment.robots.iter().map(robot).collect()),
-        ("order".to_owned(), json!(assessment.order)),
-        ("accuracies".to_owned(), accuracies.collect()),
-        ("selection".to_owned(), selection.collect()),
-        ("reference".to_owned(), agreement.unwrap_or(Value::Null)),
-    ])
+    Document::new(&context.inputs).notes(&context.notes).warnings(&assessment.warnings).with(json!({
+        "robots": assessment.robots.iter().map(robot).collect::<Value>(),
+        "order": assessment.order,
+        "accuracies": accuracies.collect::<Value>(),
+        "selection": selection.collect::<Value>(),
+        "reference": agreement,
+    }))
 }
 
 fn robot(robot: &RobotResult) -> Value {
@@ -134,14 +127,11 @@ fn benchmark(comparison: &Comparison, range_share: Option<f64>) -> Value {
         "points": points,
         "force_n": vector(Unit::FORCE_N, &wrench.force),
         "moment_nm": vector(Unit::MOMENT_NM, &wrench.moment),
-        "force_turns": match turning { Turning::WithTool => "with-tool", Turning::AgainstTool => "against-tool" },
+        "force_turns": Word(*turning),
         "traced": if comparison.benchmark.flange_from_tool.is_some() { "tool" } else { "wrist-centre" },
         "tool_axis": vector(Unit::PLAIN, &-base_from_tool.column(2).into_owned()),
-        "limits_at": match limits_at { LimitsAt::Circle => "circle", LimitsAt::Centre => "centre" },
-        "elbow_names": match comparison.elbow_names {
-            ElbowNames::Geometric => "geometric",
-            ElbowNames::Swapped => "swapped",
-        },
+        "limits_at": Word(*limits_at),
+        "elbow_names": Word(comparison.elbow_names),
         "joints": joints,
         "range_share": range_share,
         "loaded": *stiffness == StiffnessModel::Loaded,

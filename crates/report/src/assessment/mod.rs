@@ -68,7 +68,7 @@ pub fn write_assessment(
 }
 
 /// Longest piece of a robot's name in a file name.
-const LONGEST_NAME: usize = 80;
+const MAX_NAME_LENGTH: usize = 80;
 
 /// The name of a robot as part of a file name: small letters, digits and hyphens, and its number where an earlier robot has
 /// the same.
@@ -76,7 +76,7 @@ fn file_name(assessment: &Assessment, index: usize) -> String {
     let plain = |index: usize| {
         let name = assessment.robots[index].name.to_lowercase();
         let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-        words.collect::<Vec<_>>().join("-").chars().take(LONGEST_NAME).collect::<String>()
+        words.collect::<Vec<_>>().join("-").chars().take(MAX_NAME_LENGTH).collect::<String>()
     };
     let name = plain(index);
     let taken = name.is_empty() || (0..index).any(|earlier| plain(earlier) == name);

@@ -11,7 +11,7 @@ use stead_assessment::published::{PublishedTables, Quantity};
 /// `map-ROBOT.csv`: every circle that can be milled; a column is empty where the arm is too soft for that load, and the rated one where the
 /// payload is not known.
 pub(super) fn map(robot: &RobotResult) -> Result<Vec<u8>, ReportError> {
-    let header = ["elbow", "x_mm", "y_mm", "test_mm", "rated_mm"];
+    let header = "elbow,x_mm,y_mm,test_mm,rated_mm";
     let rows = robot.maps.iter().flat_map(|(name, map)| {
         map.nodes.iter().enumerate().filter_map(move |(index, node)| {
             let [test, rated] = (*node).ok()?;
@@ -22,7 +22,7 @@ pub(super) fn map(robot: &RobotResult) -> Result<Vec<u8>, ReportError> {
             Some(row)
         })
     });
-    table("the table of a circularity map", &header, rows)
+    table("the table of a circularity map", header.split(','), rows)
 }
 
 /// Each configuration of each robot, with its robot.
@@ -67,25 +67,9 @@ pub(super) fn circularity(
     assessment: &Assessment,
     published: Option<&PublishedTables>,
 ) -> Result<Vec<u8>, ReportError> {
-    let header = [
-        "robot",
-        "elbow",
-        "load",
-        "force_n",
-        "circles",
-        "min_mm",
-        "min_at_x_mm",
-        "min_at_y_mm",
-        "max_mm",
-        "max_at_x_mm",
-        "max_at_y_mm",
-        "middle_mm",
-        "middle_at_x_mm",
-        "middle_at_y_mm",
-        "printed_min_mm",
-        "printed_max_mm",
-        "printed_middle_mm",
-    ];
+    let header = "\
+        robot,elbow,load,force_n,circles,min_mm,min_at_x_mm,min_at_y_mm,max_mm,max_at_x_mm,max_at_y_mm,middle_mm,\
+         middle_at_x_mm,middle_at_y_mm,printed_min_mm,printed_max_mm,printed_middle_mm";
     let rows = configurations(assessment).map(|(robot, configuration)| {
         let mut row = key(robot, configuration);
         row.push(configuration.circles.to_string());
@@ -94,11 +78,10 @@ pub(super) fn circularity(
         row.extend(quantities.map(|quantity| printed_value(published, robot, configuration, quantity)));
         row
     });
-    table("the table of circularities", &header, rows)
+    table("the table of circularities", header.split(','), rows)
 }
 
-const ZONE: [&str; 9] =
-    ["robot", "elbow", "load", "force_n", "size_mm", "largest_mm", "centre_x_mm", "centre_y_mm", "printed_mm"];
+const ZONE: &str = "robot,elbow,load,force_n,size_mm,largest_mm,centre_x_mm,centre_y_mm,printed_mm";
 
 /// `optimal-zones.csv` (Klimchik 2017, Table 6).
 pub(super) fn optimal_zones(
@@ -135,13 +118,13 @@ fn zones(
             row
         })
     });
-    table(what, &ZONE, rows)
+    table(what, ZONE.split(','), rows)
 }
 
 /// `accuracy.csv` (Klimchik 2017, Table 8): circularity at the best place, in proportion to the force; empty where the force
 /// is above the payload.
 pub(super) fn accuracy(assessment: &Assessment, published: Option<&PublishedTables>) -> Result<Vec<u8>, ReportError> {
-    let header = ["robot", "force_n", "circularity_mm", "printed_mm"];
+    let header = "robot,force_n,circularity_mm,printed_mm";
     let rows = assessment.accuracies.iter().map(|cell| {
         let value = published.and_then(|published| published.accuracy(&cell.robot, cell.force));
         vec![
@@ -151,12 +134,12 @@ pub(super) fn accuracy(assessment: &Assessment, published: Option<&PublishedTabl
             printed_text(value),
         ]
     });
-    table("the table of accuracies", &header, rows)
+    table("the table of accuracies", header.split(','), rows)
 }
 
 /// `selection.csv` (Klimchik 2017, Table 9): names with semicolons between.
 pub(super) fn selection(assessment: &Assessment, published: Option<&PublishedTables>) -> Result<Vec<u8>, ReportError> {
-    let header = ["accuracy_mm", "force_n", "robots", "printed_robots"];
+    let header = "accuracy_mm,force_n,robots,printed_robots";
     let rows = assessment.capable.iter().map(|cell| {
         let published = published.map(|published| published.robots(cell.accuracy, cell.force).join("; "));
         vec![
@@ -166,5 +149,5 @@ pub(super) fn selection(assessment: &Assessment, published: Option<&PublishedTab
             published.unwrap_or_default(),
         ]
     });
-    table("the table of the selection", &header, rows)
+    table("the table of the selection", header.split(','), rows)
 }

@@ -36,5 +36,5 @@ pub fn open_region(problem: &Problem, certificate: &Certificate) -> Result<Vec<u
             row
         })
     });
-    table("the table of the open region", &header, rows)
+    table("the table of the open region", header, rows)
 }

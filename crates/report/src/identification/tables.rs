@@ -17,7 +17,7 @@ fn number(value: f64) -> String {
 /// `compliances.csv`: first every compliance (one for each distinct angle of the joint beside a compensator), then the
 /// parameters of the robot file, each with its standard deviation and 95 % interval.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
-    let header = ["parameter", "unit", "angle_deg", "value", "std", "low", "high"];
+    let header = "parameter,unit,angle_deg,value,std,low,high";
     let seen = found.compliances.iter().map(|estimate| {
         let joint = found.joint(estimate.parameter);
         let angle = estimate.angle.map_or_else(String::new, |angle| Unit::ANGLE_DEG.text(angle));
@@ -37,27 +37,14 @@ pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
         );
         row
     });
-    table("the table of compliances", &header, seen.chain(arm))
+    table("the table of compliances", header.split(','), seen.chain(arm))
 }
 
 /// `residuals.csv`: every reading, its deflection read and by the identified arm (base frame), and whether it was left out.
 pub(super) fn residuals(run: &IdentifyRun, found: &Identified) -> Result<Vec<u8>, ReportError> {
-    let header = [
-        "line",
-        "configuration",
-        "point",
-        "measured_x_mm",
-        "measured_y_mm",
-        "measured_z_mm",
-        "predicted_x_mm",
-        "predicted_y_mm",
-        "predicted_z_mm",
-        "residual_x_mm",
-        "residual_y_mm",
-        "residual_z_mm",
-        "studentised",
-        "outlier",
-    ];
+    let header = "\
+        line,configuration,point,measured_x_mm,measured_y_mm,measured_z_mm,predicted_x_mm,predicted_y_mm,\
+         predicted_z_mm,residual_x_mm,residual_y_mm,residual_z_mm,studentised,outlier";
     let sheet = &run.problem.sheet;
     let rows = found.rows.iter().map(|row| {
         let mut fields = vec![
@@ -72,5 +59,5 @@ pub(super) fn residuals(run: &IdentifyRun, found: &Identified) -> Result<Vec<u8>
         fields.push(row.is_outlier.to_string());
         fields
     });
-    table("the table of residuals", &header, rows)
+    table("the table of residuals", header.split(','), rows)
 }

@@ -62,9 +62,9 @@ impl Ticks {
         Self { values: vec![], decimals: 0, of_ten: false }
     }
 
-    /// Multiples of 1, 2 or 5 times a power of ten, at most `most` of them.
-    pub fn round(scale: &Scale, most: usize) -> Self {
-        let room = (scale.to - scale.from) / most.max(1) as f64;
+    /// Multiples of 1, 2 or 5 times a power of ten, at most `max` of them.
+    pub fn round(scale: &Scale, max: usize) -> Self {
+        let room = (scale.to - scale.from) / max.max(1) as f64;
         for exponent in -9..=9_i32 {
             for digit in [1.0, 2.0, 5.0] {
                 let step = digit * libm::pow(10.0, f64::from(exponent));
@@ -116,6 +116,16 @@ pub(super) struct Panel {
 /// The smallest and the largest of some numbers and two given ones.
 pub(super) fn extent(given: [f64; 2], values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(given, |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// A rectangle of the plane: its lowest and its highest coordinates.
+pub(super) type Window = [[f64; 2]; 2];
+
+/// The smallest rectangle around points; none around no points.
+pub(super) fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Window> {
+    let windows = points.into_iter().map(|point| [point, point]);
+    windows
+        .reduce(|[low, high], [point, _]| [[0, 1].map(|k| low[k].min(point[k])), [0, 1].map(|k| high[k].max(point[k]))])
 }
 
 impl Panel {

@@ -1,6 +1,6 @@
 //! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
 
-use super::axes::{Panel, Scale};
+use super::axes::{Panel, Scale, around};
 use super::canvas::{Canvas, Pixel, TextStyle, exact, picture};
 use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
@@ -109,9 +109,7 @@ struct Region {
 impl Region {
     /// The smallest square around points, with a margin of a given part of its side.
     fn around(points: &[[f64; 2]], margin: f64) -> Self {
-        let bound = |k: usize, start: f64, better: fn(f64, f64) -> f64| points.iter().map(|p| p[k]).fold(start, better);
-        let low = [0, 1].map(|k| bound(k, f64::INFINITY, f64::min));
-        let high = [0, 1].map(|k| bound(k, f64::NEG_INFINITY, f64::max));
+        let [low, high] = around(points.iter().copied()).unwrap_or_default();
         let half = (0.5 + margin) * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
         let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
         Self { from: middle.map(|v| v - half), to: middle.map(|v| v + half) }

@@ -1,12 +1,12 @@
 //! The circularity maps of a robot (Klimchik 2017, Fig. 15 to 19).
 
-use super::axes::{Panel, Scale, Ticks};
+use super::axes::{Panel, Scale, Ticks, Window, around};
 use super::canvas::{Canvas, Place, TextStyle, exact, picture};
 use super::circularity_panel::{Colours, ElbowPanel, Nodes, shoulder_mark};
 use super::colour::{BLACK, Colour, GREEN, GREY, INK, RED};
 use super::heat_map::{ColourBar, ColourRange};
 use super::labels::{lines, whole_or_figures};
-use super::plane_view::{ArmInPlane, PlaneView, Window};
+use super::plane_view::{ArmInPlane, PlaneView};
 use crate::units::figures;
 use stead_assessment::comparison::{Comparison, Configuration, ElbowNames, Load, RobotResult, Zones, obstacle_words};
 use stead_assessment::map::{Elbow, Map};
@@ -24,7 +24,7 @@ const HEIGHTS: [i32; 2] = [260, 660];
 /// Letters of 11 pixels that fit under a panel.
 const LETTERS: usize = 68;
 /// Most nodes shown along an axis: a finer map is thinned out to keep the file small.
-const MOST_NODES: usize = 240;
+const MAX_NODES: usize = 240;
 /// Free space around the map, as a share of its larger side.
 const MARGIN: f64 = 0.04;
 /// The arm is shown where that widens the view by no more than this share.
@@ -61,9 +61,9 @@ impl<'a> Picture<'a> {
         let extents = [&up.1, &down.1].map(|map| Nodes::new(map, &view, 1).extent());
         let grid = &up.1.grid;
         let whole = [[-0.5, -0.5], grid.counts.map(|count| count as f64 - 0.5)].map(|steps| view.shown(grid.at(steps)));
-        let extent = extents.into_iter().flatten().reduce(joined).unwrap_or(whole);
+        let extent = around(extents.into_iter().flatten().flatten()).unwrap_or(whole);
         let longest = (0..2).map(|k| extent[1][k] - extent[0][k]).fold(0.0, f64::max);
-        let stride = ((longest / (grid.step * 1e3)).ceil() as usize).div_ceil(MOST_NODES).max(1);
+        let stride = ((longest / (grid.step * 1e3)).ceil() as usize).div_ceil(MAX_NODES).max(1);
         let nodes = [&up.1, &down.1].map(|map| Nodes::new(map, &view, stride));
         let robot = comparison.robots.iter().find(|robot| robot.name() == result.name);
         let centre = grid.at([0, 1].map(|k| grid.counts[k] as f64 / 2.0));
@@ -219,17 +219,14 @@ fn square(left: i32, y: i32) -> [Place; 5] {
     corners.map(exact)
 }
 
-fn joined(a: Window, b: Window) -> Window {
-    [[0, 1].map(|k| a[0][k].min(b[0][k])), [0, 1].map(|k| a[1][k].max(b[1][k]))]
-}
-
 /// The edges of the view (mm) and the height of the panels (pixels): the extent of the map, that of the arm where it is
 /// near, a margin, and as much more as fills the panels with both axes to the same scale.
 fn window(extent: Window, arm: Option<&ArmInPlane>) -> (Window, i32) {
     let sides = |[low, high]: Window| [0, 1].map(|k| (high[k] - low[k]).max(1e-6));
     let mut shown = extent;
-    if let Some(arm) = arm {
-        let wider = [arm.shoulder, arm.foot].into_iter().fold(extent, |extent, point| joined(extent, [point, point]));
+    if let Some(arm) = arm
+        && let Some(wider) = around(extent.into_iter().chain([arm.shoulder, arm.foot]))
+    {
         let (before, after) = (sides(extent), sides(wider));
         if (0..2).all(|k| after[k] <= before[k] * (1.0 + WIDENED)) {
             shown = wider;
@@ -301,7 +298,7 @@ mod tests {
             let (across, up) = ((high[0] - low[0]) / f64::from(PANEL), (high[1] - low[1]) / f64::from(pixels));
             assert!((across / up - 1.0).abs() < 1e-12, "{extent:?}");
             assert!((HEIGHTS[0]..=HEIGHTS[1]).contains(&pixels));
-            assert_eq!(joined([low, high], extent), [low, high], "the map is in view");
+            assert_eq!(around([low, high].into_iter().chain(extent)), Some([low, high]), "the map is in view");
             assert_eq!(arm.shoulder_within([low, high]) && arm.axis_within([low, high]).is_some(), near, "{extent:?}");
         }
     }

@@ -1,18 +1,18 @@
 //! The circularity over a plane for one elbow: the map as colours and contour lines, zones, and the most accurate place.
 
-use super::axes::{Panel, Ticks};
+use super::axes::{Panel, Ticks, Window, around};
 use super::canvas::{Canvas, Pixel, Place, exact, nearest};
 use super::colour::{BLACK, GREEN, INK, RED, WHITE, contrast, viridis};
 use super::contour::contour;
 use super::heat_map::{ColourRange, HeatMap};
 use super::labels::{Area, Label, Labeller, whole_or_figures};
-use super::plane_view::{ArmInPlane, PlaneView, Window};
+use super::plane_view::{ArmInPlane, PlaneView};
 use stead_assessment::comparison::Configuration;
 use stead_assessment::map::Map;
 use stead_assessment::zone::Zone;
 
 /// Most letters of a label of a tick without a power of ten.
-const LONGEST: usize = 7;
+const MAX_LETTERS: usize = 7;
 /// A contour line is labelled when it is so many times as long as its label.
 const LONG: f64 = 1.5;
 
@@ -46,15 +46,11 @@ impl Nodes {
 
     /// The smallest rectangle around the cells of all nodes with a value: the lowest and the highest coordinates. mm
     pub fn extent(&self) -> Option<Window> {
-        let mut extent: Option<Window> = None;
-        let valued = self.values.iter().enumerate().filter(|(_, value)| value.is_finite());
-        for (index, _) in valued {
-            let [low, high] = [-0.5, 0.5]
-                .map(|aside| self.at([(index % self.columns) as f64 + aside, (index / self.columns) as f64 + aside]));
-            let [min, max] = extent.unwrap_or([low, high]);
-            extent = Some([[0, 1].map(|k| min[k].min(low[k])), [0, 1].map(|k| max[k].max(high[k]))]);
-        }
-        extent
+        let valued = (0..self.values.len()).filter(|index| self.values[*index].is_finite());
+        around(valued.flat_map(|index| {
+            let (column, row) = ((index % self.columns) as f64, (index / self.columns) as f64);
+            [-0.5, 0.5].map(|aside| self.at([column + aside, row + aside]))
+        }))
     }
 
     /// Coordinates of a position counted in steps. mm
@@ -75,7 +71,7 @@ impl Colours {
     /// The label of a tick.
     pub fn label(&self, value: f64) -> String {
         let label = self.ticks.label(value);
-        if label.len() <= LONGEST { label } else { format!("{value:.2e}") }
+        if label.len() <= MAX_LETTERS { label } else { format!("{value:.2e}") }
     }
 }
 

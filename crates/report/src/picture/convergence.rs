@@ -25,12 +25,12 @@ pub fn convergence(outcome: &Outcome) -> String {
 
 /// One search; `refined` is the mean deflection in the end, in m.
 fn search(canvas: &mut Canvas, sense: Sense, generations: &[&Generation], refined: f64, (top, bottom): (i32, i32)) {
-    let (title, colour, least) = match sense {
+    let (title, colour, min) = match sense {
         Sense::Min => ("Best placement: smallest mean deflection under the best plan", GREEN, 0.0),
         Sense::Max => ("Worst placement: largest mean deflection under the best plan", RED, f64::INFINITY),
     };
     let values = generations.iter().flat_map(|generation| [generation.best, generation.average]).flatten();
-    let [low, high] = extent([least, 0.0], values.chain([refined]).map(|value| value * 1e3));
+    let [low, high] = extent([min, 0.0], values.chain([refined]).map(|value| value * 1e3));
     let margin = 0.06 * (high - low);
     let last = generations.iter().map(|generation| generation.generation).max().unwrap_or(1).max(1);
     let x = Scale::new(0.0, last as f64, 85, 880);

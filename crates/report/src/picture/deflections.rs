@@ -41,20 +41,20 @@ fn components(found: &Identified) -> impl Iterator<Item = (f64, f64, bool, usize
 
 /// The largest of some numbers, and a little more.
 fn reach(values: impl Iterator<Item = f64>) -> f64 {
-    let most = values.fold(0.0, |most: f64, value| most.max(value.abs()));
-    if most > 0.0 { 1.08 * most } else { 1.0 }
+    let max = values.fold(0.0, |max: f64, value| max.max(value.abs()));
+    if max > 0.0 { 1.08 * max } else { 1.0 }
 }
 
 fn upper(found: &Identified) -> Panel {
-    let most = reach(components(found).flat_map(|(predicted, measured, ..)| [predicted, measured]));
-    let (x, y) = (Scale::new(-most, most, SIDES.0, SIDES.1), Scale::new(-most, most, 640, 50));
+    let max = reach(components(found).flat_map(|(predicted, measured, ..)| [predicted, measured]));
+    let (x, y) = (Scale::new(-max, max, SIDES.0, SIDES.1), Scale::new(-max, max, 640, 50));
     panel(x, y, "component read (mm)")
 }
 
 fn lower(found: &Identified) -> Panel {
-    let most = reach(components(found).flat_map(|(predicted, measured, ..)| [predicted, measured]));
+    let max = reach(components(found).flat_map(|(predicted, measured, ..)| [predicted, measured]));
     let left = reach(components(found).map(|(predicted, measured, ..)| measured - predicted));
-    let (x, y) = (Scale::new(-most, most, SIDES.0, SIDES.1), Scale::new(-left, left, 950, 715));
+    let (x, y) = (Scale::new(-max, max, SIDES.0, SIDES.1), Scale::new(-left, left, 950, 715));
     panel(x, y, "read less predicted (mm)")
 }
 

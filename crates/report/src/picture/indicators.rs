@@ -13,7 +13,7 @@ const RIGHT: i32 = 1075;
 /// Upper edge of the first row of robots, its height, and the distance to the next row.
 const ROWS: [i32; 3] = [150, 300, 365];
 /// Most robots in a row.
-const MOST: usize = 6;
+const ROBOTS_PER_ROW: usize = 6;
 /// Value at the upper edge of a row, where the best robot has 1.
 const FULL: f64 = 1.18;
 
@@ -70,12 +70,12 @@ const ALL: [Indicator; 4] = [
 /// relative to the best robot, which has 1; the values themselves stand at the bars. An indicator that no robot has is left
 /// out; a robot without a value has a dash in place of the bar. Six robots stand in a row, more in more rows.
 pub fn indicators(assessment: &Assessment) -> String {
-    let rows = assessment.robots.chunks(MOST);
+    let rows = assessment.robots.chunks(ROBOTS_PER_ROW);
     let height = ROWS[0] + ROWS[2] * rows.len().max(1) as i32;
     picture((WIDTH, height), |canvas| {
         let known: Vec<Known> =
             ALL.iter().zip(INDICATORS).filter_map(|(i, colour)| Known::new(i, colour, assessment)).collect();
-        let room = (RIGHT - LEFT) / assessment.robots.len().clamp(1, MOST) as i32;
+        let room = (RIGHT - LEFT) / assessment.robots.len().clamp(1, ROBOTS_PER_ROW) as i32;
         head(canvas, assessment, &known);
         for (robots, row) in rows.zip(0..) {
             draw_row(canvas, robots, (ROWS[0] + ROWS[2] * row, room), &known);

@@ -14,11 +14,11 @@ pub(super) fn whole_or_figures(value: f64) -> String {
 const BETWEEN: &str = " · ";
 
 /// Phrases in lines of at most so many letters, with a dot between them; a longer phrase has a line of its own.
-pub(super) fn lines(phrases: &[String], most: usize) -> Vec<String> {
+pub(super) fn lines(phrases: &[String], max: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for phrase in phrases {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + BETWEEN.chars().count() + phrase.chars().count() <= most => {
+            Some(line) if line.chars().count() + BETWEEN.chars().count() + phrase.chars().count() <= max => {
                 line.push_str(BETWEEN);
                 line.push_str(phrase);
             }

@@ -1,6 +1,6 @@
 //! A plan of measurements: how well every compliance will be known, and where the arm stands for it.
 
-use super::axes::{Panel, Scale, Ticks};
+use super::axes::{Panel, Scale, Ticks, around};
 use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::{figures, fixed};
@@ -60,8 +60,8 @@ fn legend(canvas: &mut Canvas, plan: &Design) {
 }
 
 fn draw_bars(canvas: &mut Canvas, plan: &Design) {
-    let most = plan.compliances.iter().flat_map(percents).flatten().fold(0.0, f64::max);
-    let y = Scale::new(0.0, if most > 0.0 { 1.12 * most } else { 1.0 }, BARS.1, BARS.0);
+    let max = plan.compliances.iter().flat_map(percents).flatten().fold(0.0, f64::max);
+    let y = Scale::new(0.0, if max > 0.0 { 1.12 * max } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.compliances.len().max(1) as f64, LEFT, RIGHT);
     let panel = Panel::new(x, y, [1, 7], ["compliance", "standard deviation (%)"]);
     let panel = Panel { x_ticks: Ticks::none(), ..panel };
@@ -127,9 +127,8 @@ fn draw_views(canvas: &mut Canvas, request: &Request, plan: &Design) {
 /// One view, with the same scale across and up.
 fn view(canvas: &mut Canvas, poses: &[Posed], left: i32, from_above: bool) {
     let (top, side) = VIEWS;
-    let all = || poses.iter().flat_map(|pose| &pose.arm);
-    let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
-    all().for_each(|place| (low, high) = (low.inf(place), high.sup(place)));
+    let places = poses.iter().flat_map(|pose| &pose.arm).map(|place| [place.x, place.y]);
+    let [low, high] = around(places).unwrap_or_default().map(Vector2::from);
     let (middle, half) = ((low + high) / 2.0, 0.56 * (high - low).amax().max(0.1));
     let x = Scale::new((middle.x - half) * 1e3, (middle.x + half) * 1e3, left, left + side);
     let y = Scale::new((middle.y - half) * 1e3, (middle.y + half) * 1e3, top + side, top);

@@ -19,7 +19,7 @@ const SIDE: i32 = 455;
 /// Coloured cells along each side of a panel.
 const CELLS: usize = 160;
 /// Narrower ranges are drawn this wide. mm
-const LEAST: f64 = 10.0;
+const MIN_WIDTH: f64 = 10.0;
 
 /// The boxes of placements that a certificate leaves open: where the workpiece origin may stand, from above, and over the yaw
 /// less the azimuth, each place in the colour of the most promising box there. The dot is the placement found.
@@ -69,9 +69,9 @@ fn from_above(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[Op
         [libm::hypot(near(dx), near(dy)), libm::hypot(far(dx), far(dy))]
     };
     let corners = [0, CELLS - 1].map(|c| [0, CELLS - 1].map(|r| radii(c, r)));
-    let most = corners.iter().flatten().fold(0.0_f64, |most, r| most.max(r[1]));
+    let max = corners.iter().flatten().fold(0.0_f64, |max, r| max.max(r[1]));
     // The best box at every radius, in steps much finer than the coloured cells.
-    let rings = Grid { from: [0.0, 0.0], to: [most.max(1.0), 1.0], counts: [16 * CELLS, 1] };
+    let rings = Grid { from: [0.0, 0.0], to: [max.max(1.0), 1.0], counts: [16 * CELLS, 1] };
     let lowest =
         rings.filled(boxes.iter().map(|open| ([open.radius.map(|r| r * 1e3), [0.0, 1.0]], open.bound)), proof.sense);
     let levels: Vec<Option<usize>> = (0..CELLS * CELLS)
@@ -116,7 +116,7 @@ fn turned(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[OpenBo
 }
 
 fn widened(from: f64, to: f64) -> [f64; 2] {
-    let more = ((LEAST - (to - from)) / 2.0).max(0.0);
+    let more = ((MIN_WIDTH - (to - from)) / 2.0).max(0.0);
     [from - more, to + more]
 }
 
@@ -175,8 +175,8 @@ impl Grid {
 
 /// Colours of bounds, dark for the most promising.
 struct Colours {
-    most: f64,
-    least: f64,
+    best: f64,
+    worst: f64,
 }
 
 impl Colours {
@@ -184,13 +184,13 @@ impl Colours {
         let bounds = || boxes.iter().map(|open| open.bound).filter(|bound| bound.is_finite());
         let (low, high) = bounds().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), b| (l.min(b), h.max(b)));
         match proof.sense {
-            Sense::Min => Self { most: low, least: high },
-            Sense::Max => Self { most: high, least: low },
+            Sense::Min => Self { best: low, worst: high },
+            Sense::Max => Self { best: high, worst: low },
         }
     }
 
     fn level(&self, bound: f64) -> usize {
-        let part = (bound - self.most) / (self.least - self.most);
+        let part = (bound - self.best) / (self.worst - self.best);
         if part.is_finite() { (part.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round() as usize } else { 0 }
     }
 
@@ -199,7 +199,7 @@ impl Colours {
         let small = TextStyle::new(12.0).coloured(INK);
         canvas.dot((f64::from(LEFT[1]), f64::from(y)), 4, RED);
         canvas.text("the placement found", (LEFT[1] + 14, y), small);
-        if !self.most.is_finite() || !self.least.is_finite() {
+        if !self.best.is_finite() || !self.worst.is_finite() {
             return;
         }
         let (left, width) = (LEFT[0] + 110, 8);
@@ -210,7 +210,7 @@ impl Colours {
         let right = left + width * LEVELS as i32;
         canvas.outline((left, y - 8), (right, y + 8), GREY);
         let label = |bound: f64| format!("{} mm", fixed(proof.rounded_mm(bound), 5));
-        canvas.text(&label(self.most), (left - 8, y), small.ending());
-        canvas.text(&label(self.least), (right + 8, y), small)
+        canvas.text(&label(self.best), (left - 8, y), small.ending());
+        canvas.text(&label(self.worst), (right + 8, y), small)
     }
 }

@@ -1,5 +1,6 @@
 //! How a plane of the cell is shown: what its axes are called, and what of the robot lies in it.
 
+use super::axes::Window;
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_assessment::benchmark::Plane;
@@ -13,9 +14,6 @@ const BASE_LABELS: [&str; 3] = ["x (mm)", "y (mm)", "z (mm)"];
 const PLANE_LABELS: [&str; 2] = ["along the plane's first axis (mm)", "along the plane's second axis (mm)"];
 /// Unit vectors that differ by less are the same; so are places of the plane's size, in m.
 const SAME: f64 = 1e-9;
-
-/// Lowest and highest coordinates in view. mm
-pub(super) type Window = [[f64; 2]; 2];
 
 /// A view straight onto a plane. Coordinates shown are those of the base frame where an axis of the plane is one of the base
 /// frame, else those of the plane.

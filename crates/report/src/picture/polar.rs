@@ -19,7 +19,7 @@ const DOTS: usize = 400;
 /// Directions that are drawn apart: with more points, the extremes of each direction stand for all of it.
 const DIRECTIONS: usize = 1440;
 /// Least half width of a zone that is magnified to the whole ring, in radii.
-const LEAST_HALF: f64 = 1e-7;
+const MIN_HALF_WIDTH: f64 = 1e-7;
 /// Two points are joined by an arc of steps of this angle, since a chord would dip inwards. rad
 const ARC: f64 = PI / 180.0;
 /// Points farther apart than this are not joined: so many times their mean distance, but no less than 2 deg.
@@ -70,7 +70,7 @@ impl<'a> Plot<'a> {
             thinned(points)
         };
         // A perfect circle is shown as one, and not as what rounding makes of it.
-        let half = (0.5 * found.circles.mzc.circularity).max(LEAST_HALF * circle.radius);
+        let half = (0.5 * found.circles.mzc.circularity).max(MIN_HALF_WIDTH * circle.radius);
         Self { found, kept: of(false), excluded: of(true), scale: ZONE / half }
     }
 

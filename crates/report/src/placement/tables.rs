@@ -143,7 +143,7 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
             state.evaluations.to_string(),
         ]
     });
-    table("the table of the convergence", &header, rows)
+    table("the table of the convergence", header, rows)
 }
 
 /// `deflection-map-*.csv`: every state of the grid with its smallest score over the allowed postures, or the reason why
@@ -165,7 +165,7 @@ pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>,
             fields
         })
     });
-    table("the table of a deflection map", &header, rows)
+    table("the table of a deflection map", header, rows)
 }
 
 fn segment(path: &ToolPath, point: usize) -> String {
@@ -188,7 +188,7 @@ pub fn transfers(cases: &Cases) -> Result<Vec<u8>, ReportError> {
             ]
         })
     });
-    table("the table of transfers", &header, rows)
+    table("the table of transfers", header, rows)
 }
 
 /// `refinements.csv`: each gradient refinement with its start and end.
@@ -224,7 +224,7 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
         row.push(names::statuses(&refinement.statuses));
         row
     });
-    table("the table of refinements", &header, rows)
+    table("the table of refinements", header, rows)
 }
 
 /// x, y, z in mm, Q4 where asked for, and the yaw in degrees.

@@ -6,8 +6,7 @@ use crate::csv_file::table;
 use crate::units::Unit;
 use stead_simulation::outcome::Simulation;
 
-const SERIES: [&str; 8] =
-    ["time_s", "force_x_n", "force_y_n", "force_axial_n", "x_mm", "y_mm", "deflection_x_um", "deflection_y_um"];
+const SERIES: &str = "time_s,force_x_n,force_y_n,force_axial_n,x_mm,y_mm,deflection_x_um,deflection_y_um";
 
 /// `series.csv`: one row a step. Forces on the tool along the feed, towards the wall, and along the tool axis; the place of the
 /// tool centre along the feed from the edge of the work, and from the nominal wall; how far it is off its path. In all of them x is
@@ -26,7 +25,7 @@ pub fn series(found: &Simulation) -> Result<Vec<u8>, ReportError> {
         row.extend(towards_wall(sample.deflection).map(|part| HEIGHT_UM.text(part)));
         row
     });
-    table("the table of forces and places", &SERIES, row)
+    table("the table of forces and places", SERIES.split(','), row)
 }
 
 /// Along the feed and towards the wall, from along the feed and out of the wall.
@@ -44,5 +43,5 @@ pub fn wall(found: &Simulation) -> Result<Vec<u8>, ReportError> {
         let place = found.wall.start + index as f64 * found.wall.spacing;
         vec![Unit::PLACE_MM.text(place), HEIGHT_UM.text(*height), HEIGHT_UM.text(*filtered)]
     });
-    table("the table of the wall", &["x_mm", "height_um", "roughness_um"], rows)
+    table("the table of the wall", ["x_mm", "height_um", "roughness_um"], rows)
 }

@@ -1,51 +1,45 @@
 //! The JSON document of a stability analysis.
 
 use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE};
-use crate::document::Document;
+use crate::document::{Document, joined};
 use crate::units::Unit;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use stead_format::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability_analysis::{CutStability, StabilityAnalysis};
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
 pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Value {
-    let mut entries = verdict(&analysis.cut_stability);
     let rate = analysis.cut_stability.verdict.growth_rate();
-    let rest = [
-        ("robot", json!(run.setup.robot.name())),
-        ("variant", json!(run.setup.variant.word())),
-        ("damping_scale", json!(run.setup.damping_scale)),
-        ("way_mm", json!(Unit::PLACE_MM.number(run.analysis.distance))),
-        ("spindle_rpm", json!(RPM.number(run.cut.spindle_speed))),
-        ("axial_depth_mm", json!(DEPTH_MM.number(run.cut.section.axial_depth))),
-        ("max_depth_mm", json!(DEPTH_MM.number(run.analysis.max_depth))),
-        ("pass_time_s", json!(Unit::TIME_S.number(analysis.pass_time))),
-        ("growth_in_pass", json!(RATE.number(rate * analysis.pass_time))),
-        ("modes", modes(&analysis.modes)),
-        ("lobes", lobes(analysis)),
-    ];
-    entries.extend(rest.map(|(key, value)| (key.to_owned(), value)));
-    Document::new(&run.inputs).notes(&analysis.notes).with(Value::Object(entries))
+    let result = json!({
+        "robot": run.setup.robot.name(),
+        "variant": run.setup.variant.word(),
+        "damping_scale": run.setup.damping_scale,
+        "way_mm": Unit::PLACE_MM.number(run.analysis.distance),
+        "spindle_rpm": RPM.number(run.cut.spindle_speed),
+        "axial_depth_mm": DEPTH_MM.number(run.cut.section.axial_depth),
+        "max_depth_mm": DEPTH_MM.number(run.analysis.max_depth),
+        "pass_time_s": Unit::TIME_S.number(analysis.pass_time),
+        "growth_in_pass": RATE.number(rate * analysis.pass_time),
+        "modes": modes(&analysis.modes),
+        "lobes": lobes(analysis),
+    });
+    Document::new(&run.inputs).notes(&analysis.notes).with(joined(result, verdict(&analysis.cut_stability)))
 }
 
 /// Critical depths and verdict.
-pub(crate) fn verdict(depths: &CutStability) -> Map<String, Value> {
+pub(crate) fn verdict(depths: &CutStability) -> Value {
     let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
     let verdict = &depths.verdict;
-    let pairs = [
-        (
-            "critical_depth_mm",
-            json!({
-                "semi_discretisation": depth(depths.semi_discretisation),
-                "zero_order": depth(depths.zero_order),
-            }),
-        ),
-        ("stable", json!(verdict.is_stable())),
-        ("kind", json!(verdict.kind().word())),
-        ("growth_rate_per_s", json!(RATE.number(verdict.growth_rate()))),
-    ];
-    pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    json!({
+        "critical_depth_mm": {
+            "semi_discretisation": depth(depths.semi_discretisation),
+            "zero_order": depth(depths.zero_order),
+        },
+        "stable": verdict.is_stable(),
+        "kind": verdict.kind().word(),
+        "growth_rate_per_s": RATE.number(verdict.growth_rate()),
+    })
 }
 
 /// Frequencies, damping and shapes.

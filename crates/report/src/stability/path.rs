@@ -5,6 +5,7 @@ use super::super::picture;
 use super::json::verdict;
 use super::{DEPTH_MM, RATE, RPM};
 use crate::csv_file::table;
+use crate::document::joined;
 use crate::units::fixed;
 use serde_json::{Value, json};
 use stead_placement::outcome::Plan;
@@ -28,17 +29,14 @@ pub fn files(stability: &PathStability, plans: [&Plan; 2]) -> Result<[(&'static 
 /// of them too.
 pub fn document(stability: &PathStability, points: bool) -> Value {
     let plan = |depths: &Vec<CutStability>| {
-        let least = smallest(depths);
-        let mut value = json!({
-            "smallest_critical_depth_mm": least.map(|(_, depth)| DEPTH_MM.number(depth)),
-            "at_point": least.map(|(point, _)| point),
+        let min = smallest(depths);
+        let value = json!({
+            "smallest_critical_depth_mm": min.map(|(_, depth)| DEPTH_MM.number(depth)),
+            "at_point": min.map(|(point, _)| point),
             "stable": depths.iter().all(|at| at.verdict.is_stable()),
             "points_that_chatter": chattering(depths),
         });
-        if points && let Some(object) = value.as_object_mut() {
-            object.insert("points".to_owned(), depths.iter().map(verdict).map(Value::Object).collect());
-        }
-        value
+        if points { joined(value, json!({ "points": depths.iter().map(verdict).collect::<Value>() })) } else { value }
     };
     json!({
         "variant": stability.analysis.variant.word(),
@@ -76,8 +74,7 @@ fn chattering(depths: &[CutStability]) -> usize {
 
 /// One row for each path point; depths are empty where all depths up to the largest are stable.
 fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
-    const HEADER: [&str; 7] =
-        ["point", "segment", "critical_depth_mm", "zero_order_mm", "stable", "kind", "growth_rate_per_s"];
+    const HEADER: &str = "point,segment,critical_depth_mm,zero_order_mm,stable,kind,growth_rate_per_s";
     let rows = plan.points.iter().zip(depths).map(|(point, at)| {
         let mut row = vec![point.point.to_string(), point.segment.to_string()];
         row.extend([at.semi_discretisation, at.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth)));
@@ -85,5 +82,5 @@ fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
         row.extend([at.verdict.kind().word().to_owned(), RATE.text(at.verdict.growth_rate())]);
         row
     });
-    table("the table of critical depths", &HEADER, rows)
+    table("the table of critical depths", HEADER.split(','), rows)
 }

@@ -218,7 +218,7 @@ fn best_addition(
     bound: f64,
 ) -> Option<(usize, f64)> {
     let mut best = None;
-    let mut least = bound;
+    let mut min = bound;
     for (index, part) in parts.iter().enumerate() {
         if is_in[index] {
             continue;
@@ -226,8 +226,8 @@ fn best_addition(
         let mut trial = *sum;
         add(&mut trial, part, 1.0);
         let value = criterion.packed_value(&trial);
-        if value < least * BETTER {
-            (best, least) = (Some((index, value)), value);
+        if value < min * BETTER {
+            (best, min) = (Some((index, value)), value);
         }
     }
     best

@@ -1,9 +1,9 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
 use super::super::{URAD, key, rounded};
-use crate::document::Document;
+use crate::document::{Document, joined};
 use crate::units::Unit;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::design::expected::ExpectedCompliance;
 use stead_calibration::identification::design::unobservable::Unobservable;
@@ -28,10 +28,9 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
         json!({ "parameter": name, "value": digits(bar.value * factor), "std": digits(bar.deviation * factor) })
     });
     let hardly = plan.weakly_observed.iter().map(|hardly| {
-        let mut value = compliance(hardly.joint, hardly.angle);
-        value.insert("std_percent".to_owned(), digits(hardly.share * 100.0));
-        value.insert("lever_mm".to_owned(), json!(Unit::PLACE_MM.number(hardly.lever)));
-        Value::Object(value)
+        let lever = Unit::PLACE_MM.number(hardly.lever);
+        let share = digits(hardly.share * 100.0);
+        joined(compliance(hardly.joint, hardly.angle), json!({ "std_percent": share, "lever_mm": lever }))
     });
     Document::new(&run.inputs).notes(run.notes.iter().chain(&plan.notes)).warnings(&plan.warnings).with(json!({
         "robot": request.robot.name(),
@@ -66,38 +65,32 @@ pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
 
 /// Null where there is no finite number.
 fn digits(value: f64) -> Value {
-    if value.is_finite() { json!(rounded(value, DIGITS)) } else { Value::Null }
+    value.is_finite().then(|| rounded(value, DIGITS)).into()
 }
 
 fn length(value: f64) -> Value {
     digits(value * 1e3)
 }
 
-fn compliance(joint: usize, angle: Option<f64>) -> Map<String, Value> {
-    let mut map = Map::from_iter([("joint".to_owned(), json!(joint + 1))]);
-    if let Some(angle) = angle {
-        map.insert("angle_deg".to_owned(), json!(Unit::ANGLE_DEG.number(angle)));
-    }
-    map
+fn compliance(joint: usize, angle: Option<f64>) -> Value {
+    let angle = angle.map(|angle| json!({ "angle_deg": Unit::ANGLE_DEG.number(angle) }));
+    joined(json!({ "joint": joint + 1 }), angle.unwrap_or_default())
 }
 
 fn bar(bar: &ExpectedCompliance) -> Value {
-    let mut map = compliance(bar.joint, bar.angle);
-    let urad = |value: Option<f64>| value.map_or(Value::Null, |value| digits(value * URAD));
-    map.insert("urad_per_nm".to_owned(), urad(Some(bar.value)));
-    map.insert("std_urad_per_nm".to_owned(), urad(bar.deviation));
-    map.insert(
-        "std_percent".to_owned(),
-        bar.deviation.map_or(Value::Null, |deviation| digits(100.0 * deviation / bar.value)),
-    );
-    map.insert("by_law_std_urad_per_nm".to_owned(), urad(Some(bar.by_law)));
-    map.insert("best_random_std_urad_per_nm".to_owned(), urad(bar.best_random));
-    map.insert("median_random_std_urad_per_nm".to_owned(), urad(bar.median_random));
-    Value::Object(map)
+    let urad = |value: Option<f64>| value.map(|value| digits(value * URAD));
+    let errors = json!({
+        "urad_per_nm": urad(Some(bar.value)),
+        "std_urad_per_nm": urad(bar.deviation),
+        "std_percent": bar.deviation.map(|deviation| digits(100.0 * deviation / bar.value)),
+        "by_law_std_urad_per_nm": urad(Some(bar.by_law)),
+        "best_random_std_urad_per_nm": urad(bar.best_random),
+        "median_random_std_urad_per_nm": urad(bar.median_random),
+    });
+    joined(compliance(bar.joint, bar.angle), errors)
 }
 
 fn unobservable(unobservable: &Unobservable) -> Value {
-    let compliances: Vec<Value> =
-        unobservable.compliances.iter().map(|(joint, angle)| Value::Object(compliance(*joint, *angle))).collect();
-    json!({ "compliances": compliances, "reason": unobservable.reason })
+    let compliances = unobservable.compliances.iter().map(|(joint, angle)| compliance(*joint, *angle));
+    json!({ "compliances": compliances.collect::<Value>(), "reason": unobservable.reason })
 }
