@@ -218,6 +218,9 @@ pub(super) struct CompensateOptions {
     /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
     #[arg(long, value_name = "ROBOT")]
     pub reality: Option<PathBuf>,
+    /// Fail where a point cannot be corrected, instead of keeping its target
+    #[arg(long)]
+    pub all_or_nothing: bool,
     /// Folder for the results [default: results/<name of the compensation file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -8,7 +8,8 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = CompensationRun::read_with(&options.config, options.reality.as_deref())?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
-    let path = run.compensate().inspect_err(|error| {
+    let path = if options.all_or_nothing { run.compensate_all() } else { run.compensate() };
+    let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.not_compensated_json(failure));
