@@ -7,7 +7,6 @@ use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::outcome::{CANCELLATION, Case, Outcome, Plan};
 use stead_placement::problem::Problem;
-use stead_placement::refine::active::ActiveBound;
 use stead_placement::sensitivity::ForceSensitivity;
 use stead_placement::symmetry::Unsupported;
 
