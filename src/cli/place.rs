@@ -60,5 +60,6 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.json {
         print_json(&placements)?;
     }
-    written
+    written?;
+    if placements.outcome().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }
