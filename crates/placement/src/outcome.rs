@@ -3,7 +3,9 @@
 use super::feasibility::{DeflectionMap, deflection_map};
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
+use super::refine::active::ActiveBound;
 use super::sense::Sense;
+use super::sensitivity::ForceSensitivity;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -82,6 +84,10 @@ impl DeflectionFigures {
 pub struct Plan {
     /// All path points.
     pub points: Vec<PlanPoint>,
+    /// How the mean of the scores answers to the stiffness of each joint ([`mean_by_stiffness`]): derivative by its logarithm. m
+    ///
+    /// [`mean_by_stiffness`]: super::sensitivity::mean_by_stiffness
+    pub mean_by_stiffness: [f64; 6],
     /// Posture of each segment.
     pub postures: Vec<Posture>,
     /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)); by default the mean. m
@@ -112,6 +118,8 @@ pub struct Case {
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
     pub cycle: Cycle,
+    /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima.
+    pub active_bounds: Vec<ActiveBound>,
 }
 
 impl Case {
@@ -279,6 +287,10 @@ pub struct Outcome {
     pub states: usize,
     /// Whether the user stopped the search before its end.
     pub interrupted: bool,
+    /// What the force errors do to the best placement, where that was asked for.
+    pub sensitivity: Option<ForceSensitivity>,
+    /// What should be known about the result though nothing is wrong, in sentences.
+    pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
 }

@@ -53,6 +53,13 @@ impl Cell {
         self.yaw.width() >= TAU - 1e-9
     }
 
+    /// A cell that leaves one placement.
+    pub fn at(placement: &Placement) -> Self {
+        let only = |value: f64| Interval { min: value, max: value };
+        let Placement { x, y, z, yaw } = *placement;
+        Self { position: [only(x), only(y), only(z)], yaw: only(yaw) }
+    }
+
     /// The only placement in the cell, where its bounds leave no other.
     pub fn pinned(&self) -> Option<Placement> {
         let [x, y, z] = self.position;

@@ -187,11 +187,7 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
             });
             let scheme = (settings.postures == PostureSearch::Genetic)
                 .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
-            Candidate {
-                placement: Placement::from(placement),
-                scheme,
-                objective: UNEVALUATED,
-            }
+            Candidate { placement: Placement::from(placement), scheme, objective: UNEVALUATED }
         })
         .collect()
 }

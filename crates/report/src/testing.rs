@@ -62,6 +62,8 @@ pub fn outcome() -> &'static Outcome {
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
+            sensitivity: None,
+            notes: Vec::new(),
             warnings: Vec::new(),
         }
     })
@@ -157,6 +159,7 @@ impl Grid {
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(&points),
             mean_deviation: None,
+            mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             points,
         };
         let transfer = |k: usize| {
@@ -165,7 +168,7 @@ impl Grid {
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
         };
         let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle }
+        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Vec::new() }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.

@@ -5,8 +5,8 @@ use crate::problem::Problem;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
-use stead_numerics::monitor::Monitor;
 use stead_model::robot::{Frames, Pose, PostureClass, Robot, conditioning::inverse_condition, turns::Range};
+use stead_numerics::monitor::Monitor;
 
 /// Fields of a row.
 pub(super) mod field {
@@ -28,12 +28,7 @@ const MIN_SLOPE: f64 = 0.05;
 const MAX_ROOM: f64 = 0.5;
 
 /// All rows, and which of them (height, radius, posture class) have an allowed state; `None` once the caller asks to stop.
-pub(super) fn sample(
-    problem: &Problem,
-    shape: &Shape,
-    sense: f64,
-    monitor: &Monitor,
-) -> Option<(Vec<f32>, Vec<bool>)> {
+pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64, monitor: &Monitor) -> Option<(Vec<f32>, Vec<bool>)> {
     let (radii, block) = (shape.radius.count, shape.block());
     let mut data = vec![0.0_f32; shape.height.count * radii * 4 * block];
     data.par_chunks_mut(4 * block).enumerate().try_for_each(|(index, rows)| {

@@ -116,7 +116,13 @@ fn the_mean_errs_as_all_its_points_together() {
     let mut problem = with_uncertainty(five_segments(), 0.1);
     problem.redundancy.beta_count = 40;
     let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }, &TransferSettings::default(), &Monitor::silent()).unwrap();
+    let scored = score(
+        &problem,
+        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
+        &TransferSettings::default(),
+        &Monitor::silent(),
+    )
+    .unwrap();
     let nominal = problem.robot.constant_compliances().unwrap();
     for plan in [&scored.best, &scored.worst] {
         // The mean moved along each independent error; small steps, so that no normal part changes its sign.
@@ -141,7 +147,13 @@ fn the_mean_errs_as_all_its_points_together() {
 fn score_agrees_with_the_prototype() {
     let problem = five_segments();
     let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }, &TransferSettings::default(), &Monitor::silent()).unwrap();
+    let scored = score(
+        &problem,
+        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
+        &TransferSettings::default(),
+        &Monitor::silent(),
+    )
+    .unwrap();
     assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
     assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
 }

@@ -17,10 +17,14 @@
 //! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
 //! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
 
+pub mod active;
+mod agreement;
 pub mod ascent;
 pub mod linearise;
 pub mod solver;
 pub mod subproblem;
+
+pub use agreement::found_again;
 
 use super::evaluator::{self, Evaluator};
 use super::outcome::{CANCELLATION, Refinement, RefinementStatus};

@@ -33,10 +33,8 @@ struct Shown<'a> {
 /// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
     let Cases { best, worst, .. } = &outcome.cases;
-    let best =
-        Shown { case: best, colour: GREEN, title: "Best placement", path: "tool path at the best placement" };
-    let worst =
-        Shown { case: worst, colour: RED, title: "Worst placement", path: "tool path at the worst placement" };
+    let best = Shown { case: best, colour: GREEN, title: "Best placement", path: "tool path at the best placement" };
+    let worst = Shown { case: worst, colour: RED, title: "Worst placement", path: "tool path at the worst placement" };
     drawn(problem, &[best, worst])
 }
 

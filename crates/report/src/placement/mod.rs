@@ -65,10 +65,8 @@ impl Context {
 }
 
 /// The files of the maps at the best and at the worst placement.
-const MAPS: [[&str; 2]; 2] = [
-    ["deflection-map-best.csv", "deflection-map-best.svg"],
-    ["deflection-map-worst.csv", "deflection-map-worst.svg"],
-];
+const MAPS: [[&str; 2]; 2] =
+    [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
 
 /// Table and picture of a map with the best and the worst plan, under these names.
 fn map_files(

@@ -191,7 +191,12 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
     let make = || {
         [
             picture::convergence(outcome()),
-            picture::deflection_map(problem(), &outcome().maps.as_ref().unwrap()[0], [best, best_worst_plan], "the best placement"),
+            picture::deflection_map(
+                problem(),
+                &outcome().maps.as_ref().unwrap()[0],
+                [best, best_worst_plan],
+                "the best placement",
+            ),
             picture::cell(problem(), outcome()),
         ]
     };

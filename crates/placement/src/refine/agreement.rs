@@ -1,0 +1,69 @@
+//! A refined placement with the plan that the planner finds there by itself.
+//!
+//! A refined optimum likes to lie where a constraint leaves a corridor of no width for beta: the plan through it is allowed, but
+//! no grid meets it, and whoever asks for the placement alone is given another plan. So a refined solution is held against the
+//! plan found anew, and where they differ a compass search ends at a placement nearby that is as good by the planner's own plan.
+
+use super::{LENGTH_UNIT, Solution, planned};
+use crate::problem::Placement;
+use crate::redundancy::{Planner, off_grid};
+use rayon::prelude::*;
+use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
+
+/// Objectives that agree to this are the same to whoever reads a result file. m
+const PRINTED: f64 = 1e-10;
+/// Steps of the compass search, the first and the last, in scaled variables.
+const STEPS: (f64, f64) = (0.02, 2e-4);
+/// Rounds of it at the most.
+const MAX_ROUNDS: usize = 24;
+/// What a neighbour has to gain, relative.
+const GAIN: f64 = 1e-6;
+
+/// The refined solution of a best placement, if the planner finds one that reads the same there; else the best that it finds in
+/// the neighbourhood, as far as it got when `monitor` asks to stop, after which nothing is planned any more.
+pub fn found_again(
+    planner: &Planner<'_>,
+    refined: Solution,
+    scheme: Option<&[Posture]>,
+    monitor: &Monitor,
+) -> Solution {
+    let plan = |placement: &Placement| {
+        let spacing = off_grid::Spacing::full(planner.grid());
+        let plan = || planned(planner, placement, scheme, spacing, &mut planner.workspace());
+        if monitor.should_stop() { None } else { plan() }
+    };
+    let printed = |solution: &Solution| (solution.objective / PRINTED).round();
+    let again = plan(&refined.placement);
+    let mut best = match again {
+        Some(again) if printed(&again) == printed(&refined) => return refined,
+        Some(again) if again.objective <= refined.objective * (1.0 + GAIN) => return again,
+        again => again,
+    };
+    let cell = &planner.problem().cell;
+    let mut step = STEPS.0;
+    for _ in 0..MAX_ROUNDS {
+        let centre = best.as_ref().map_or(refined.placement, |best| best.placement);
+        let neighbours: Vec<Placement> = (0..8)
+            .map(|k| {
+                let mut placement = centre;
+                let unit = if k / 2 < 3 { LENGTH_UNIT } else { 1.0 };
+                placement[k / 2] += if k % 2 == 0 { step } else { -step } * unit;
+                cell.clamp(&placement)
+            })
+            .filter(|placement| *placement != centre)
+            .collect();
+        let found: Vec<Option<Solution>> = neighbours.par_iter().map(plan).collect();
+        let better = found.into_iter().flatten().min_by(|a, b| a.objective.total_cmp(&b.objective));
+        let limit = best.as_ref().map_or(f64::INFINITY, |best| best.objective * (1.0 - GAIN));
+        match better.filter(|better| better.objective < limit) {
+            Some(better) => best = Some(better),
+            None => step /= 3.0,
+        }
+        if step < STEPS.1 || monitor.should_stop() {
+            break;
+        }
+    }
+    // Where the planner finds nothing at all, the refined plan is allowed all the same.
+    best.unwrap_or(refined)
+}
