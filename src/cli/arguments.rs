@@ -1,7 +1,9 @@
 //! The arguments of the command line: subcommands and options.
 
 use super::help;
-use super::values::{case, damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant};
+use super::values::{
+    case, damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant,
+};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;

@@ -64,7 +64,10 @@ mod tests {
         std::fs::write(&file, format!("{RUN}[certificate]\ngap_percent = 0.5\ntime_limit_s = 20\n")).unwrap();
         let asked = |gap| read_run_to_certify(&file, gap).unwrap().certificate;
         assert_eq!(asked(None), read_run(&file).unwrap().certificate);
-        assert_eq!(asked(Some(0.02)), Some(CertificateSettings { time_limit: Some(20.0), ..CertificateSettings::new(0.02) }));
+        assert_eq!(
+            asked(Some(0.02)),
+            Some(CertificateSettings { time_limit: Some(20.0), ..CertificateSettings::new(0.02) })
+        );
         std::fs::write(&file, RUN).unwrap();
         assert_eq!(asked(None), None);
         assert_eq!(asked(Some(0.02)), Some(CertificateSettings::new(0.02)));
@@ -97,7 +100,8 @@ mod tests {
 
     #[test]
     fn the_memory_of_a_certificate_is_the_same_on_every_machine() {
-        let with = |line: &str| read(&format!("{RUN}[certificate]\ngap_percent = 1\n{line}")).unwrap().certificate.unwrap();
+        let with =
+            |line: &str| read(&format!("{RUN}[certificate]\ngap_percent = 1\n{line}")).unwrap().certificate.unwrap();
         assert_eq!((with("").memory, with("memory_gb = 0.5\n").memory), (4_000_000_000, 500_000_000));
         for bad in ["0", "-1", "0.0001", "1e7", "nan"] {
             let table = format!("[certificate]\ngap_percent = 1\nmemory_gb = {bad}\n[cell]");

@@ -188,12 +188,7 @@ impl BranchAndBound {
     /// among them; with one the search goes on. The result does not depend on the number of threads.
     pub fn explore<T: Send + Sync>(
         mut self,
-        parts: Parts<
-            T,
-            impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
-            impl Fn() -> u64,
-            impl Fn(&T) -> u64,
-        >,
+        parts: Parts<T, impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync, impl Fn() -> u64, impl Fn(&T) -> u64>,
         monitor: &Monitor,
         mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
     ) -> Bound {

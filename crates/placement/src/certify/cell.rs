@@ -74,7 +74,8 @@ pub(super) fn placement_in(problem: &Problem, region: &Region) -> Placement {
     let z = root.z + side * height;
     let at = |azimuth: f64| {
         let (sine, cosine) = libm::sincos(azimuth);
-        let wanted = Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z, yaw: azimuth + side * turn };
+        let wanted =
+            Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z, yaw: azimuth + side * turn };
         let inside = cell.clamp(&wanted);
         let off = libm::hypot(inside.x - wanted.x, inside.y - wanted.y) + radius * wrap(inside.yaw - wanted.yaw).abs();
         (off, inside)

@@ -172,7 +172,9 @@ fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
     let value = relaxed_value(&problem, &placement).unwrap();
     let found = worst(&problem, 0.98 * value, &CertificateSettings::new(1e-3), &Monitor::silent()).unwrap();
     assert_eq!(found.status, Status::Reached, "{} {}", found.bound, found.value);
-    assert!(found.value >= value * (1.0 - 1e-3) && found.bound >= value && found.gap() <= 1e-3 && found.open.is_empty());
+    assert!(
+        found.value >= value * (1.0 - 1e-3) && found.bound >= value && found.gap() <= 1e-3 && found.open.is_empty()
+    );
     let met = found.met.unwrap();
     assert!(problem.cell.contains(&met));
     assert_eq!(relaxed_value(&problem, &met), Some(found.value));
@@ -182,7 +184,9 @@ fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
 fn memory_that_is_used_up_leaves_a_bound() {
     let (problem, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
-    let with = |memory| worst(&problem, value, &CertificateSettings { memory, ..CertificateSettings::new(1e-4) }, &Monitor::silent());
+    let with = |memory| {
+        worst(&problem, value, &CertificateSettings { memory, ..CertificateSettings::new(1e-4) }, &Monitor::silent())
+    };
     let Err(Unsupported::TooLarge { bytes, max: 1 }) = with(1) else { panic!("tables in one byte") };
     let found = with(bytes + 1_000_000).unwrap();
     assert_eq!(found.status, Status::Memory);
