@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::outcome::{Case, Cases, Outcome};
 use super::problem::Problem;
 use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
-use super::refine::active::active_bounds;
+use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
 use super::sense::Sense;
 use super::sensitivity::{ForceSensitivity, objective_with_force_errors};
@@ -63,8 +63,10 @@ pub fn place(
             Sense::Max => worst.as_ref().unwrap_or(best),
         };
         let active_bounds = match plan_sense {
-            Sense::Min if !monitor.should_stop() => active_bounds(problem, &solution.solution, placement_sense),
-            _ => Vec::new(),
+            Sense::Min if monitor.should_stop() => Vec::new(),
+            Sense::Min if placement_sense == Sense::Min => active_bounds(problem, &solution.solution),
+            Sense::Min => active_walls(&planner, &solution.solution, solution.scheme.as_deref()),
+            Sense::Max => Vec::new(),
         };
         Case {
             placement_sense,

@@ -85,7 +85,9 @@ mod tests {
     use crate::place::score;
     use crate::redundancy::{Planner, off_grid};
     use crate::refine::planned;
+    use crate::settings::TransferSettings;
     use crate::testing::{compensated, five_segments, with_laws};
+    use stead_numerics::monitor::Monitor;
 
     #[test]
     fn stiffer_joints_change_the_mean_as_the_formula_says() {
@@ -107,7 +109,7 @@ mod tests {
     fn force_errors_only_add() {
         let problem = five_segments();
         let placement = Placement::from([0.1, -1.7, -0.4, 1.0]);
-        let plan = score(&problem, &placement).unwrap().best;
+        let plan = score(&problem, &placement, &TransferSettings::default(), &Monitor::silent()).unwrap().best;
         let with = |size: f64| objective_with_force_errors(&problem, &placement, &plan, size);
         assert!((with(0.0) / plan.objective - 1.0).abs() < 1e-9 && with(0.1) > with(0.05) && with(0.05) > with(0.0));
     }

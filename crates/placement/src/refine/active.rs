@@ -1,15 +1,16 @@
 //! Which bounds hold an optimum, and what moving them would gain.
 //!
 //! For the best placement that is the multiplier of each bound in the convex subproblem at the optimum: how fast the objective
-//! falls when the bound gives way. For the worst placement a wall of the cell counts by the gradient of the objective across
-//! it, one-sided, since the objective is a minimum over plans.
+//! falls when the bound gives way. For the worst placement a wall of the cell counts by the one-sided derivative of the
+//! objective across it, since the objective is a minimum over plans.
 
-use super::subproblem::{Question, pose_bounds, solve};
-use super::{LENGTH_UNIT, Solution};
+use super::linearise::{Curvature, UNITS, linearise};
+use super::subproblem::{Answer, Question, pose_bounds, solve};
+use super::{LENGTH_UNIT, Solution, planned};
 use crate::problem::Problem;
-use crate::refine::linearise::{Curvature, linearise};
-use crate::sense::Sense;
+use crate::redundancy::{Planner, off_grid};
 use serde::Serialize;
+use stead_model::robot::Posture;
 
 /// A limit that can hold an optimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -69,24 +70,12 @@ const FLOOR: f64 = 1e-5;
 /// A wall nearer than this is touched. Scaled
 const TOUCHED: f64 = 1e-5;
 
-/// The bounds that hold a solution of this sense, the largest gains first; nothing where the subproblem has no solution.
-pub fn active_bounds(problem: &Problem, solution: &Solution, sense: Sense) -> Vec<ActiveBound> {
-    let question = Question { trust: NEIGHBOURHOOD, curved: true, pose_stays: sense == Sense::Max };
+/// The bounds that hold a best placement, the largest gains first; nothing where the subproblem has no solution.
+pub fn active_bounds(problem: &Problem, solution: &Solution) -> Vec<ActiveBound> {
+    let question = Question { trust: NEIGHBOURHOOD, curved: true, pose_stays: false };
     let answer = linearise(problem, solution, Curvature::Beta)
         .and_then(|locals| solve(problem, solution, &locals, question).ok());
-    let Some(answer) = answer else { return Vec::new() };
-    let mut gains: Vec<(Side, f64)> = match sense {
-        Sense::Min => answer.multipliers,
-        Sense::Max => {
-            let rooms = pose_bounds(problem, &solution.placement);
-            let walls = Limit::ALL_WALLS.into_iter().zip(rooms).zip(answer.pose_gradient);
-            let sides = walls.flat_map(|((limit, room), gradient)| {
-                [(true, room.max, gradient), (false, -room.min, -gradient)]
-                    .map(|(is_upper, room, gain)| (Side { limit, is_upper }, room, gain))
-            });
-            sides.filter(|(_, room, _)| *room < TOUCHED).map(|(side, _, gain)| (side, gain)).collect()
-        }
-    };
+    let Some(Answer { multipliers: mut gains, .. }) = answer else { return Vec::new() };
     // The gains of all points that one bound holds add up.
     gains.sort_by_key(|(side, _)| *side);
     let mut bounds: Vec<ActiveBound> = Vec::new();
@@ -104,6 +93,37 @@ pub fn active_bounds(problem: &Problem, solution: &Solution, sense: Sense) -> Ve
             bound.gain /= solution.objective;
         }
     }
+    sorted(bounds)
+}
+
+/// How far the difference reaches that measures the gain of a wall at a worst placement, in scaled variables.
+const STEP: f64 = 1e-3;
+
+/// The walls of the cell that hold a worst placement, the largest gains first: everything is planned anew a little inside each
+/// wall that it touches.
+pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
+    let rooms = pose_bounds(planner.problem(), &worst.placement);
+    let spacing = off_grid::Spacing::full(planner.grid());
+    let mut workspace = planner.workspace();
+    let mut bounds = Vec::new();
+    for (k, room) in rooms.into_iter().enumerate() {
+        for (is_upper, near, far) in [(true, room.max, -room.min), (false, -room.min, room.max)] {
+            if near > TOUCHED || far < STEP {
+                continue;
+            }
+            let mut inside = worst.placement;
+            inside[k] += if is_upper { -STEP } else { STEP } * UNITS[k];
+            let Some(inside) = planned(planner, &inside, scheme, spacing, &mut workspace) else { continue };
+            let gain = (worst.objective - inside.objective) / (STEP * UNITS[k]);
+            if gain > FLOOR * worst.objective {
+                bounds.push(ActiveBound { side: Side { limit: Limit::ALL_WALLS[k], is_upper }, gain });
+            }
+        }
+    }
+    sorted(bounds)
+}
+
+fn sorted(mut bounds: Vec<ActiveBound>) -> Vec<ActiveBound> {
     bounds.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.side.cmp(&b.side)));
     bounds
 }

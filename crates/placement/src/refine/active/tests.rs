@@ -5,6 +5,7 @@ use crate::evaluator::Evaluator;
 use crate::problem::Placement;
 use crate::redundancy::{Planner, off_grid};
 use crate::refine::{planned, refine};
+use crate::sense::Sense;
 use crate::testing::five_segments;
 
 #[test]
@@ -15,10 +16,12 @@ fn gains_are_what_a_moved_wall_brings() {
     let start = Placement::from([0.0, -1.65, -0.3, 0.7]);
     let best = |problem: &Problem, start: &Placement| {
         let planner = Planner::finer(problem);
-        refine(&Evaluator::new(&planner, None), start, Sense::Min, None).unwrap().0
+        refine(&Evaluator::new(&planner, None), start, Sense::Min, None, &stead_numerics::monitor::Monitor::silent())
+            .unwrap()
+            .0
     };
     let optimum = best(&problem, &start);
-    let bounds = active_bounds(&problem, &optimum, Sense::Min);
+    let bounds = active_bounds(&problem, &optimum);
     let wall = Side { limit: Limit::CellY, is_upper: true };
     let gain = bounds.iter().find(|bound| bound.side == wall).map_or(0.0, |bound| bound.gain);
     assert!(gain > 0.0, "{bounds:?}");
@@ -41,7 +44,7 @@ fn a_worst_placement_is_held_by_the_walls_it_touches() {
     let planner = Planner::finer(&problem);
     let spacing = off_grid::Spacing::full(planner.grid());
     let solution = planned(&planner, &corner, None, spacing, &mut planner.workspace()).unwrap();
-    let bounds = active_bounds(&problem, &solution, Sense::Max);
+    let bounds = active_walls(&planner, &solution, None);
     let wall = Side { limit: Limit::CellY, is_upper: false };
     let gain = bounds.iter().find(|bound| bound.side == wall).unwrap().gain;
     let step = 1e-4;
