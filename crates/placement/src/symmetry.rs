@@ -61,7 +61,7 @@ pub enum Unsupported {
     },
     /// The cell is so large that tables do not fit in memory.
     #[error(
-        "the cell is so large that tables would take {:.1} GB, and at most {:.1} GB are allowed",
+        "the cell is so large that tables would take {:.3} GB, and at most {:.3} GB are allowed",
         *bytes as f64 / 1e9, *max as f64 / 1e9
     )]
     TooLarge {

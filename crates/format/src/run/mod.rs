@@ -23,7 +23,6 @@ use crate::spindle::SpindleTable;
 use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
-use certificate::check_size;
 use notes::{density_note, direction_note, speed_note, tilt_note};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -103,8 +102,7 @@ pub struct Run {
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
-/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none, a cell too
-/// large for the certificate that is asked for.
+/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none.
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
     read_run_to_certify(file, None)
 }
@@ -127,8 +125,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let transfer = run.transfer.unwrap_or_default().settings();
     let maps = run.output.unwrap_or_default().maps();
     let certificate = run.certificate.map(|table| table.settings());
-    let limit = certificate.and_then(|settings| settings.time_limit);
-    let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
+    let with_gap = |gap| CertificateSettings { gap, ..certificate.unwrap_or(CertificateSettings::new(gap)) };
+    let certificate = gap.map(with_gap).or(certificate);
     let cutting = Cutting::of(&run.tool, &run.cut, &at)?;
 
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
@@ -158,9 +156,6 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
     check_tables(&search, &problem, &at.key("search"))?;
-    if certificate.is_some() {
-        check_size(&problem, &at.key("cell"))?;
-    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));

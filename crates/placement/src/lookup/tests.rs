@@ -323,5 +323,5 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     huge.cell.position = [Interval { min: -1e3, max: 1e3 }; 3];
     let Unsupported::TooLarge { bytes, max } = refused(&huge) else { panic!("a crane's table does not fit") };
     assert!(bytes > max && max == MAX_BYTES);
-    assert!(refused(&huge).to_string().contains(" GB, and at most 1.1 GB are allowed"), "{}", refused(&huge));
+    assert!(refused(&huge).to_string().contains(" GB, and at most 1.074 GB are allowed"), "{}", refused(&huge));
 }
