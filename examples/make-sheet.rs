@@ -1,9 +1,9 @@
 //! Makes a measurement sheet that an arm of known compliances would give, to try `stead identify fit` on.
 //!
-//! `cargo run --release --example make-sheet -- [seed, 1] [noise in mm, 0.03] > tasks/identify-example.csv`
+//! `cargo run --release --example make-sheet -- [seed, 1] [noise in mm, 0.03] [load in N, 2700] > tasks/identify-example.csv`
 //!
 //! The arm is a KUKA KR270-2 with the compliances that Klimchik et al. 2017 (Table 4) give for a KR 270, and beside joint 2 a
-//! compensator made up for the purpose. 20 configurations with 5 distinct angles of joint 2, three reference points,
+//! compensator made up for the purpose; it comes to its static equilibrium under the load. 20 configurations with 5 distinct angles of joint 2, three reference points,
 //! a load of 2.7 kN in random directions, 250 mm off axis 6.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -24,13 +24,11 @@ use stead_model::robot::{Compensator, Compliance, Pose};
 const ANGLES_DEG: [f64; 5] = [15.0, 45.0, 75.0, 105.0, 135.0];
 /// Configurations.
 const COUNT: usize = 20;
-/// Load. N
-const LOAD: f64 = 2700.0;
-
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let seed: u64 = arguments.first().map_or(Ok(1), |text| text.parse())?;
     let noise: f64 = arguments.get(1).map_or(Ok(0.03), |text| text.parse())?;
+    let load: f64 = arguments.get(2).map_or(Ok(2700.0), |text| text.parse())?;
     let mut laws = [0.54e-6, 0.3e-6, 0.42e-6, 2.79e-6, 3.48e-6, 2.074e-6].map(Compliance::from);
     let compensator =
         Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha: (-20.0_f64).to_radians(), free_length: 0.6 };
@@ -59,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let z: f64 = random.random_range(-1.0..1.0);
             let (sine, cosine) = libm::sincos(random.random_range(0.0..TAU));
             let radius = libm::sqrt(1.0 - z * z);
-            let force = Vector3::new(radius * cosine, radius * sine, z) * LOAD;
+            let force = Vector3::new(radius * cosine, radius * sine, z) * load;
             LoadCase { theta, force: force.map(|value| round(value, 0.1)), moment: Vector3::zeros() }
         })
         .collect();

@@ -294,8 +294,13 @@ fn sheets_that_tell_too_little_are_refused() {
 
 /// The example's sheet as it would be under vertical loads, without noise.
 fn hang_loads(bench: &Bench) {
+    write_sheet(bench, -20.0, |_| Vector3::new(0.0, 0.0, -2700.0));
+}
+
+/// The example's sheet without noise, of an arm whose spring stands at this angle, under loads for each configuration.
+fn write_sheet(bench: &Bench, alpha_deg: f64, force: impl Fn(&Configuration) -> Vector3<f64>) {
     let run = stead_format::read_identification(&bench.path(CONFIG)).unwrap();
-    let alpha = (-20.0_f64).to_radians();
+    let alpha = alpha_deg.to_radians();
     let compensator = Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha, free_length: 0.6 };
     let mut laws = TRUTH.map(|urad| Compliance::from(urad / 1e6));
     laws[1] = Compliance::Compensated { alone: 0.3e-6, compensator };
@@ -306,13 +311,38 @@ fn hang_loads(bench: &Bench) {
         points: [[0.12, 0.0, 0.25], [-0.06, 0.11, 0.2], [-0.06, -0.11, 0.3]].map(Vector3::from).to_vec(),
         is_full_pose: false,
     };
-    let load_case = |c: &Configuration| LoadCase {
-        theta: c.theta,
-        force: Vector3::new(0.0, 0.0, -2700.0),
-        moment: Vector3::zeros(),
-    };
+    let load_case = |c: &Configuration| LoadCase { theta: c.theta, force: force(c), moment: Vector3::zeros() };
     let load_cases: Vec<_> = run.problem.sheet.configurations.iter().map(load_case).collect();
     bench.write(SHEET, &sheet(&robot, &cell, &load_cases, || 0.0, || 0.0).csv(9));
+}
+
+/// A spring that stands elsewhere than the file says, so that one there would have to push: everything else is identified, and the robot file has no spring.
+#[test]
+fn a_spring_that_the_readings_contradict_does_not_lose_the_rest() {
+    let bench = bench();
+    write_sheet(&bench, 100.0, |configuration| configuration.force);
+    let ended = fit(&bench, &["--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let document = ended.json();
+    assert!(document["compensator"].is_null());
+    let mut warnings = document["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap());
+    let warning = warnings.find(|warning| warning.starts_with("the spring beside joint 2 is left out")).unwrap();
+    for part in ["one compliance for all its angles", "everything else is kept: joint 2: ", "is not above zero"] {
+        assert!(warning.contains(part), "{part} in {warning}");
+    }
+    assert!(fit(&bench, &[]).stdout.contains(&format!("warning: {warning}\n")));
+    let compliances = document["compliances"].as_array().unwrap();
+    assert_eq!(compliances.len(), 10);
+    for entry in compliances {
+        let joint = entry["joint"].as_u64().unwrap() as usize;
+        let ratio = entry["urad_per_nm"].as_f64().unwrap() / TRUTH[joint - 1];
+        assert!(joint == 2 || (ratio - 1.0).abs() < 1e-6, "{entry}");
+    }
+    let robot = bench.read("out/robot-identified.toml");
+    assert!(!robot.contains("compensator"), "{robot}");
+    bench.write("arm.toml", &robot);
+    let robot = stead_format::read_robot(&bench.path("arm.toml")).unwrap();
+    assert!(matches!(robot.joints()[1].compliance, Compliance::Constant(value) if (0.2e-6..0.4e-6).contains(&value)));
 }
 
 #[test]

@@ -20,4 +20,5 @@ mod score_explain;
 mod simulate;
 mod stability;
 mod starting;
+mod stop;
 mod uncertainty;

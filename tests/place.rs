@@ -380,8 +380,9 @@ mod interrupt {
         std::thread::sleep(Duration::from_millis(1500));
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let said = "warning: interrupted: the results are the best found so far, not the end of the search\n";
+        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+        let said = "interrupted: ending with what there is; Ctrl-C again ends at once\n\
+                    warning: interrupted: the results are the best found so far, not the end of the search\n";
         assert_eq!(ended.stderr, said);
         assert_eq!(names(&bench, "out"), FILES);
         let document = ended.json();
@@ -403,7 +404,8 @@ mod interrupt {
         std::thread::sleep(Duration::from_millis(300));
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(1), Some(false)), "{}", ended.stderr);
+        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(130), Some(false)), "{}", ended.stderr);
+        assert_eq!(ended.json()["interrupted"], true);
         ended.assert_says(&["interrupted: ", "error: no feasible placement was found", "segment 1, points 0 to 20"]);
     }
 

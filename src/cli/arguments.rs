@@ -1,7 +1,9 @@
 //! The arguments of the command line: subcommands and options.
 
 use super::help;
-use super::values::{damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant};
+use super::values::{
+    case, damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant,
+};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -114,6 +116,9 @@ pub(super) struct PlaceOptions {
     /// Continue until it is proved that no placement is better, or worse, by more than G per cent
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
+    /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
+    #[arg(long)]
+    pub sensitivity: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -188,7 +193,10 @@ pub(super) struct ScoreOptions {
     /// Run file (TOML)
     pub config: PathBuf,
     #[command(flatten)]
-    pub place: PlaceArguments,
+    pub place: GivenPlacement,
+    /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub json: bool,
@@ -218,6 +226,9 @@ pub(super) struct CompensateOptions {
     /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
     #[arg(long, value_name = "ROBOT")]
     pub reality: Option<PathBuf>,
+    /// Fail where a point cannot be corrected, instead of keeping its target
+    #[arg(long)]
+    pub all_or_nothing: bool,
     /// Folder for the results [default: results/<name of the compensation file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -328,10 +339,51 @@ struct Turn {
 
 impl PlaceArguments {
     pub fn placement(&self) -> Placement {
-        let yaw = match (self.turn.q4, self.turn.yaw_deg) {
-            (Some(q4), _) => yaw_from_q4(q4),
-            (None, yaw) => stead_model::robot::angles::wrap(yaw.unwrap_or(0.0).to_radians()),
-        };
-        Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
+        placement([self.x_mm, self.y_mm, self.z_mm], self.turn.q4, self.turn.yaw_deg)
+    }
+}
+
+/// A placement from mm, and from Q4 or else degrees.
+fn placement(xyz_mm: [f64; 3], q4: Option<f64>, yaw_deg: Option<f64>) -> Placement {
+    let [x, y, z] = xyz_mm.map(|mm| mm / 1e3);
+    let yaw = match q4 {
+        Some(q4) => yaw_from_q4(q4),
+        None => stead_model::robot::angles::wrap(yaw_deg.unwrap_or(0.0).to_radians()),
+    };
+    Placement { x, y, z, yaw }
+}
+
+/// A placement in numbers, or that of a result.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct GivenPlacement {
+    /// x of the workpiece origin in mm
+    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
+    x_mm: Option<f64>,
+    /// y of the workpiece origin in mm
+    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
+    y_mm: Option<f64>,
+    /// z of the workpiece origin in mm
+    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
+    z_mm: Option<f64>,
+    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
+    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true, conflicts_with = "yaw_deg",
+          required_unless_present_any = ["yaw_deg", "placement_of"])]
+    q4: Option<f64>,
+    /// Yaw of the workpiece in degrees
+    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
+    yaw_deg: Option<f64>,
+    /// Results folder of `stead place` from the same run file: its exact placement is taken
+    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"])]
+    pub placement_of: Option<PathBuf>,
+    /// Case of the results: 1, the best placement, or 3, the worst [default: 1]
+    #[arg(long, value_name = "N", value_parser = case, allow_hyphen_values = true, requires = "placement_of")]
+    pub case: Option<u8>,
+}
+
+impl GivenPlacement {
+    /// The placement in numbers.
+    pub fn placement(&self) -> Placement {
+        placement([self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0)), self.q4, self.yaw_deg)
     }
 }

@@ -74,6 +74,8 @@ units! {
     NewtonMetreSecondPerRadian NmsPerRad "N m s/rad" = |value| value;
     /// An amount of money. EUR
     Euro Eur "EUR" = |value| value;
+    /// An amount of memory. GB
+    Gigabyte Gb "GB" = |value| value * 1e9;
     /// A share in per cent.
     Hundredth Percent "%" = |value| value / 100.0;
 }

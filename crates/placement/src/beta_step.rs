@@ -13,6 +13,7 @@
 
 use crate::constraints::{Measured, STEP_ROUNDING};
 use crate::problem::{Problem, Redundancy};
+use crate::refine::active::Limit;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 use stead_model::robot::angles::wrap;
@@ -131,6 +132,16 @@ impl Problem {
         };
         let wider = |a: BetaStep, b: BetaStep| if b.half > a.half { b } else { a };
         [-2.0 * PI, 2.0 * PI].map(|turned| common(turn.middle + turned)).into_iter().fold(common(turn.middle), wider)
+    }
+
+    /// Which limit is behind the lower and the upper end of the allowed changes at a path point.
+    pub(crate) fn beta_step_ends(&self, point: usize, step: &BetaStep) -> [Limit; 2] {
+        let rate = self.redundancy.max_beta_rate.map(|rate| rate * self.step_length(point));
+        let is_by_rate = |end: f64| rate.is_some_and(|rate| (end.abs() - rate).abs() <= STEP_ROUNDING);
+        [step.middle - step.half, step.middle + step.half].map(|end| match self.spindle_turn_limit(point) {
+            Some(_) if !is_by_rate(end) => Limit::SpindleTurn,
+            _ => Limit::BetaRate,
+        })
     }
 
     /// The constraints on the change of beta (rad) from path point `point - 1` to `point` that are in force.

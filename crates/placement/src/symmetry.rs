@@ -61,7 +61,7 @@ pub enum Unsupported {
     },
     /// The cell is so large that tables do not fit in memory.
     #[error(
-        "the cell is so large that tables would take {:.1} GB, and at most {:.1} GB are allowed",
+        "the cell is so large that tables would take {:.3} GB, and at most {:.3} GB are allowed",
         *bytes as f64 / 1e9, *max as f64 / 1e9
     )]
     TooLarge {
@@ -73,6 +73,9 @@ pub enum Unsupported {
     /// The exact planner does not find what the lookup table promises: found out only after a search through it.
     #[error("what it promised was not to be had within the steps and turns of the joints")]
     Rejected,
+    /// The caller stopped the work before it was done.
+    #[error("it was interrupted before it was sampled")]
+    Interrupted,
 }
 
 /// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.

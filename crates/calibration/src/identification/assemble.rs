@@ -35,11 +35,22 @@ pub(super) struct Assembly<'a> {
     pub robust: RobustEstimate,
     /// Standard deviations by which the equations were divided.
     pub noise: Noise,
+    /// Configurations (from 0) whose equations do not describe the arm at rest.
+    pub not_at_rest: Vec<usize>,
+}
+
+/// The arm by a law of its varying joint.
+struct FittedArm {
+    law: Law,
+    arm: ArmFit,
+    estimates: Vec<Estimate<ArmParameter>>,
+    robot: Robot,
 }
 
 impl Assembly<'_> {
     /// All of it, with the law of the varying joint fitted; warnings are left to be added. `dropped` are the unidentifiable
-    /// parameters that are not free.
+    /// parameters that are not free. A spring that is not identifiable is left out, and the rest kept: its joint then has one
+    /// compliance for all angles.
     pub fn assemble(self, dropped: Vec<Parameter>) -> Result<Identified, IdentifyError> {
         let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
@@ -49,9 +60,12 @@ impl Assembly<'_> {
         let width = half_width(is_noise_estimated.then_some(robust.degrees));
         let compliances = self.compliances(variance, width);
         self.refuse_negative(&compliances)?;
-        let arm = fit(&robust.normal, self.free.joints, &robust.solution, &layout.angles, law)?;
-        let estimates = self.arm(&arm, variance, width)?;
-        let robot = self.robot(&arm)?;
+        let (FittedArm { law, arm, estimates, robot }, spring_fault) = match self.fitted(law, variance, width) {
+            Err(error) if error.is_of_the_spring() => {
+                (self.fitted(Law::Constant, variance, width)?, Some(error.to_string()))
+            }
+            fitted => (fitted?, None),
+        };
         let rows = self.rows(&arm);
         let mut prediction = leave_one_out(sheet, layout, self.equations, &robust.kept, &arm);
         let difference = libm::sqrt(2.0) * self.noise.position;
@@ -72,13 +86,24 @@ impl Assembly<'_> {
             variance_ratio: robust.variance / variance,
             degrees_of_freedom: robust.degrees,
             are_outliers_searched: robust.is_searched,
-            law_probability: self.law_probability(&arm),
+            law_probability: self.law_probability(law, &arm),
             prediction,
             setup: self.setup.clone(),
             setup_fit: self.fit.clone(),
             rows,
+            spring_fault,
+            not_at_rest: self.not_at_rest,
             warnings: vec![],
         })
+    }
+
+    /// The parameters of the arm by a law of the varying joint.
+    fn fitted(&self, law: Law, variance: f64, width: f64) -> Result<FittedArm, IdentifyError> {
+        let RobustEstimate { normal, solution, .. } = &self.robust;
+        let arm = fit(normal, self.free.joints, solution, &self.layout.angles, law)?;
+        let estimates = self.arm(&arm, variance, width)?;
+        let robot = self.robot(&arm)?;
+        Ok(FittedArm { law, arm, estimates, robot })
     }
 
     fn held(&self, dropped: Vec<Parameter>) -> Vec<Held> {
@@ -163,8 +188,8 @@ impl Assembly<'_> {
                 line: reading.line,
                 configuration: reading.configuration,
                 point: reading.point,
-                measured: linear(equation.deflection + equation.by_held),
-                predicted: linear(equation.design * compliances + equation.by_held),
+                measured: linear(equation.deflection + equation.known),
+                predicted: linear(equation.design * compliances + equation.known),
                 studentised: self.robust.studentised[index],
                 is_outlier: !self.robust.kept[index],
             }
@@ -174,8 +199,9 @@ impl Assembly<'_> {
 
     /// F test of the law of the varying joint against one compliance for each angle: the probability of so large an increase of the
     /// residuals under a right law.
-    fn law_probability(&self, arm: &ArmFit) -> Option<f64> {
-        let unknowns = match self.problem.varying?.1 {
+    fn law_probability(&self, law: Law, arm: &ArmFit) -> Option<f64> {
+        self.problem.varying?;
+        let unknowns = match law {
             Law::Constant => 1,
             Law::Spring(_) => 3,
         };

@@ -113,6 +113,15 @@ pub struct SheetFault {
 }
 
 impl IdentifyError {
+    /// Whether the readings give no spring beside the varying joint, but may give everything else.
+    pub(super) fn is_of_the_spring(&self) -> bool {
+        matches!(
+            self,
+            Self::Law(LawError::NoSpring { .. } | LawError::Unidentifiable { .. })
+                | Self::Robot(RobotError::GivesWay { .. } | RobotError::SpringVanishes { .. })
+        )
+    }
+
     /// What is wrong with the sheet; nothing where a sound sheet gives no robot.
     pub fn fault(&self) -> Option<SheetFault> {
         let fault = |line: Option<usize>, column: &str, needed: &'static str| {

@@ -1,14 +1,13 @@
 //! The identification as a whole.
 
 use super::assemble::Assembly;
+use super::equilibria::Equilibria;
 use super::error::IdentifyError;
 use super::model::{Layout, Noise, Observation, Parameter, Response, observations};
 use super::normal_equations::{FreeParameters, NormalEquations};
 use super::outcome::Identified;
-use super::outliers::{OutlierSearch, ROUNDING};
 use super::problem::Problem;
 use super::setup::{Setup, check, estimate};
-use super::sheet::Sheet;
 use super::warnings::warnings;
 use nalgebra::Vector6;
 use stead_model::robot::Pose;
@@ -20,8 +19,10 @@ const ROUNDS: usize = 4;
 
 /// Identifies the compliances of an arm.
 ///
-/// Outliers are left out of the deflections and then of the setup too, until both agree. Noise that is not stated is estimated
-/// from the residuals; a deflection is the difference of two readings and has twice their variance.
+/// The equations are linear about the arm as it rests under its loads, and are made anew with its new compliances until they
+/// predict every reading as its static equilibrium does. Outliers are left out of the deflections and then of the setup too, until
+/// both agree. Noise that is not stated is estimated from the residuals; a deflection is the difference of two readings and has
+/// twice their variance.
 ///
 /// # Errors
 /// [`IdentifyError`] when they are not identifiable from the sheet.
@@ -37,25 +38,19 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let mut used = kept.clone();
     let mut setup = estimate(sheet, &flanges, &kept, problem.start.as_ref())?;
     check_lengths(problem, &setup)?;
-    let (start_joints, start_groups) = starting_values(problem, &layout);
-    let held = (&start_joints, &start_groups[..]);
+    let held = starting_values(problem, &layout);
     let noise = Noise { position: problem.noise.unwrap_or(1.0), orientation: problem.orientation_noise.unwrap_or(1.0) };
-    let min_scale = if problem.noise.is_some() { 1.0 } else { ROUNDING };
-    let equations =
-        |setup: &Setup| observations(&problem.robot, sheet, setup, &problem.load_point, &noise, problem.hold);
-    let mut observations = equations(&setup);
-    let (free, dropped) = free_parameters(problem, &layout, &observations)?;
+    let unloaded = observations(&problem.robot, sheet, &setup, &problem.load_point, &noise, problem.hold);
+    let (free, dropped) = free_parameters(problem, &layout, &unloaded)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
         // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.
         return identify(&Problem { varying: None, ..problem.clone() });
     }
-    let estimate_robustly = |observations: &[Observation]| {
-        let search = OutlierSearch { sheet, layout: &layout, observations, free: &free, held, min_scale };
-        search
-            .robust_estimate()
-            .map_err(|kept| unidentifiable_without_outliers(sheet, &layout, observations, &free, &kept))
-    };
-    let mut robust = estimate_robustly(&observations)?;
+    // A joint that is given up is held like one that is to be: at the angle of each configuration.
+    let hold = std::array::from_fn(|joint| problem.hold[joint] || dropped.contains(&Parameter::Joint(joint)));
+    let equilibria = Equilibria { problem, layout: &layout, free: &free, held: (&held.0, &held.1), hold, noise };
+    let mut settled = equilibria.settled(&setup, unloaded, &kept);
+    let mut robust = equilibria.robust_estimate(&settled.observations)?;
     for _ in 0..ROUNDS {
         if robust.kept == kept {
             break;
@@ -66,29 +61,25 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
         let lost: Vec<bool> = (0..sheet.points.len()).map(is_lost).collect();
         used = sheet.readings.iter().zip(&kept).map(|(reading, kept)| *kept || lost[reading.point]).collect();
         setup = estimate(sheet, &flanges, &used, Some(&setup.tracker_from_base.rotation))?;
-        observations = equations(&setup);
-        robust = estimate_robustly(&observations)?;
+        let (about, _) = equilibria.about(&setup, &robust.solution);
+        settled = equilibria.settled(&setup, about, &kept);
+        robust = equilibria.robust_estimate(&settled.observations)?;
     }
     let fit = check(sheet, &flanges, &used, &setup)?;
-    let assembly =
-        Assembly { problem, layout: &layout, setup, fit, equations: &observations, free: &free, robust, noise };
+    let assembly = Assembly {
+        problem,
+        layout: &layout,
+        setup,
+        fit,
+        equations: &settled.observations,
+        free: &free,
+        robust,
+        noise,
+        not_at_rest: settled.not_at_rest,
+    };
     let mut identified = assembly.assemble(dropped)?;
     identified.warnings = warnings(problem, &identified);
     Ok(identified)
-}
-
-/// What is unidentifiable from the readings that are kept, and which outliers would be needed for it.
-fn unidentifiable_without_outliers(
-    sheet: &Sheet,
-    layout: &Layout,
-    observations: &[Observation],
-    free: &FreeParameters,
-    kept: &[bool],
-) -> IdentifyError {
-    let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
-    let unidentifiable = NormalEquations::new(sheet, layout, observations, &weights).unidentifiable(free);
-    let outliers = sheet.readings.iter().zip(kept).filter(|(_, kept)| !**kept).map(|(reading, _)| reading.line);
-    IdentifyError::Unidentifiable { unidentifiable, layout: layout.clone(), outliers: outliers.collect() }
 }
 
 /// Refuses a deflection far larger than the one predicted by the starting arm.

@@ -4,8 +4,8 @@
 //! displacement of some reference points. [`identify`] takes such a [`Sheet`] through these steps:
 //!
 //! 1. [`setup`]: poses of tracker and reference points, from the unloaded readings alone (eq. 24);
-//! 2. [`model`]: deflections as linear functions of the compliances, the joint beside a compensator having one for each
-//!    distinct angle (eq. 16, 20);
+//! 2. [`model`]: deflections as linear functions of the compliances (eq. 16, 20) about the arm as it rests under its loads
+//!    ([`deflected`]), the joint beside a compensator having one for each distinct angle;
 //! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters are identifiable;
 //! 4. [`outliers`]: a robust estimate, and readings that deviate from the others by more than noise;
 //! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21, 22);
@@ -16,8 +16,10 @@
 
 mod assemble;
 pub mod cross_validation;
+pub mod deflected;
 pub mod design;
 pub mod distribution;
+mod equilibria;
 mod error;
 mod identify;
 pub mod law;

@@ -4,8 +4,9 @@
 //! `J_j(reference) (J_j(load)^T w)`, with the Jacobian at two points. Where a compensator stands beside a joint, that joint
 //! has one compliance for each distinct angle: a [`Layout`] says which configurations share one.
 
+use super::deflected::{Deflected, torque};
 use super::setup::Setup;
-use super::sheet::{Configuration, Sheet};
+use super::sheet::{Configuration, Reading, Sheet};
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use serde::Serialize;
 use stead_model::robot::{Frames, Robot};
@@ -128,9 +129,9 @@ impl Response {
     ) -> Self {
         let mut response = Self { linear: Matrix3x6::zeros(), angular: Matrix3x6::zeros() };
         for joint in 0..6 {
-            let (velocity, axis) = frames.twist(joint, load);
-            let torque = velocity.dot(force) + axis.dot(moment);
-            response.linear.set_column(joint, &(frames.twist(joint, read).0 * torque));
+            let torque = torque(frames, joint, load, force, moment);
+            let (velocity, axis) = frames.twist(joint, read);
+            response.linear.set_column(joint, &(velocity * torque));
             response.angular.set_column(joint, &(axis * torque));
         }
         response
@@ -168,23 +169,15 @@ impl Noise {
 pub struct Observation {
     /// Design matrix: columns are the six joints, those of held joints zero.
     pub design: Matrix6<f64>,
-    /// Deflection read, less that by the held joints.
+    /// Deflection read, less what is known of it.
     pub deflection: Vector6<f64>,
-    /// Deflection by the held joints, with the compliances of the starting arm at the angles of the configuration.
-    pub by_held: Vector6<f64>,
+    /// What the compliances that are sought do not change: the deflection by the held joints, with the compliances of the starting arm at
+    /// the angles of the configuration, and what is not linear in the others.
+    pub known: Vector6<f64>,
 }
 
-impl Observation {
-    /// Takes what a joint of known compliance (rad/(N m)) contributes out of the equations.
-    fn hold(&mut self, joint: usize, compliance: f64) {
-        let known = self.design.column(joint) * compliance;
-        self.deflection -= known;
-        self.by_held += known;
-        self.design.fill_column(joint, 0.0);
-    }
-}
-
-/// The equations of all readings, with those joints held at the compliances of `robot` for which `hold` says so.
+/// The equations of all readings for small deflections, linear in the load, with those joints held at the compliances of `robot`
+/// for which `hold` says so.
 pub fn observations(
     robot: &Robot,
     sheet: &Sheet,
@@ -193,31 +186,84 @@ pub fn observations(
     noise: &Noise,
     hold: [bool; 6],
 ) -> Vec<Observation> {
-    let base_from_tracker = setup.tracker_from_base.rotation.transpose();
-    let (linear, angular) = noise.weights();
+    let equations = Equations { setup, noise, hold };
+    let none = Vector6::zeros();
+    let deflected = |configuration| {
+        Deflected::linear(robot, with_held(robot, hold, configuration, none), configuration, load_point)
+    };
+    sheet.configurations.iter().flat_map(|c| equations.of(sheet, c, &deflected(c))).collect()
+}
+
+/// The equations of all readings linearised about the arm as it rests with these compliances (rad/(N m)), a function of the
+/// configuration (from 0); and the configurations in which it would give way, whose equations are those for small deflections.
+pub fn observations_about(
+    robot: &Robot,
+    sheet: &Sheet,
+    setup: &Setup,
+    load_point: &Vector3<f64>,
+    noise: &Noise,
+    hold: [bool; 6],
+    compliances: impl Fn(usize) -> Vector6<f64>,
+) -> (Vec<Observation>, Vec<usize>) {
+    let equations = Equations { setup, noise, hold };
     let mut observations = Vec::with_capacity(sheet.readings.len());
-    for configuration in &sheet.configurations {
-        let frames = Frames::new(robot, &configuration.theta);
-        let load = frames.base_from_flange.point(load_point);
-        for reading in &sheet.readings[configuration.readings.clone()] {
-            let read = frames.base_from_flange.point(&setup.points[reading.point]);
-            let response = Response::new(&frames, &read, &load, &configuration.force, &configuration.moment);
-            let mut observation =
-                Observation { design: Matrix6::zeros(), deflection: Vector6::zeros(), by_held: Vector6::zeros() };
-            let moved = base_from_tracker * (reading.loaded - reading.unloaded);
-            observation.design.fixed_rows_mut::<3>(0).copy_from(&(response.linear * linear));
-            observation.deflection.fixed_rows_mut::<3>(0).copy_from(&(moved * linear));
-            if let Some(turn) = &reading.turn {
-                observation.design.fixed_rows_mut::<3>(3).copy_from(&(response.angular * angular));
-                observation.deflection.fixed_rows_mut::<3>(3).copy_from(&(base_from_tracker * turn * angular));
-            }
-            for joint in (0..6).filter(|joint| hold[*joint]) {
-                observation.hold(joint, robot.joints()[joint].compliance_at(configuration.theta[joint]));
-            }
-            observations.push(observation);
-        }
+    let mut given_way = Vec::new();
+    for (index, configuration) in sheet.configurations.iter().enumerate() {
+        let about = with_held(robot, hold, configuration, compliances(index));
+        let deflected = Deflected::at_rest(robot, about, configuration, load_point).unwrap_or_else(|_| {
+            given_way.push(index);
+            Deflected::linear(robot, about, configuration, load_point)
+        });
+        observations.extend(equations.of(sheet, configuration, &deflected));
     }
-    observations
+    (observations, given_way)
+}
+
+/// Compliances with those of held joints in their places. rad/(N m)
+fn with_held(
+    robot: &Robot,
+    hold: [bool; 6],
+    configuration: &Configuration,
+    mut compliances: Vector6<f64>,
+) -> Vector6<f64> {
+    for joint in (0..6).filter(|joint| hold[*joint]) {
+        compliances[joint] = robot.joints()[joint].compliance_at(configuration.theta[joint]);
+    }
+    compliances
+}
+
+/// What the equations of all readings have in common.
+struct Equations<'a> {
+    setup: &'a Setup,
+    noise: &'a Noise,
+    hold: [bool; 6],
+}
+
+impl Equations<'_> {
+    /// The equations of the readings in a configuration.
+    fn of(&self, sheet: &Sheet, configuration: &Configuration, deflected: &Deflected<'_>) -> Vec<Observation> {
+        let base_from_tracker = self.setup.tracker_from_base.rotation.transpose();
+        let (linear, angular) = self.noise.weights();
+        let observation = |reading: &Reading| {
+            let place = &self.setup.points[reading.point];
+            let (response, moved) = (deflected.response(place), deflected.displacement(place));
+            let (mut design, mut read, mut known) = (Matrix6::zeros(), Vector6::zeros(), Vector6::zeros());
+            let mut set = |rows: usize, response: Matrix3x6<f64>, found: Vector3<f64>, predicted: Vector3<f64>| {
+                design.fixed_rows_mut::<3>(rows).copy_from(&response);
+                read.fixed_rows_mut::<3>(rows).copy_from(&found);
+                known.fixed_rows_mut::<3>(rows).copy_from(&predicted);
+            };
+            let found = base_from_tracker * (reading.loaded - reading.unloaded);
+            set(0, response.linear * linear, found * linear, moved.linear * linear);
+            if let Some(turn) = &reading.turn {
+                set(3, response.angular * angular, base_from_tracker * turn * angular, moved.angular * angular);
+            }
+            (0..6).filter(|joint| self.hold[*joint]).for_each(|joint| design.fill_column(joint, 0.0));
+            known -= design * deflected.compliances();
+            Observation { design, deflection: read - known, known }
+        };
+        sheet.readings[configuration.readings.clone()].iter().map(observation).collect()
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Sheets that an arm of known compliances would give: for examples and for tests of the identification.
 
-use super::model::Response;
+use super::deflected::Deflected;
 use super::sheet::{Configuration, LoadCase, Reading, Sheet};
 use nalgebra::{Vector3, Vector6};
 use stead_model::robot::{Pose, Robot};
+use stead_model::stiffness::Displacement;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// The measuring cell.
@@ -19,7 +20,7 @@ pub struct MeasuringCell {
     pub is_full_pose: bool,
 }
 
-/// What the tracker would read, with `position_error` (m) added to every coordinate and `orientation_error` (rad) to every
+/// What the tracker would read of the arm in its exact static equilibrium (where it gives way, deflected linearly), with `position_error` (m) added to every coordinate and `orientation_error` (rad) to every
 /// component of a turn. Configurations are called c1, c2, ... and points p1, p2, ...; line numbers are those of
 /// a file with one line of header.
 pub fn sheet(
@@ -43,18 +44,19 @@ pub fn sheet(
             moment: *moment,
             readings: first..first + cell.points.len(),
         };
-        let base_from_flange = robot.forward(theta);
         let compliances = Vector6::from(robot.compliances_at(theta));
+        let deflected = Deflected::at_rest(robot, compliances, &configuration, &cell.load_point)
+            .unwrap_or_else(|_| Deflected::linear(robot, compliances, &configuration, &cell.load_point));
         for (point, place) in cell.points.iter().enumerate() {
-            let response = Response::of(robot, &configuration, &cell.load_point, place);
-            let there = base_from_flange.point(place);
+            let Displacement { linear, angular } = deflected.displacement(place);
+            let there = deflected.unloaded(place);
             let mut read = |moved: Vector3<f64>| {
                 let error = Vector3::from_fn(|_, _| position_error());
                 cell.tracker_from_base.point(&(there + moved)) + error
             };
-            let (unloaded, loaded) = (read(Vector3::zeros()), read(response.linear * compliances));
+            let (unloaded, loaded) = (read(Vector3::zeros()), read(linear));
             let turn = cell.is_full_pose.then(|| {
-                let turned = cell.tracker_from_base.rotation * (response.angular * compliances);
+                let turned = cell.tracker_from_base.rotation * angular;
                 let mut noisy = || rotation_from_vector(&Vector3::from_fn(|_, _| orientation_error()));
                 let (before, after) = (noisy(), noisy());
                 rotation_vector(&(after * rotation_from_vector(&turned) * before.transpose()))

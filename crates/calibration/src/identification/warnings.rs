@@ -48,6 +48,24 @@ pub(super) fn warnings(problem: &Problem, result: &Identified) -> Vec<Warning> {
         );
         warnings.push(Warning::new("law-misfit", message));
     }
+    if let Some(fault) = &result.spring_fault {
+        let number = result.varying.unwrap_or_default() + 1;
+        let message = format!(
+            "the spring beside joint {number} is left out, and the joint has one compliance for all its angles; everything else is \
+             kept: {fault}"
+        );
+        warnings.push(Warning::new("spring-not-identified", message));
+    }
+    if let Some(first) = result.not_at_rest.first() {
+        let message = format!(
+            "the deflections of {} of {} configurations (first {}) are so large that no arm with these compliances comes to rest so: \
+             the compliances are wrong, or the sheet is",
+            result.not_at_rest.len(),
+            problem.sheet.configurations.len(),
+            problem.sheet.configurations[*first].name
+        );
+        warnings.push(Warning::new("not-at-rest", message));
+    }
     if !result.are_outliers_searched {
         warnings.push(Warning::new("outliers-not-searched", "too few readings to look for outliers"));
     }

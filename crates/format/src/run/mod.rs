@@ -3,6 +3,7 @@
 mod certificate;
 mod criterion;
 mod notes;
+mod output;
 mod redundancy;
 mod stability;
 mod tables;
@@ -11,6 +12,7 @@ mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
+pub use output::OutputTable;
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
@@ -23,7 +25,6 @@ use crate::spindle::SpindleTable;
 use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
-use certificate::check_size;
 use notes::{density_note, direction_note, speed_note, tilt_note};
 use redundancy::check_axis_turns;
 use schemars::JsonSchema;
@@ -71,6 +72,8 @@ pub struct RunFile {
     pub cut: Option<CutTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,
+    /// What is made beside the plans.
+    pub output: Option<OutputTable>,
     /// Published figures to print beside ours.
     pub reference: Option<ReferenceTable>,
 }
@@ -86,6 +89,8 @@ pub struct Run {
     pub transfer: TransferSettings,
     /// The certificate, where one is asked for.
     pub certificate: Option<CertificateSettings>,
+    /// Whether deflection maps are made.
+    pub maps: bool,
     /// The files that were read, in the order config, robot, task.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
@@ -100,8 +105,7 @@ pub struct Run {
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
-/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none, a cell too
-/// large for the certificate that is asked for.
+/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none.
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
     read_run_to_certify(file, None)
 }
@@ -122,9 +126,10 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
     let search = run.search.unwrap_or_default().settings();
     let transfer = run.transfer.unwrap_or_default().settings();
+    let maps = run.output.unwrap_or_default().maps();
     let certificate = run.certificate.map(|table| table.settings());
-    let limit = certificate.and_then(|settings| settings.time_limit);
-    let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
+    let with_gap = |gap| CertificateSettings { gap, ..certificate.unwrap_or(CertificateSettings::new(gap)) };
+    let certificate = gap.map(with_gap).or(certificate);
     let cutting = Cutting::of(&run.tool, &run.cut, &at)?;
 
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
@@ -155,14 +160,11 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
-    if certificate.is_some() {
-        check_size(&problem, &at.key("cell"))?;
-    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, inputs, reference, path_stability, notes })
+    Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the cutter and its cut, which may be there for the stability

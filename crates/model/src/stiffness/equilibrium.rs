@@ -36,7 +36,20 @@ pub struct NoEquilibrium {
 /// # Errors
 /// [`NoEquilibrium`] when the arm gives way before the load is complete.
 pub fn equilibrium(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<[f64; 6], NoEquilibrium> {
-    let roots = roots(&robot.compliances_at(theta));
+    equilibrium_with(robot, &robot.compliances_at(theta), theta, load)
+}
+
+/// As [`equilibrium`], with other joint compliances than the robot's in rad/(N m), none of them negative.
+///
+/// # Errors
+/// Those of [`equilibrium`].
+pub fn equilibrium_with(
+    robot: &Robot,
+    compliances: &[f64; 6],
+    theta: &[f64; 6],
+    load: &Load,
+) -> Result<[f64; 6], NoEquilibrium> {
+    let roots = roots(compliances);
     // Deflections are in units of the roots: theta - theta_0 = S x.
     let mut deflection = Vector6::zeros();
     let (mut share, mut step) = (0.0_f64, 1.0);

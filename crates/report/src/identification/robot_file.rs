@@ -29,21 +29,24 @@ pub fn robot_file(text: &str, found: &Identified) -> Result<String, ReportError>
         if estimate.parameter.quantity == Quantity::Compliance {
             set_compliance(row, estimate.value * factor);
         }
-        if let Compliance::Compensated { compensator, .. } = found.robot.joints()[index].compliance {
-            let spring = row.entry(COMPENSATOR).or_insert_with(|| Item::Table(Table::new()));
-            let spring = spring.as_table_like_mut().ok_or_else(|| fail("its compensator is no table"))?;
-            for (name, value) in [
-                ("spring_stiffness_n_per_mm", compensator.spring_stiffness / 1e3),
-                ("a_mm", compensator.a * 1e3),
-                ("l_mm", compensator.l * 1e3),
-                ("alpha_deg", compensator.alpha.to_degrees()),
-                ("free_length_mm", compensator.free_length * 1e3),
-            ] {
-                // The geometry is given: it changes only where the config says otherwise than the robot file.
-                let old = spring.get(name).and_then(number);
-                if old.is_none_or(|old| (old - value).abs() > 1e-9 * value.abs().max(1.0)) {
-                    set(spring, name, value);
-                }
+        let Compliance::Compensated { compensator, .. } = found.robot.joints()[index].compliance else {
+            // A spring that the readings do not tell of is left out.
+            row.remove(COMPENSATOR);
+            continue;
+        };
+        let spring = row.entry(COMPENSATOR).or_insert_with(|| Item::Table(Table::new()));
+        let spring = spring.as_table_like_mut().ok_or_else(|| fail("its compensator is no table"))?;
+        for (name, value) in [
+            ("spring_stiffness_n_per_mm", compensator.spring_stiffness / 1e3),
+            ("a_mm", compensator.a * 1e3),
+            ("l_mm", compensator.l * 1e3),
+            ("alpha_deg", compensator.alpha.to_degrees()),
+            ("free_length_mm", compensator.free_length * 1e3),
+        ] {
+            // The geometry is given: it changes only where the config says otherwise than the robot file.
+            let old = spring.get(name).and_then(number);
+            if old.is_none_or(|old| (old - value).abs() > 1e-9 * value.abs().max(1.0)) {
+                set(spring, name, value);
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Plans against plain counting, against random sets, and against what `fit` reports in the end.
 
-use super::super::law::{Law, Quantity};
+use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::sheet::LoadCase;
 use super::super::synthetic::sheet;
 use super::super::tests::{GEOMETRY, NOISE, arm, cell, gauss, problem};
-use super::super::{Problem, identify};
+use super::super::{Estimate, Problem, identify};
 use super::candidates::draw_candidates;
 use super::expected::{normal_of, sheet_of};
 use super::fedorov::{IOptimality, exchange, random_set, values};
@@ -224,22 +224,26 @@ fn fit_reports_what_the_plan_expects_and_many_sheets_spread_as_much() {
     assert!((error / plan.errors.planned - 1.0).abs() < 0.1, "{error} {}", plan.errors.planned);
 }
 
+/// Those of small loads; the arm of the full load is deflected when `fit` looks at it, which changes them by less than a thousandth.
 #[test]
 fn the_expected_errors_of_the_compensator_are_those_of_fit() {
-    // From the true arm and without an error, since they hang on each other and on the estimate.
-    let request = Request { robot: arm(), ..request(3) };
-    let plan = planned(&request);
-    let found = identify(&Problem { robot: arm(), ..measured(&plan, 1, 0.0) }).unwrap();
-    assert_eq!(plan.compensator.len(), 3);
-    for bar in &plan.compensator {
-        let fitted = found.arm.iter().find(|estimate| estimate.parameter == bar.parameter).unwrap();
-        assert!((fitted.deviation / bar.deviation - 1.0).abs() < 1e-4, "{bar:?} {fitted:?}");
-        assert!((fitted.value / bar.value - 1.0).abs() < 1e-6);
-    }
-    let joint = |j: usize| plan.compliances.iter().find(|bar| bar.joint == j).unwrap();
-    for estimate in found.arm.iter().filter(|e| e.parameter.quantity == Quantity::Compliance && e.parameter.joint != 1)
-    {
-        assert!((estimate.deviation / joint(estimate.parameter.joint).by_law - 1.0).abs() < 1e-4);
+    for (load, tolerance) in [(270.0, 1e-4), (2700.0, 1e-3)] {
+        // From the true arm and without an error, since they hang on each other and on the estimate.
+        let request = Request { robot: arm(), load, ..request(3) };
+        let plan = planned(&request);
+        let found = identify(&Problem { robot: arm(), ..measured(&plan, 1, 0.0) }).unwrap();
+        assert_eq!(plan.compensator.len(), 3);
+        for bar in &plan.compensator {
+            let fitted = found.arm.iter().find(|estimate| estimate.parameter == bar.parameter).unwrap();
+            assert!((fitted.deviation / bar.deviation - 1.0).abs() < tolerance, "{bar:?} {fitted:?}");
+            assert!((fitted.value / bar.value - 1.0).abs() < 1e-6);
+        }
+        let joint = |j: usize| plan.compliances.iter().find(|bar| bar.joint == j).unwrap();
+        let is_plain =
+            |e: &&Estimate<ArmParameter>| e.parameter.quantity == Quantity::Compliance && e.parameter.joint != 1;
+        for estimate in found.arm.iter().filter(is_plain) {
+            assert!((estimate.deviation / joint(estimate.parameter.joint).by_law - 1.0).abs() < tolerance);
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use stead_model::robot::testing::kr270;
 use stead_model::robot::{Compensator, Compliance, Pose, Robot};
 
 mod hold;
+mod large_deflections;
 mod refusals;
 mod setups;
 mod validation;

@@ -7,6 +7,7 @@ use crate::feasibility::diagnose;
 use crate::lookup::{BetaGrid, LookupTable};
 use crate::refine::refine;
 use nalgebra::Vector3;
+use stead_numerics::monitor::Monitor;
 
 /// A path of one segment whose feed turns by the given angles (rad) from point to point, each step as long (m); the tool upright or
 /// leaning about.
@@ -134,7 +135,7 @@ fn refinement_keeps_the_turn_of_the_spindle() {
         let planner = Planner::new(&problem);
         let evaluator = Evaluator::new(&planner, None);
         let start = Placement::from([0.0, -1.8, -0.4, 1.2]);
-        let (refined, report) = refine(&evaluator, &start, Sense::Min, None).unwrap();
+        let (refined, report) = refine(&evaluator, &start, Sense::Min, None, &Monitor::silent()).unwrap();
         assert!(report.end_mean <= report.start_mean);
         assert_sound(&problem, &refined.placement, &refined.plans);
     }
