@@ -1,7 +1,7 @@
 //! Paths corrected so that the loaded tool follows the path that is wanted.
 
-use crate::Error;
 use crate::result::{Report, result};
+use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -43,12 +43,24 @@ impl CompensationRun {
         not_compensated_json(&self.run, failure)
     }
 
-    /// Finds for every point the pose to command.
+    /// Finds for every point the pose to command. A point that cannot be compensated keeps its target, and a warning says so.
+    ///
+    /// # Errors
+    /// [`Error::NotCompensated`] where not one point can be compensated, with the reasons.
+    pub fn compensate(&self) -> Result<CompensatedPath, Error> {
+        let outcome = compensation::compensate(&self.run.job);
+        match outcome.not_corrected().filter(NotCompensated::is_all) {
+            Some(all) => Err(all.into()),
+            None => Ok(CompensatedPath { run: Arc::clone(&self.run), outcome }),
+        }
+    }
+
+    /// As [`CompensationRun::compensate`], but every point or none.
     ///
     /// # Errors
     /// [`Error::NotCompensated`] with the points that cannot be compensated, and why.
-    pub fn compensate(&self) -> Result<CompensatedPath, Error> {
-        let outcome = compensation::compensate(&self.run.job)?;
+    pub fn compensate_all(&self) -> Result<CompensatedPath, Error> {
+        let outcome = compensation::compensate(&self.run.job).complete()?;
         Ok(CompensatedPath { run: Arc::clone(&self.run), outcome })
     }
 }
@@ -82,6 +94,10 @@ impl Report for CompensatedPath {
 
     fn notes(&self) -> &[String] {
         &self.run.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.outcome.warnings
     }
 }
 

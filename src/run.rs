@@ -32,6 +32,9 @@ pub struct Run {
 }
 
 impl Run {
+    /// The relative size of the force error of `stead place --sensitivity`.
+    pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
+
     /// Reads a run file and the files that it names.
     ///
     /// # Errors

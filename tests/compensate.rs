@@ -175,14 +175,14 @@ fn the_linear_model_leaves_little_in_the_equilibrium() {
 }
 
 #[test]
-fn a_path_that_cannot_be_corrected_has_no_result() {
+fn a_path_that_cannot_be_corrected_all_along_has_no_result_where_all_is_asked_for() {
     // Joint 1 of the plan goes up to 104.2999 deg, and corrected to 104.33699 deg, at point 61.
     let bench = bench();
     bench.replace(ROBOT, "max_deg = 185.0", "max_deg = 104.3365");
     bench.write("out/corrected-path.csv", "an earlier result\n");
     let before = bench.tree("");
     for more in [&["--out", "new"][..], &["--out", "new", "--json"], &["--out", "out"]] {
-        let ended = bench.stead(&[&["compensate", CONFIG], more].concat());
+        let ended = bench.stead(&[&["compensate", CONFIG, "--all-or-nothing"], more].concat());
         assert_eq!(ended.code, Some(1));
         ended.assert_says(&[
             "error: 1 of 105 points cannot be compensated:",
@@ -198,6 +198,46 @@ fn a_path_that_cannot_be_corrected_has_no_result() {
         }
         assert_eq!(bench.tree(""), before);
     }
+}
+
+#[test]
+fn what_can_be_corrected_is_and_the_rest_keeps_its_target() {
+    let bench = bench();
+    let before = run(&bench, &["--json"]).json();
+    assert_eq!((number(&before, "/corrected"), &before["not_corrected"]), (105.0, &serde_json::json!([])));
+    bench.replace(ROBOT, "max_deg = 185.0", "max_deg = 104.3365");
+    let ended = run(&bench, &["--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let reason = "corrected, joint 1 would be 0.00048";
+    ended.assert_says(&[
+        "warning: 1 of 105 points are not corrected and keep their target, the first point 61: ",
+        reason,
+    ]);
+    let document = ended.json();
+    assert_eq!((number(&document, "/points"), number(&document, "/corrected")), (105.0, 104.0));
+    assert_eq!(document["not_corrected"][0]["point"], 61);
+    assert!(document["warnings"][0].as_str().unwrap().starts_with("1 of 105 points"));
+    let path = Columns::read(&bench, "out/corrected-path.csv");
+    assert_eq!(path.rows.len(), 105);
+    for row in 0..105 {
+        let [target, command, before, after] = ["target", "corrected", "before", "after"].map(|part| {
+            path.vector(row, ["x", "y", "z"].map(|axis| format!("{part}_{axis}_mm")).each_ref().map(String::as_str))
+        });
+        let status = &path.rows[row][29];
+        if row == 61 {
+            assert!(status.starts_with(reason), "{status}");
+            assert_eq!((command, after), (target, before));
+            assert_eq!((path.number(row, "iterations"), path.number(row, "rotation_z_deg")), (0.0, 0.0));
+        } else {
+            assert_eq!(status, "corrected");
+            assert!(command != target && after.norm() <= 1e-6, "{row}");
+        }
+    }
+    // The largest deflection that is left is that of the point that is not corrected, and the mean counts it.
+    let left = path.vector(61, ["before_x_mm", "before_y_mm", "before_z_mm"]).norm();
+    assert!((number(&document, "/after/max_mm") - left).abs() < 1e-6);
+    assert!((number(&document, "/after/mean_mm") - left / 105.0).abs() < 1e-6);
+    assert!(run(&bench, &[]).stdout.contains("105 points, 104 of them compensated for the static equilibrium"));
 }
 
 #[test]

@@ -116,6 +116,9 @@ pub(super) struct PlaceOptions {
     /// Continue until it is proved that no placement is better, or worse, by more than G per cent
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
+    /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
+    #[arg(long)]
+    pub sensitivity: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -223,6 +226,9 @@ pub(super) struct CompensateOptions {
     /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
     #[arg(long, value_name = "ROBOT")]
     pub reality: Option<PathBuf>,
+    /// Fail where a point cannot be corrected, instead of keeping its target
+    #[arg(long)]
+    pub all_or_nothing: bool,
     /// Folder for the results [default: results/<name of the compensation file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -10,7 +10,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
     let shown = Terminal::unstoppable().show(None);
-    let path = run.compensate();
+    let path = if options.all_or_nothing { run.compensate_all() } else { run.compensate() };
     drop(shown);
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {

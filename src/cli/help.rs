@@ -120,13 +120,13 @@ Examples:
   stead compensate configs/compensate-caro-2013.toml --reality configs/robots/kuka-kr270-2-k1-0.8.toml --out results/check
 
 Files written to the results folder:
-  corrected-path.csv                 target and commanded pose, joint angles, deflection before and after
+  corrected-path.csv                 target and commanded pose, joint angles, deflection before and after, status
   compensation.svg                   deflection before and after along the path
   summary.json                       all of it for programs
 
 Exit codes:
-  0  done
-  1  some points cannot be compensated; nothing is written, the message names them with the reason
+  0  done; points that cannot be compensated keep their target, and a warning says so
+  1  no point can be compensated, or with --all-or-nothing some cannot; nothing is written, the message names them with the reason
   2  wrong usage, bad input, a plan that does not fit its run, or a results folder that cannot be written to";
 
 pub(super) const IDENTIFY_FIT: &str = "\

@@ -13,6 +13,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if let Some(seed) = options.seed {
         run = run.with_seed(seed);
     }
+    if options.sensitivity {
+        run = run.with_sensitivity(Run::FORCE_ERROR);
+    }
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use stead_calibration::compensation::{
-    CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, reduction,
+    CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, PointError, reduction,
 };
 use stead_format::CompensateRun;
 use stead_format::scalars::Word;
@@ -45,12 +45,12 @@ const CORRECTED_PATH: &str = "\
     point,segment,target_x_mm,target_y_mm,target_z_mm,corrected_x_mm,corrected_y_mm,corrected_z_mm,axis_x,axis_y,\
      axis_z,rotation_x_deg,rotation_y_deg,rotation_z_deg,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,\
      theta6_deg,before_x_mm,before_y_mm,before_z_mm,before_normal_mm,after_x_mm,after_y_mm,after_z_mm,\
-     after_normal_mm,iterations";
+     after_normal_mm,iterations,status";
 
 /// `corrected-path.csv`: one row for each path point. Places are those of the tool centre point, and all vectors are in the
 /// robot base frame: the target, the corrected command with its tool axis (from the workpiece to the robot) and the rotation
 /// vector from the target's orientation to the command's, the corrected joint angles, and the deflection before and after
-/// with its part normal to the feed.
+/// with its part normal to the feed, empty where the arm gives way; and whether the point is corrected, or why it keeps its target.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -68,10 +68,15 @@ fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
     row.extend(vector(ANGLE_DEG, &point.correction.angular));
     row.extend(point.joints.map(|angle| ANGLE_DEG.text(angle)));
     for deflection in [&point.before, &point.after] {
-        row.extend(vector(PLACE_MM, &deflection.linear));
-        row.push(PLACE_MM.text(deflection.normal));
+        match deflection {
+            Some(deflection) => {
+                row.extend(vector(PLACE_MM, &deflection.linear));
+                row.push(PLACE_MM.text(deflection.normal));
+            }
+            None => row.extend(std::iter::repeat_n(String::new(), 4)),
+        }
     }
-    row.push(point.iterations.to_string());
+    row.extend([point.iterations.to_string(), point.status.to_string()]);
     row
 }
 
@@ -79,7 +84,8 @@ fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
 pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Value {
     let settings = &run.job.settings;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
-    document(run).with(json!({
+    let not_corrected = outcome.not_corrected().map_or_else(Vec::new, |not| not.failed);
+    document(run).warnings(&outcome.warnings).with(json!({
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
         "model": Word(settings.model),
@@ -88,6 +94,8 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
         "max_iterations": settings.max_iterations,
         "placement": placement(&run.placement),
         "points": outcome.points.len(),
+        "corrected": outcome.points.len() - not_corrected.len(),
+        "not_corrected": reasons(&not_corrected),
         "iterations": outcome.iterations(),
         "before": figures(&deflections[0]),
         "after": figures(&deflections[1]),
@@ -98,8 +106,8 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
             "reduction_percent": percent(normal),
         },
         "correction": {
-            "max_mm": PLACE_MM.number(outcome.figures(|point| point.correction.linear.norm()).max),
-            "max_deg": ANGLE_DEG.number(outcome.figures(|point| point.correction.angular.norm()).max),
+            "max_mm": PLACE_MM.number(outcome.figures(|point| Some(point.correction.linear.norm())).max),
+            "max_deg": ANGLE_DEG.number(outcome.figures(|point| Some(point.correction.angular.norm())).max),
         },
     }))
 }
@@ -110,9 +118,11 @@ fn document(run: &CompensateRun) -> Document {
 
 /// What `stead compensate --json` prints where points cannot be compensated.
 pub fn not_compensated_json(run: &CompensateRun, failure: &NotCompensated) -> Value {
-    let failed: Vec<Value> =
-        failure.failed.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect();
-    document(run).with(json!({ "points": failure.of, "failed": failed }))
+    document(run).with(json!({ "points": failure.of, "failed": reasons(&failure.failed) }))
+}
+
+fn reasons(points: &[(usize, PointError)]) -> Value {
+    points.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect()
 }
 
 fn figures(figures: &MeanAndMax) -> Value {
@@ -129,7 +139,10 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
         DeflectionModel::Equilibrium => "the static equilibrium",
         DeflectionModel::Linear => "the linear displacement",
     };
-    let mut text = format!("{}: {} points, compensated for {model}\n", run.job.robot.name(), outcome.points.len());
+    let count = outcome.points.len();
+    let kept = outcome.not_corrected().map_or(0, |not| not.failed.len());
+    let which = if kept > 0 { format!("{} of them ", count - kept) } else { String::new() };
+    let mut text = format!("{}: {count} points, {which}compensated for {model}\n", run.job.robot.name());
     let executed = if run.has_reality {
         format!("executed on {} ({})", run.job.reality.name(), run.inputs.last().map_or("", |input| &input.name))
     } else {
@@ -147,8 +160,8 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
     text.push_str(&aligned(&rows, &[0]));
     text.push_str(&format!(
         "\nlargest correction {} mm and {} deg, in at most {} iterations\n",
-        fixed(outcome.figures(|point| point.correction.linear.norm()).max * 1e3, 4),
-        fixed(outcome.figures(|point| point.correction.angular.norm()).max.to_degrees(), 4),
+        fixed(outcome.figures(|point| Some(point.correction.linear.norm())).max * 1e3, 4),
+        fixed(outcome.figures(|point| Some(point.correction.angular.norm())).max.to_degrees(), 4),
         outcome.iterations()
     ));
     text

@@ -1,6 +1,8 @@
 //! One point: the iteration of eq. 27, and the execution of its result.
 
-use super::{CompensatedPoint, CompensationProblem, Deflection, DeflectionModel, PathPoint, PointError, Settings};
+use super::{
+    CompensatedPoint, CompensationProblem, Deflection, DeflectionModel, PathPoint, PointError, Settings, Status,
+};
 use std::f64::consts::TAU;
 use stead_model::robot::{Frames, Pose, Robot, angles::ANGLE_ROUNDING};
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
@@ -14,26 +16,37 @@ struct Command {
     iterations: usize,
 }
 
-/// Corrects one point and executes it, without and with the correction.
-pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> Result<CompensatedPoint, PointError> {
-    let command = corrected(job, point)?;
+/// Corrects one point and executes it, without and with the correction; a point that cannot be corrected is executed as it is.
+pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> CompensatedPoint {
     let target = &point.base_from_tool;
-    let deflection = |joints: &[f64; 6]| -> Result<Deflection, PointError> {
-        let rest = rest(job, &job.reality, DeflectionModel::Equilibrium, point, joints)
-            .map_err(|NoEquilibrium { share }| PointError::RealityUnstable { share })?;
-        let Displacement { linear, angular } = from_to(target, &rest);
-        Ok(Deflection { linear, angular, normal: linear.dot(&point.normal) })
+    // The joint angles of the plan are those of the target but for rounding.
+    let planned = joints(job, point, target).unwrap_or(point.joints);
+    let before = deflection(job, point, &planned);
+    let corrected = corrected(job, point).and_then(|command| Ok((deflection(job, point, &command.joints)?, command)));
+    let kept = Command { base_from_tool: *target, joints: planned, iterations: 0 };
+    let (status, after, command) = match (corrected, before) {
+        (Ok((after, command)), Ok(_)) => (Status::Corrected, Ok(after), command),
+        (Err(reason), _) | (Ok(_), Err(reason)) => (Status::Kept(reason), before, kept),
     };
-    Ok(CompensatedPoint {
+    CompensatedPoint {
         segment: point.segment,
         target: *target,
         command: command.base_from_tool,
         correction: from_to(target, &command.base_from_tool),
         joints: command.joints,
-        before: deflection(&joints(job, point, target)?)?,
-        after: deflection(&command.joints)?,
+        before: before.ok(),
+        after: after.ok(),
         iterations: command.iterations,
-    })
+        status,
+    }
+}
+
+/// Where the loaded tool of the arm that stands for reality rests for commanded joint angles (rad), seen from the target.
+fn deflection(job: &CompensationProblem, point: &PathPoint, joints: &[f64; 6]) -> Result<Deflection, PointError> {
+    let rest = rest(job, &job.reality, DeflectionModel::Equilibrium, point, joints)
+        .map_err(|NoEquilibrium { share }| PointError::RealityUnstable { share })?;
+    let Displacement { linear, angular } = from_to(&point.base_from_tool, &rest);
+    Ok(Deflection { linear, angular, normal: linear.dot(&point.normal) })
 }
 
 /// The command at which the loaded tool of the model rests at the target.

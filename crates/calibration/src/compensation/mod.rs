@@ -9,7 +9,7 @@
 //! A correction is about as large as the deflection, and over so small a way the deflection hardly changes: with `alpha = 1`
 //! each iteration takes another factor of about deflection over arm length off the error. A smaller alpha leaves
 //! `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is never taken for
-//! a result.
+//! a correction: such a point keeps its target, with the reason.
 //!
 //! Then the commands are executed in simulation: on the same arm, or on another one of the same geometry, which stands for
 //! reality. There the arm always comes to rest in its exact static equilibrium. The remaining error is the share of the
@@ -21,7 +21,7 @@ mod outcome;
 #[cfg(test)]
 mod tests;
 
-pub use outcome::{CompensatedPath, CompensatedPoint, Deflection, NotCompensated, PointError, reduction};
+pub use outcome::{CompensatedPath, CompensatedPoint, Deflection, NotCompensated, PointError, Status, reduction};
 pub use stead_numerics::mean_max::MeanAndMax;
 
 use nalgebra::Vector3;
@@ -100,25 +100,11 @@ impl Default for Settings {
     }
 }
 
-/// Corrects every point of a path, and executes the corrected commands in simulation. The result does not depend on the number of threads.
-///
-/// # Errors
-/// [`NotCompensated`] with the points that cannot be corrected and the reason for each.
-pub fn compensate(job: &CompensationProblem) -> Result<CompensatedPath, NotCompensated> {
-    let points: Vec<Result<CompensatedPoint, PointError>> =
-        job.points.par_iter().map(|point| iteration::compensated(job, point)).collect();
-    let (mut done, mut failed) = (Vec::with_capacity(points.len()), Vec::new());
-    for (point, result) in points.into_iter().enumerate() {
-        match result {
-            Ok(compensated) => done.push(compensated),
-            Err(reason) => failed.push((point, reason)),
-        }
-    }
-    if failed.is_empty() {
-        Ok(CompensatedPath { points: done })
-    } else {
-        Err(NotCompensated { failed, of: job.points.len() })
-    }
+/// Corrects every point of a path that can be, and executes the commands in simulation; a point that cannot be corrected keeps its
+/// target as its command, with the reason. [`CompensatedPath::complete`] asks for all of them. The result does not depend on the number of
+/// threads.
+pub fn compensate(job: &CompensationProblem) -> CompensatedPath {
+    CompensatedPath::new(job.points.par_iter().map(|point| iteration::compensated(job, point)).collect())
 }
 
 /// The first row entry in which two arms have another geometry.

@@ -6,6 +6,7 @@ use std::fmt;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
 use stead_numerics::mean_max::MeanAndMax;
+use stead_numerics::message::Warning;
 
 /// Where the loaded tool rests, seen from the target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -18,48 +19,100 @@ pub struct Deflection {
     pub normal: f64,
 }
 
-/// One corrected point.
+/// One point of a path with its command.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CompensatedPoint {
     /// Number of its segment, from 1.
     pub segment: usize,
     /// Where the tool is to be: the tool frame in the base frame.
     pub target: Pose<f64>,
-    /// What is to be commanded, likewise.
+    /// What is to be commanded, likewise: the target itself, where that cannot be corrected.
     pub command: Pose<f64>,
     /// From the target to the command: translation, and rotation vector in the base frame. m, rad
     pub correction: Displacement<f64>,
     /// The joint angles of the command, in the posture and turns of the plan and within the limits. rad
     pub joints: [f64; 6],
-    /// Deflection in reality with the target commanded.
-    pub before: Deflection,
-    /// Deflection in reality with the correction.
-    pub after: Deflection,
+    /// Deflection in reality with the target commanded; none where the arm of reality has no equilibrium under the load.
+    pub before: Option<Deflection>,
+    /// Deflection in reality with the command, likewise.
+    pub after: Option<Deflection>,
     /// Iterations of eq. 27 that it took.
     pub iterations: usize,
+    /// Whether it is corrected.
+    pub status: Status,
 }
 
-/// A corrected path.
+/// Whether a point is corrected.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub enum Status {
+    /// To the tolerance.
+    Corrected,
+    /// It cannot be, for this reason: the target is kept.
+    Kept(PointError),
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Corrected => f.write_str("corrected"),
+            Self::Kept(reason) => reason.fmt(f),
+        }
+    }
+}
+
+/// A path with its commands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompensatedPath {
     /// The points, in order; at least one.
     pub points: Vec<CompensatedPoint>,
+    /// Why the path may not be what was wanted: `not-corrected` where points keep their target.
+    pub warnings: Vec<Warning>,
 }
 
 impl CompensatedPath {
-    /// Figures of a magnitude over the points.
-    pub fn figures(&self, value: impl Fn(&CompensatedPoint) -> f64) -> MeanAndMax {
-        MeanAndMax::of(self.points.iter().map(value))
+    pub(super) fn new(points: Vec<CompensatedPoint>) -> Self {
+        let mut path = Self { points, warnings: Vec::new() };
+        path.warnings =
+            path.not_corrected().map(|not| Warning::new("not-corrected", not.summary())).into_iter().collect();
+        path
     }
 
-    /// Deflections before and after.
+    /// The points that are not corrected, if there are some.
+    pub fn not_corrected(&self) -> Option<NotCompensated> {
+        let reason = |(index, point): (usize, &CompensatedPoint)| match point.status {
+            Status::Corrected => None,
+            Status::Kept(reason) => Some((index, reason)),
+        };
+        let failed: Vec<(usize, PointError)> = self.points.iter().enumerate().filter_map(reason).collect();
+        (!failed.is_empty()).then_some(NotCompensated { failed, of: self.points.len() })
+    }
+
+    /// The path, if every point of it is corrected.
+    ///
+    /// # Errors
+    /// [`NotCompensated`] with the points that are not, and the reason for each.
+    pub fn complete(self) -> Result<Self, NotCompensated> {
+        self.not_corrected().map_or(Ok(self), Err)
+    }
+
+    /// Figures of a magnitude over the points that have it.
+    pub fn figures(&self, value: impl Fn(&CompensatedPoint) -> Option<f64>) -> MeanAndMax {
+        MeanAndMax::of(self.points.iter().filter_map(value))
+    }
+
+    /// Magnitudes of a part of the deflection before and after.
+    fn before_and_after(&self, part: impl Fn(&Deflection) -> f64) -> [MeanAndMax; 2] {
+        [self.figures(|point| point.before.as_ref().map(&part)), self.figures(|point| point.after.as_ref().map(&part))]
+    }
+
+    /// Deflections before and after, those of points that are not corrected among them.
     pub fn deflections(&self) -> [MeanAndMax; 2] {
-        [self.figures(|point| point.before.linear.norm()), self.figures(|point| point.after.linear.norm())]
+        self.before_and_after(|deflection| deflection.linear.norm())
     }
 
     /// Magnitudes of their parts normal to the feed, before and after.
     pub fn normal_parts(&self) -> [MeanAndMax; 2] {
-        [self.figures(|point| point.before.normal.abs()), self.figures(|point| point.after.normal.abs())]
+        self.before_and_after(|deflection| deflection.normal.abs())
     }
 
     /// The most iterations that a point took.
@@ -140,6 +193,22 @@ pub struct NotCompensated {
     pub failed: Vec<(usize, PointError)>,
     /// Number of all points.
     pub of: usize,
+}
+
+impl NotCompensated {
+    /// Whether not one point can be compensated.
+    pub fn is_all(&self) -> bool {
+        self.failed.len() == self.of
+    }
+
+    /// How many, and the first reason, in a sentence.
+    fn summary(&self) -> String {
+        let first = self
+            .failed
+            .first()
+            .map_or_else(String::new, |(point, reason)| format!(", the first point {point}: {reason}"));
+        format!("{} of {} points are not corrected and keep their target{first}", self.failed.len(), self.of)
+    }
 }
 
 impl fmt::Display for NotCompensated {

@@ -56,7 +56,7 @@ proptest! {
         let robot = &odd_arms()[arm];
         prop_assume!(is_regular(robot, &theta));
         let path_point = path_point(robot, &theta, wrench);
-        let done = compensate(&job(robot, robot, vec![path_point])).unwrap();
+        let done = compensate(&job(robot, robot, vec![path_point])).complete().unwrap();
         let point = &done.points[0];
         // An oracle that knows nothing of the iteration: the equilibrium of the commanded joint angles.
         let load = Load { point: spindle().flange_from_tool.translation, force: path_point.force, moment: path_point.moment };
@@ -64,7 +64,7 @@ proptest! {
         prop_assert!((rest.translation - path_point.base_from_tool.translation).norm() <= 1e-9);
         let turn = rotation_vector(&(rest.rotation * path_point.base_from_tool.rotation.transpose()));
         prop_assert!(turn.norm() <= 1e-9, "{}", turn);
-        prop_assert!(point.after.linear.norm() <= 1e-9 && point.iterations >= 1);
+        prop_assert!(point.after.unwrap().linear.norm() <= 1e-9 && point.iterations >= 1);
         // The joint angles are those of the command, near those of the plan.
         let commanded = robot.forward(&point.joints).then(&spindle().flange_from_tool);
         prop_assert!((commanded.translation - point.command.translation).norm() < 1e-11);
@@ -80,12 +80,12 @@ proptest! {
         let robot = &odd_arms()[arm];
         prop_assume!(is_regular(robot, &theta));
         let path_point = path_point(robot, &theta, wrench);
-        let point = compensate(&job(robot, robot, vec![path_point])).unwrap().points[0];
+        let point = compensate(&job(robot, robot, vec![path_point])).complete().unwrap().points[0];
         let load = Load { point: spindle().flange_from_tool.translation, force: path_point.force, moment: path_point.moment };
         let truth = displaced(robot, &theta, &load).unwrap();
-        prop_assert!((point.before.linear - truth.linear).norm() < 1e-9);
-        prop_assert!((point.before.angular - truth.angular).norm() < 1e-9);
-        prop_assert_eq!(point.before.normal, point.before.linear.dot(&path_point.normal));
+        prop_assert!((point.before.unwrap().linear - truth.linear).norm() < 1e-9);
+        prop_assert!((point.before.unwrap().angular - truth.angular).norm() < 1e-9);
+        prop_assert_eq!(point.before.unwrap().normal, point.before.unwrap().linear.dot(&path_point.normal));
     }
 }
 
@@ -93,7 +93,7 @@ proptest! {
 fn left(robot: &Robot, model: DeflectionModel, iterations: usize, share: f64) -> f64 {
     let mut job = job(robot, robot, vec![path_point(robot, &MIDDLE, CUT.map(|w| w * share))]);
     job.settings = Settings { tolerance: 1e-18, max_iterations: iterations, model, ..job.settings };
-    match compensate(&job).unwrap_err().failed[0].1 {
+    match compensate(&job).complete().unwrap_err().failed[0].1 {
         PointError::NotConverged { error, .. } => error,
         reason => panic!("{reason}"),
     }
@@ -117,12 +117,12 @@ fn damping_leaves_its_share() {
     let robot = kr270();
     let mut job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)]);
     job.settings.alpha = 0.5;
-    let damped = compensate(&job).unwrap();
+    let damped = compensate(&job).complete().unwrap();
     // Half of the error each time: from about 1 mm to 1e-6 mm in 20 iterations.
-    let expected = libm::log2(damped.points[0].before.linear.norm() / 1e-9).ceil();
+    let expected = libm::log2(damped.points[0].before.unwrap().linear.norm() / 1e-9).ceil();
     assert!((damped.iterations() as f64 - expected).abs() <= 1.0, "{} {expected}", damped.iterations());
     job.settings.alpha = 1.0;
-    let full = compensate(&job).unwrap();
+    let full = compensate(&job).complete().unwrap();
     assert!(full.iterations() <= 3);
     assert!((full.points[0].command.translation - damped.points[0].command.translation).norm() < 2e-9);
 }
@@ -132,13 +132,16 @@ fn what_the_model_does_not_know_remains() {
     let robot = kr270();
     let points = vec![path_point(&robot, &MIDDLE, CUT), path_point(&robot, &[-0.4, 1.2, -1.7, 0.1, 0.8, -0.3], CUT)];
     for known in [0.8, 0.5, 1.0 / 1.1] {
-        let done = compensate(&job(&robot, &softer(&robot, 1.0 / known), points.clone())).unwrap();
+        let done = compensate(&job(&robot, &softer(&robot, 1.0 / known), points.clone())).complete().unwrap();
         let found = reduction(done.deflections()).unwrap();
         assert!((found - known).abs() < 0.002, "{found} {known}");
         for point in &done.points {
-            let unknown = point.before.linear * (1.0 - known);
-            assert!((point.after.linear - unknown).norm() < 5e-3 * unknown.norm());
-            assert!((point.after.angular - point.before.angular * (1.0 - known)).norm() < 5e-3 * unknown.norm());
+            let unknown = point.before.unwrap().linear * (1.0 - known);
+            assert!((point.after.unwrap().linear - unknown).norm() < 5e-3 * unknown.norm());
+            assert!(
+                (point.after.unwrap().angular - point.before.unwrap().angular * (1.0 - known)).norm()
+                    < 5e-3 * unknown.norm()
+            );
         }
     }
 }
@@ -149,8 +152,8 @@ fn the_linear_model_leaves_what_is_of_second_order() {
     let after = |share: f64| {
         let mut job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT.map(|w| w * share))]);
         job.settings.model = DeflectionModel::Linear;
-        let point = compensate(&job).unwrap().points[0];
-        (point.after.linear.norm(), point.before.linear.norm())
+        let point = compensate(&job).complete().unwrap().points[0];
+        (point.after.unwrap().linear.norm(), point.before.unwrap().linear.norm())
     };
     let ((full, before), (half, _)) = (after(1.0), after(0.5));
     assert!(full > 1e-8 && full < 0.01 * before, "{full} {before}");
@@ -160,7 +163,7 @@ fn the_linear_model_leaves_what_is_of_second_order() {
 #[test]
 fn without_a_load_nothing_is_to_do() {
     let robot = kr270();
-    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, [0.0; 6])])).unwrap();
+    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, [0.0; 6])])).complete().unwrap();
     assert_eq!(done.iterations(), 0);
     assert_eq!(done.points[0].command, done.points[0].target);
     // What is left is rounding of the kinematics, not a deflection.
@@ -168,7 +171,7 @@ fn without_a_load_nothing_is_to_do() {
 }
 
 fn reason(job: &CompensationProblem) -> PointError {
-    let failed = compensate(job).unwrap_err();
+    let failed = compensate(job).complete().unwrap_err();
     assert_eq!((failed.failed.len(), failed.of), (1, 1));
     failed.failed[0].1
 }
@@ -208,7 +211,7 @@ fn limits_and_reach_hold_for_the_corrected_command() {
     let robot = kr270();
     let mut joints = robot.joints().clone();
     // Just wide enough for the plan; the correction turns joint 1 against its deflection.
-    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)])).unwrap();
+    let done = compensate(&job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT)])).complete().unwrap();
     let step = done.points[0].joints[0] - MIDDLE[0];
     assert!(step.abs() > 1e-5);
     if step > 0.0 {
@@ -231,13 +234,53 @@ fn limits_and_reach_hold_for_the_corrected_command() {
     assert!(matches!(reason(&job(&soft, &soft, vec![there])), PointError::Reach(_)));
 }
 
+/// Where the target is kept, the loaded tool is as far off as without compensation, and the figures count it.
+#[test]
+fn points_that_cannot_be_corrected_keep_their_target_and_the_others_are_corrected() {
+    let robot = kr270();
+    let good = path_point(&robot, &MIDDLE, CUT);
+    let mut joints = robot.joints().clone();
+    let corrected = compensate(&job(&robot, &robot, vec![good])).points[0];
+    // The correction of joint 1 leads beyond its limits; at another place it does not.
+    let step = corrected.joints[0] - MIDDLE[0];
+    (joints[0].min, joints[0].max) = (MIDDLE[0] - 0.5 * step.abs(), MIDDLE[0] + 0.5 * step.abs());
+    let narrow = Robot::new("narrow", joints).unwrap();
+    let unloaded = path_point(&narrow, &MIDDLE, [0.0; 6]);
+    let heavy = path_point(&narrow, &MIDDLE, TWIST.map(|w| w * 1e3));
+    let path = compensate(&job(&narrow, &narrow, vec![good, unloaded, heavy]));
+    let [limited, easy, gives_way] = &path.points[..] else { panic!("three points") };
+    assert!(matches!(limited.status, Status::Kept(PointError::JointLimit { joint: 1, .. })), "{}", limited.status);
+    assert_eq!((limited.command, limited.iterations), (good.base_from_tool, 0));
+    assert!(limited.joints.iter().zip(MIDDLE).all(|(a, b)| (a - b).abs() < 1e-12));
+    assert_eq!((limited.before, limited.after), (corrected.before, corrected.before));
+    assert_eq!((easy.status, easy.status.to_string().as_str()), (Status::Corrected, "corrected"));
+    // There is no deflection of an arm that gives way.
+    assert!(matches!(gives_way.status, Status::Kept(PointError::Unstable { .. })));
+    assert_eq!((gives_way.before, gives_way.after), (None, None));
+    let half = corrected.before.unwrap().linear.norm() / 2.0;
+    assert!(
+        path.deflections().iter().all(|figures| (figures.mean / half - 1.0).abs() < 1e-9),
+        "{:?}",
+        path.deflections()
+    );
+    assert_eq!(path.warnings.len(), 1);
+    let message = &path.warnings[0].message;
+    assert!(
+        message.starts_with(
+            "2 of 3 points are not corrected and keep their target, the first point 0: corrected, joint 1 "
+        )
+    );
+    assert_eq!(path.clone().complete().unwrap_err().failed.iter().map(|(point, _)| *point).collect::<Vec<_>>(), [0, 2]);
+    assert_eq!(path.not_corrected(), path.complete().err());
+}
+
 #[test]
 fn failures_are_told_in_runs_of_points() {
     let robot = kr270();
     let good = path_point(&robot, &MIDDLE, CUT);
     let heavy = path_point(&robot, &MIDDLE, TWIST.map(|w| w * 1e3));
     let points = vec![heavy, good, heavy, heavy, heavy, good];
-    let message = compensate(&job(&robot, &robot, points)).unwrap_err().to_string();
+    let message = compensate(&job(&robot, &robot, points)).complete().unwrap_err().to_string();
     let lines: Vec<&str> = message.lines().collect();
     assert_eq!(lines[0], "4 of 6 points cannot be compensated:");
     assert!(lines[1].starts_with("  point 0: the arm has no stable equilibrium"), "{message}");

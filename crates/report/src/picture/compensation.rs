@@ -52,8 +52,9 @@ fn draw(
     value: fn(&Deflection) -> f64,
 ) {
     let points = &outcome.points;
-    let values = points.iter().flat_map(|point| [value(&point.before), value(&point.after)]);
-    let [low, high] = extent([0.0, 0.0], values.map(|value| value * 1e3));
+    let value_mm = |deflection: &Option<Deflection>| deflection.as_ref().map(|deflection| value(deflection) * 1e3);
+    let values = points.iter().flat_map(|point| [value_mm(&point.before), value_mm(&point.after)]);
+    let [low, high] = extent([0.0, 0.0], values.flatten());
     let margin = 0.06 * (high - low);
     let x = Scale::new(0.0, (points.len() - 1) as f64, LEFT, RIGHT);
     let y = Scale::new(if low < 0.0 { low - margin } else { 0.0 }, high + margin, top + 260, top);
@@ -61,8 +62,8 @@ fn draw(
     chart.marks.push(Mark::Horizontal(0.0, INK));
     let segments = points.chunk_by(|a, b| a.segment == b.segment).map(<[_]>::len);
     chart.by_segment(segments, PALE, |chart, range| {
-        chart.curve(range.clone().map(|k| [k as f64, value(&points[k].before) * 1e3]), RED);
-        chart.curve(range.map(|k| [k as f64, value(&points[k].after) * 1e3]), GREEN);
+        chart.curve(range.clone().filter_map(|k| Some([k as f64, value_mm(&points[k].before)?])), RED);
+        chart.curve(range.filter_map(|k| Some([k as f64, value_mm(&points[k].after)?])), GREEN);
     });
     chart.draw(canvas);
 }
@@ -79,7 +80,7 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
         let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
-        compensate(&run.job).unwrap()
+        compensate(&run.job)
     }
 
     #[test]
