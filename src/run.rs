@@ -55,6 +55,14 @@ impl Run {
         self
     }
 
+    /// The same run with the basins of the best placement refined once more where scores have to cover force errors of a
+    /// relative size, to see how far the optimum moves.
+    #[must_use]
+    pub fn with_sensitivity(mut self, force_error: f64) -> Self {
+        Arc::make_mut(&mut self.run).search.sensitivity = Some(force_error);
+        self
+    }
+
     /// What is to be solved.
     pub fn problem(&self) -> &Problem {
         &self.run.problem
@@ -87,7 +95,8 @@ impl Run {
         let Placed { outcome, stability } = study::place(&self.run, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
         let warnings = outcome.warnings.clone();
-        let context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        context.notes.extend(outcome.notes.iter().cloned());
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
     }
 
@@ -113,10 +122,11 @@ impl Run {
     /// # Errors
     /// [`Error::Infeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
-        let Scored { score, stability, notes } = study::score(&self.run, placement)?;
+        let Scored { score, stability, notes } = study::score(&self.run, placement, &Monitor::silent())?;
         let warnings = score.warnings.clone();
         let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         context.notes.extend(notes);
+        context.notes.extend(score.notes.iter().cloned());
         Ok(PlacementScore { score, context })
     }
 

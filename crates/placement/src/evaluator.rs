@@ -141,7 +141,7 @@ impl<'a> Evaluator<'a> {
 
     /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of them are
     /// improved first, those that end at the same place are taken once, and where the planner does not find what the table
-    /// promised, the start may go on instead.
+    /// promised, the start may go on instead. Once the caller asks to stop, candidates go on as they are.
     pub fn select_basins(
         &self,
         sorted: Vec<Candidate>,
@@ -149,7 +149,7 @@ impl<'a> Evaluator<'a> {
         max_count: usize,
         monitor: &Monitor,
     ) -> SelectedBasins {
-        let Some(table) = self.table else {
+        let Some(table) = self.table.filter(|_| !monitor.should_stop()) else {
             let mut basins = sorted;
             if basins.first().is_some_and(|best| best.objective.mean().is_some()) {
                 basins.truncate(max_count);
@@ -174,6 +174,9 @@ impl<'a> Evaluator<'a> {
             .map_init(
                 || self.workspace(),
                 |workspace, (start, end)| {
+                    if monitor.should_stop() {
+                        return (end.clone(), 0);
+                    }
                     let mut plan = |from: &Candidate| Candidate {
                         objective: self.planned_objective(&from.placement, from.scheme.as_deref(), workspace),
                         ..from.clone()
@@ -219,29 +222,35 @@ impl<'a> Evaluator<'a> {
             Some(space) if !monitor.should_stop() => {
                 let scheme = start.scheme.as_deref();
                 let (placement, objective, evaluations) =
-                    table.coordinate_search(&start.placement, sense, scheme, &self.grid, space);
+                    table.coordinate_search(&start.placement, sense, scheme, &self.grid, space, monitor);
                 (Candidate { placement, objective, ..start.clone() }, evaluations)
             }
             _ => (start.clone(), 0),
         }
     }
 
-    /// States what the planner says of the best of every generation in place of what the table said of it.
-    pub fn check(&self, history: &mut [Generation], best: &[Candidate], sense: Sense) {
+    /// States what the planner says of the best of every generation in place of what the table said of it, unless the caller asks
+    /// to stop before that.
+    pub fn check(&self, history: &mut [Generation], best: &[Candidate], sense: Sense, monitor: &Monitor) {
         if self.table.is_none() {
             return;
         }
         let is_new = |k: &usize| *k == 0 || best[*k].placement != best[*k - 1].placement;
         let new: Vec<usize> = (0..best.len()).filter(is_new).collect();
-        let worths: Vec<Objective> = new
+        let planned: Option<Vec<Objective>> = new
             .par_iter()
             .map_init(
                 || self.workspace(),
-                |workspace, k| self.planned_objective(&best[*k].placement, best[*k].scheme.as_deref(), workspace),
+                |workspace, k| {
+                    let Candidate { placement, scheme, .. } = &best[*k];
+                    let plan = || self.planned_objective(placement, scheme.as_deref(), workspace);
+                    (!monitor.should_stop()).then(plan)
+                },
             )
             .collect();
+        let Some(planned) = planned else { return };
         let mut known: Option<Objective> = None;
-        let mut checked = new.iter().zip(worths).peekable();
+        let mut checked = new.iter().zip(planned).peekable();
         for (k, figures) in history.iter_mut().enumerate() {
             if let Some((_, objective)) = checked.next_if(|(place, _)| **place == k)
                 && known.is_none_or(|known| rank(sense, objective, known).is_lt())

@@ -7,6 +7,7 @@ use super::redundancy::NoFeasiblePlan;
 use rayon::prelude::*;
 use std::fmt;
 use stead_model::robot::{Posture, turns::Range};
+use stead_numerics::monitor::Monitor;
 
 /// What one posture gives at one point and beta.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,8 +72,12 @@ pub struct MapCell {
     pub posture: Posture,
 }
 
-/// The smallest score over the allowed postures for every path point and grid value of beta (Caro 2013, Fig. 7 and 9).
-pub fn deflection_map(problem: &Problem, placement: &Placement) -> DeflectionMap {
+/// States (path point, beta, all postures) that are still evaluated one by one after the caller has asked to stop: half a second's work.
+pub(super) const AFTER_STOP: usize = 50_000;
+
+/// The smallest score over the allowed postures for every path point and grid value of beta (Caro 2013, Fig. 7 and 9). `None` for a
+/// large map that the caller stops.
+pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<DeflectionMap> {
     let beta_count = problem.redundancy.beta_count;
     let cell = |point: usize, k: usize| {
         let all = explain(problem, placement, point, problem.redundancy.beta(k));
@@ -85,11 +90,11 @@ pub fn deflection_map(problem: &Problem, placement: &Placement) -> DeflectionMap
             nearest.and_then(Explanation::worst).map_or(ConstraintKind::Reach, Measured::kind)
         })
     };
-    let rows = (0..problem.task.points().len())
-        .into_par_iter()
-        .map(|point| (0..beta_count).map(|k| cell(point, k)).collect())
-        .collect();
-    DeflectionMap { beta_count, rows }
+    let points = problem.task.points().len();
+    let is_stopped = || points * beta_count > AFTER_STOP && monitor.should_stop();
+    let row = |point: usize| (!is_stopped()).then(|| (0..beta_count).map(|k| cell(point, k)).collect());
+    let rows: Option<Vec<Vec<_>>> = (0..points).into_par_iter().map(row).collect();
+    Some(DeflectionMap { beta_count, rows: rows? })
 }
 
 /// Neighbouring path points of one segment that fail for the same reason.
@@ -226,7 +231,7 @@ mod tests {
         let mut problem = five_segments();
         problem.redundancy.beta_count = 24;
         let placement = Placement::from([0.1, -1.9, -0.4, 1.0]);
-        let map = deflection_map(&problem, &placement);
+        let map = deflection_map(&problem, &placement, &Monitor::silent()).unwrap();
         let blocked = map.rows.iter().filter(|row| row.iter().all(Result::is_err)).count();
         let planner = Planner::new(&problem);
         let none = planner.plan(&placement, Sense::Min, None, &mut planner.workspace());

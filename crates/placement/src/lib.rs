@@ -8,6 +8,7 @@
 //! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
 //!   planner.
 //! - [`candidate`]: a placement with its objective value; [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
+//! - [`sensitivity`]: how a result answers to the stiffness of the joints and to errors of the force.
 //! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`sense`]: minimise or maximise.
 //!
@@ -31,6 +32,7 @@ pub mod redundancy;
 pub mod refine;
 pub mod search;
 pub mod sense;
+pub mod sensitivity;
 pub mod settings;
 pub mod symmetry;
 pub mod transfer;

@@ -1,15 +1,18 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::feasibility::DeflectionMap;
+use super::feasibility::{DeflectionMap, deflection_map};
 use super::lookup::{Accuracy, Shape};
-use super::problem::Placement;
+use super::problem::{Placement, Problem};
+use super::refine::active::ActiveBound;
 use super::sense::Sense;
+use super::sensitivity::ForceSensitivity;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +84,10 @@ impl DeflectionFigures {
 pub struct Plan {
     /// All path points.
     pub points: Vec<PlanPoint>,
+    /// How the mean of the scores answers to the stiffness of each joint ([`mean_by_stiffness`]): derivative by its logarithm. m
+    ///
+    /// [`mean_by_stiffness`]: super::sensitivity::mean_by_stiffness
+    pub mean_by_stiffness: [f64; 6],
     /// Posture of each segment.
     pub postures: Vec<Posture>,
     /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)); by default the mean. m
@@ -111,6 +118,8 @@ pub struct Case {
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
     pub cycle: Cycle,
+    /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima.
+    pub active_bounds: Vec<ActiveBound>,
 }
 
 impl Case {
@@ -215,8 +224,8 @@ pub struct Refinement {
     /// Convex subproblems solved.
     pub iterations: usize,
     /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit of
-    /// the variables (see [`super::refine`]).
-    pub kkt_residual: f64,
+    /// the variables (see [`super::refine`]); `None` where the refinement was stopped before its end.
+    pub kkt_residual: Option<f64>,
     /// How each round ended.
     pub statuses: Vec<RefinementStatus>,
 }
@@ -245,6 +254,9 @@ pub enum RefinementStatus {
     /// A state of the solution has no derivatives.
     #[error("a point cannot be linearised")]
     NotLinearised,
+    /// The caller stopped it.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// The lookup table that the searches used.
@@ -267,16 +279,35 @@ pub struct Outcome {
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.
     pub refinements: Vec<Refinement>,
-    /// Deflection map at the best placement.
-    pub map_best: DeflectionMap,
-    /// Deflection map at the worst placement.
-    pub map_worst: DeflectionMap,
+    /// Deflection maps at the best and at the worst placement, where they were made ([`Outcome::map`]).
+    pub maps: Option<[DeflectionMap; 2]>,
     /// Placements evaluated.
     pub evaluations: usize,
     /// States (path point, beta, all postures) evaluated.
     pub states: usize,
     /// Whether the user stopped the search before its end.
     pub interrupted: bool,
+    /// What the force errors do to the best placement, where that was asked for.
+    pub sensitivity: Option<ForceSensitivity>,
+    /// What should be known about the result though nothing is wrong, in sentences.
+    pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
+}
+
+impl Outcome {
+    /// Makes the deflection maps at the best and at the worst placement. A stop may leave them out, which is then among the warnings.
+    pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
+        let Cases { best, worst, .. } = &self.cases;
+        let map = |case: &Case| deflection_map(problem, &case.placement, monitor);
+        self.maps = map(best).zip(map(worst)).map(<[DeflectionMap; 2]>::from);
+        if self.maps.is_none() {
+            self.warnings.push(left_out("the deflection maps are"));
+        }
+    }
+}
+
+/// The warning that the caller's stop left something out.
+pub fn left_out(what: &str) -> Warning {
+    Warning::new("interrupted", format!("interrupted: {what} left out"))
 }

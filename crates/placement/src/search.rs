@@ -12,10 +12,10 @@
 //! seed alone and not on the number of threads.
 
 use super::candidate::{Candidate, Objective, rank};
-use super::evaluator::Evaluator;
+use super::evaluator::{self, Evaluator};
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
-use super::redundancy::Planner;
+use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use rand::{Rng, RngExt, SeedableRng};
@@ -23,6 +23,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -56,13 +57,17 @@ const BASIN: (f64, f64) = (0.25, 0.35);
 
 /// Basins kept in mind during the search.
 const ARCHIVE: usize = 64;
+/// A search stopped before it met a feasible candidate looks at this many more of them.
+const LAST_LOOK: usize = 16;
+/// The objective of a candidate that is not evaluated yet.
+const UNEVALUATED: Objective = Objective::Infeasible { points: usize::MAX, segments: 0 };
 
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> SearchResult {
     let problem = evaluator.planner().problem();
     let cell = &problem.cell;
     let mut population = initial(problem, settings, sense);
-    evaluate(evaluator, &mut population, 0);
+    evaluate(evaluator, &mut population, 0, monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -79,8 +84,8 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
                 .collect::<Vec<_>>();
             population.truncate(elite);
             population.extend(children);
-            evaluate(evaluator, &mut population, elite);
-            evaluations += settings.population - elite;
+            evaluate(evaluator, &mut population, elite, monitor);
+            evaluations += population.len() - elite;
         }
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
         archive.extend(population.iter().filter(|i| i.objective.mean().is_some()).cloned());
@@ -103,7 +108,7 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
     if archive.is_empty() {
         archive = distinct(cell, &population, ARCHIVE);
     }
-    evaluator.check(&mut history, &best, sense);
+    evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
     SearchResult {
@@ -123,15 +128,13 @@ pub fn pinned(planner: &Planner<'_>, placement: Placement, sense: Sense) -> Sear
     SearchResult { basins: vec![candidate], history, evaluations: 1, lookup_rejected: false, interrupted: false }
 }
 
-/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest alone.
-pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<Candidate>) {
-    candidates.par_iter_mut().for_each_init(
-        || planner.workspace(),
-        |workspace, candidate| {
-            let scheme = candidate.scheme.as_deref();
-            candidate.objective = planner.objective(&candidate.placement, Sense::Min, scheme, workspace);
-        },
-    );
+/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest alone. Once the
+/// caller asks to stop, two are enough.
+pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<Candidate>, monitor: &Monitor) {
+    let objective = |candidate: &Candidate, workspace: &mut redundancy::Workspace| {
+        planner.objective(&candidate.placement, Sense::Min, candidate.scheme.as_deref(), workspace)
+    };
+    evaluate_by(&|| planner.workspace(), &objective, candidates, 0, (2, monitor));
     candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
     let feasible = candidates.iter().filter(|candidate| candidate.objective.mean().is_some()).count();
     candidates.truncate(feasible.max(1));
@@ -184,11 +187,7 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
             });
             let scheme = (settings.postures == PostureSearch::Genetic)
                 .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
-            Candidate {
-                placement: Placement::from(placement),
-                scheme,
-                objective: Objective::Infeasible { points: usize::MAX, segments: 0 },
-            }
+            Candidate { placement: Placement::from(placement), scheme, objective: UNEVALUATED }
         })
         .collect()
 }
@@ -197,13 +196,37 @@ fn random_posture(random: &mut impl Rng) -> Posture {
     Posture::ALL[random.random_range(0..8)]
 }
 
-fn evaluate(evaluator: &Evaluator<'_>, population: &mut [Candidate], from: usize) {
-    population[from..].par_iter_mut().for_each_init(
-        || evaluator.workspace(),
-        |workspace, candidate| {
-            candidate.objective = evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace);
-        },
-    );
+fn evaluate(evaluator: &Evaluator<'_>, population: &mut Vec<Candidate>, from: usize, monitor: &Monitor) {
+    let objective = |candidate: &Candidate, workspace: &mut evaluator::Workspace| {
+        evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace)
+    };
+    evaluate_by(&|| evaluator.workspace(), &objective, population, from, (LAST_LOOK, monitor));
+}
+
+/// Evaluates all candidates from one on. Once the caller asks to stop, those not begun yet are taken out; only where nothing feasible
+/// was met, `last_look` of them are evaluated all the same.
+fn evaluate_by<W>(
+    workspace: &(impl Fn() -> W + Sync),
+    objective: &(impl Fn(&Candidate, &mut W) -> Objective + Sync),
+    candidates: &mut Vec<Candidate>,
+    from: usize,
+    (last_look, monitor): (usize, &Monitor),
+) {
+    let is_feasible = |candidate: &Candidate| candidate.objective.mean().is_some();
+    let is_met = AtomicBool::new(candidates[..from].iter().any(is_feasible));
+    let looked = AtomicUsize::new(0);
+    candidates[from..].par_iter_mut().for_each_init(workspace, |workspace, candidate| {
+        let is_enough = || is_met.load(Relaxed) || looked.fetch_add(1, Relaxed) >= last_look;
+        if monitor.should_stop() && is_enough() {
+            candidate.objective = UNEVALUATED;
+            return;
+        }
+        candidate.objective = objective(candidate, workspace);
+        if is_feasible(candidate) {
+            is_met.store(true, Relaxed);
+        }
+    });
+    candidates.retain(|candidate| candidate.objective != UNEVALUATED);
 }
 
 /// One child: of two parents, or a mutant of one.

@@ -35,6 +35,14 @@ pub struct SearchSettings {
     pub basins: usize,
     /// Whether to use a lookup table.
     pub tables: LookupUse,
+    /// The relative size of a force error for which the basins are refined once more, to see how far the optimum moves; none
+    /// where that is not asked.
+    pub sensitivity: Option<f64>,
+}
+
+impl SearchSettings {
+    /// The force error of a sensitivity analysis where no other is given.
+    pub const FORCE_ERROR: f64 = 0.1;
 }
 
 impl Default for SearchSettings {
@@ -47,6 +55,7 @@ impl Default for SearchSettings {
             postures: PostureSearch::Exact,
             basins: 4,
             tables: LookupUse::Auto,
+            sensitivity: None,
         }
     }
 }

@@ -73,6 +73,9 @@ pub enum Unsupported {
     /// The exact planner does not find what the lookup table promises: found out only after a search through it.
     #[error("what it promised was not to be had within the steps and turns of the joints")]
     Rejected,
+    /// The caller stopped the work before it was done.
+    #[error("it was interrupted before it was sampled")]
+    Interrupted,
 }
 
 /// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.

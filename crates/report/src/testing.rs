@@ -53,17 +53,17 @@ pub fn outcome() -> &'static Outcome {
             convergence.extend((0..=51).map(|k| generation(sense, end, k)));
         }
         let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
-        let (map_best, map_worst) = (best.map(), worst.map());
         Outcome {
             cases,
             lookup_summary: None,
             convergence,
             refinements,
-            map_best,
-            map_worst,
+            maps: Some([best.map(), worst.map()]),
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
+            sensitivity: None,
+            notes: Vec::new(),
             warnings: Vec::new(),
         }
     })
@@ -104,7 +104,7 @@ fn refinement(sense: Sense, case: &Case) -> Refinement {
         end_mean: case.plan.mean,
         rounds: 2,
         iterations: 17,
-        kkt_residual: 3.2e-10,
+        kkt_residual: Some(3.2e-10),
         statuses: vec![RefinementStatus::NoMoreGain, RefinementStatus::NoFirstOrderGain],
     }
 }
@@ -159,6 +159,7 @@ impl Grid {
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(&points),
             mean_deviation: None,
+            mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             points,
         };
         let transfer = |k: usize| {
@@ -167,7 +168,7 @@ impl Grid {
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
         };
         let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle }
+        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Vec::new() }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.

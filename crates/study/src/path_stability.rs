@@ -1,9 +1,13 @@
 //! Critical depths of cut along the plans of a placement.
 
+use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Plan, PlanPoint};
 use stead_placement::problem::{Placement, Problem};
 use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 use stead_simulation::stability_analysis::{CutStability, StabilityError};
+
+/// Points analysed between two questions whether to go on.
+const CHUNK: usize = 32;
 
 /// How deep may be cut along two plans before the cut chatters.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +19,7 @@ pub struct PathStability {
 }
 
 impl PathStability {
-    /// Critical depths at every point of two plans, each at its placement.
+    /// Critical depths at every point of two plans, each at its placement; `None` once the caller asks to stop.
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little of its masses, or a cut without width.
@@ -23,15 +27,24 @@ impl PathStability {
         problem: &Problem,
         analysis: &PathStabilityAnalysis,
         plans: [(&Placement, &Plan); 2],
-    ) -> Result<Self, StabilityError> {
-        let along = |(placement, plan): (&Placement, &Plan)| {
+        monitor: &Monitor,
+    ) -> Result<Option<Self>, StabilityError> {
+        let along = |(placement, plan): (&Placement, &Plan)| -> Result<_, StabilityError> {
             let feeds = problem.feeds(placement);
             let configuration =
                 |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
             let configurations: Vec<_> = plan.points.iter().map(configuration).collect();
-            analysis.along(&problem.robot, &problem.spindle, &configurations)
+            let mut depths = Vec::with_capacity(configurations.len());
+            for some in configurations.chunks(CHUNK) {
+                if monitor.should_stop() {
+                    return Ok(None);
+                }
+                depths.extend(analysis.along(&problem.robot, &problem.spindle, some)?);
+            }
+            Ok(Some(depths))
         };
         let [first, second] = plans;
-        Ok(Self { analysis: analysis.clone(), plans: [along(first)?, along(second)?] })
+        let both = along(first)?.zip(along(second)?).map(<[Vec<CutStability>; 2]>::from);
+        Ok(both.map(|plans| Self { analysis: analysis.clone(), plans }))
     }
 }

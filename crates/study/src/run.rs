@@ -2,8 +2,9 @@
 
 use super::PathStability;
 use stead_format::Run;
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
-use stead_placement::outcome::{Cases, Outcome, Plan};
+use stead_placement::outcome::{Cases, Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
 use stead_placement::problem::Placement;
 use stead_simulation::stability_analysis::StabilityError;
@@ -39,24 +40,32 @@ pub struct Scored {
     pub notes: Vec<String>,
 }
 
-/// Searches for the best and the worst placement. A stop that the monitor asks for leaves the best found so far.
+/// Searches for the best and the worst placement, and makes their maps unless the run file does without. A stop that the monitor asks
+/// for leaves the best found so far, without critical depths, and without maps of a long path.
 ///
 /// # Errors
 /// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
 pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
-    let outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
+    let mut outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
+    if run.maps {
+        outcome.map(&run.problem, monitor);
+    }
     let Cases { best, worst, .. } = &outcome.cases;
-    let stability = stability(run, [(&best.placement, &best.plan), (&worst.placement, &worst.plan)])?;
+    let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
+    let stability = stability(run, plans, &mut outcome.warnings, monitor)?;
+    outcome.interrupted |= monitor.should_stop();
     Ok(Placed { outcome, stability })
 }
 
-/// Plans a given placement, best and worst.
+/// Plans a given placement, best and worst. A stop that the monitor asks for leaves out the critical depths.
 ///
 /// # Errors
 /// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
-pub fn score(run: &Run, placement: &Placement) -> Result<Scored, RunError> {
-    let score = place::score(&run.problem, placement)?;
-    let stability = stability(run, [(placement, &score.best), (placement, &score.worst)])?;
+pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scored, RunError> {
+    let mut score = place::score(&run.problem, placement, &run.transfer, monitor)?;
+    let plans = [(placement, &score.best), (placement, &score.worst)];
+    let stability = stability(run, plans, &mut score.warnings, monitor)?;
+    score.interrupted = monitor.should_stop();
     let notes = outside_cell(run, placement).into_iter().collect();
     Ok(Scored { score, stability, notes })
 }
@@ -67,6 +76,17 @@ pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
     is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
 }
 
-fn stability(run: &Run, plans: [(&Placement, &Plan); 2]) -> Result<Option<PathStability>, StabilityError> {
-    run.path_stability.as_ref().map(|analysis| PathStability::along(&run.problem, analysis, plans)).transpose()
+/// The critical depths along two plans, where the run file asks for them; a stop leaves them out, which is then warned of.
+fn stability(
+    run: &Run,
+    plans: [(&Placement, &Plan); 2],
+    warnings: &mut Vec<Warning>,
+    monitor: &Monitor,
+) -> Result<Option<PathStability>, StabilityError> {
+    let Some(analysis) = &run.path_stability else { return Ok(None) };
+    let found = PathStability::along(&run.problem, analysis, plans, monitor)?;
+    if found.is_none() {
+        warnings.push(left_out("the critical depths along the path are"));
+    }
+    Ok(found)
 }

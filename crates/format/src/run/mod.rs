@@ -3,6 +3,7 @@
 mod certificate;
 mod criterion;
 mod notes;
+mod output;
 mod stability;
 mod tables;
 #[cfg(test)]
@@ -10,6 +11,7 @@ mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
+pub use output::OutputTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable};
 
@@ -68,6 +70,8 @@ pub struct RunFile {
     pub cut: Option<CutTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,
+    /// What is made beside the plans.
+    pub output: Option<OutputTable>,
     /// Published figures to print beside ours.
     pub reference: Option<ReferenceTable>,
 }
@@ -83,6 +87,8 @@ pub struct Run {
     pub transfer: TransferSettings,
     /// The certificate, where one is asked for.
     pub certificate: Option<CertificateSettings>,
+    /// Whether deflection maps are made.
+    pub maps: bool,
     /// The files that were read, in the order config, robot, task.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
@@ -119,6 +125,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
     let search = run.search.unwrap_or_default().settings();
     let transfer = run.transfer.unwrap_or_default().settings();
+    let maps = run.output.unwrap_or_default().maps();
     let certificate = run.certificate.map(|table| table.settings());
     let limit = certificate.and_then(|settings| settings.time_limit);
     let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
@@ -158,7 +165,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, inputs, reference, path_stability, notes })
+    Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
 }
 
 /// Puts the forces to the path: those of the file, or those of the cutter and its cut, which may be there for the stability

@@ -158,6 +158,7 @@ impl SearchTable {
             postures: self.postures.map_or(default.postures, |word| word.0),
             basins: self.basins.map_or(default.basins, Whole::count),
             tables: self.tables.map_or(default.tables, |word| word.0),
+            sensitivity: default.sensitivity,
         }
     }
 }

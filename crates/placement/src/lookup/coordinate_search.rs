@@ -11,6 +11,7 @@ use crate::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;
 use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
 
 /// First steps: radius (m), height (m), yaw (rad).
 const FIRST: [f64; 3] = [0.03, 0.03, 0.06];
@@ -25,7 +26,7 @@ const MAX_EVALUATIONS: usize = 150;
 
 impl LookupTable<'_> {
     /// The best placement (in the given sense) that steps from `start` (x, y, z in m, yaw in rad) lead to, its
-    /// objective by the table, and the number of placements evaluated; never worse than the start.
+    /// objective by the table, and the number of placements evaluated; never worse than the start. A stop ends it.
     pub fn coordinate_search(
         &self,
         start: &Placement,
@@ -33,12 +34,14 @@ impl LookupTable<'_> {
         scheme: Option<&[Posture]>,
         grid: &BetaGrid,
         workspace: &mut Workspace,
+        monitor: &Monitor,
     ) -> (Placement, Objective, usize) {
         let mut best = *start;
         let mut objective = self.objective(start, grid, scheme, workspace);
         let mut evaluations = 1;
         let mut steps = FIRST;
-        while evaluations < MAX_EVALUATIONS && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
+        let may_go_on = |evaluations: usize| evaluations < MAX_EVALUATIONS && !monitor.should_stop();
+        while may_go_on(evaluations) && (0..3).any(|k| steps[k].abs() > LAST * FIRST[k]) {
             for k in 0..3 {
                 let found = [1.0, -1.0].into_iter().any(|side| {
                     let placement = self.moved(&best, k, side * steps[k]);

@@ -35,6 +35,7 @@ use super::symmetry::{Unsupported, Upright, require_certain_compliances, require
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use stead_model::robot::turns::Range;
+use stead_numerics::monitor::Monitor;
 
 /// Largest size of a table. Bytes
 pub const MAX_BYTES: u64 = 1 << 30;
@@ -101,9 +102,17 @@ impl<'a> LookupTable<'a> {
     /// # Errors
     /// [`Unsupported`], with the reason.
     pub fn new(problem: &'a Problem) -> Result<Self, Unsupported> {
+        Self::monitored(problem, &Monitor::silent())
+    }
+
+    /// As [`LookupTable::new`], until the caller asks to stop.
+    ///
+    /// # Errors
+    /// [`Unsupported`], with the reason, one of which is [`Unsupported::Interrupted`].
+    pub fn monitored(problem: &'a Problem, monitor: &Monitor) -> Result<Self, Unsupported> {
         let shape = Self::shape_for(problem)?;
         let sense = Upright::of(problem)?.sense;
-        let (data, alive) = sample::sample(problem, &shape, sense);
+        let (data, alive) = sample::sample(problem, &shape, sense, monitor).ok_or(Unsupported::Interrupted)?;
         // Exactly upright, so that a level path is level to the last bit.
         let r = problem.robot.geometry().base_from_root.transpose();
         let root_from_base = Matrix3::new(r.m11, r.m12, 0.0, r.m21, r.m22, 0.0, 0.0, 0.0, r.m33.signum());

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use stead_model::robot::{Frames, Pose, PostureClass, Robot, conditioning::inverse_condition, turns::Range};
+use stead_numerics::monitor::Monitor;
 
 /// Fields of a row.
 pub(super) mod field {
@@ -26,11 +27,14 @@ const MIN_SLOPE: f64 = 0.05;
 /// Room is cut off at this.
 const MAX_ROOM: f64 = 0.5;
 
-/// All rows, and which of them (height, radius, posture class) have an allowed state.
-pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64) -> (Vec<f32>, Vec<bool>) {
+/// All rows, and which of them (height, radius, posture class) have an allowed state; `None` once the caller asks to stop.
+pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64, monitor: &Monitor) -> Option<(Vec<f32>, Vec<bool>)> {
     let (radii, block) = (shape.radius.count, shape.block());
     let mut data = vec![0.0_f32; shape.height.count * radii * 4 * block];
-    data.par_chunks_mut(4 * block).enumerate().for_each(|(index, rows)| {
+    data.par_chunks_mut(4 * block).enumerate().try_for_each(|(index, rows)| {
+        if monitor.should_stop() {
+            return None;
+        }
         let (height, radius) = (shape.height.node(index / radii), shape.radius.node(index % radii));
         for heading in 0..shape.headings {
             let angle = shape.heading_step() * heading as f64;
@@ -43,10 +47,11 @@ pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64) -> (Vec<f32>,
                 }
             }
         }
-    });
+        Some(())
+    })?;
     data.par_chunks_mut(radii * 4 * block).for_each(|slice| fill(shape, slice));
     let alive = data.par_chunks(block).map(|row| room(shape, row).iter().any(|room| *room >= 0.0)).collect();
-    (data, alive)
+    Some((data, alive))
 }
 
 fn room<'r>(shape: &Shape, row: &'r [f32]) -> &'r [f32] {

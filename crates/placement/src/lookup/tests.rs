@@ -14,6 +14,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::{PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
+use stead_numerics::monitor::Monitor;
 
 /// Errors in all directions counted.
 fn robust() -> Problem {
@@ -253,7 +254,8 @@ fn coordinate_search_gets_better_inside_the_cell() {
     for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let start = Placement::from(start);
         let before = table.objective(&start, &grid, None, &mut workspace);
-        let (end, objective, evaluations) = table.coordinate_search(&start, sense, None, &grid, &mut workspace);
+        let (end, objective, evaluations) =
+            table.coordinate_search(&start, sense, None, &grid, &mut workspace, &Monitor::silent());
         assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
         assert_eq!(objective, table.objective(&end, &grid, None, &mut workspace));
         assert!(problem.cell.contains(&end), "{end:?}");

@@ -4,6 +4,16 @@ use super::super::settings::{LookupUse, PostureSearch};
 use super::super::symmetry::Unsupported;
 use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
+use crate::criterion::Weights;
+use crate::evaluate::reference::state;
+use crate::evaluator::Evaluator;
+use crate::lookup::LookupTable;
+use crate::outcome::{Plan, PlanPoint};
+use crate::problem::{Cell, Interval, Placement};
+use crate::redundancy::Planner;
+use crate::search;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
@@ -96,8 +106,12 @@ fn stopping_early_still_returns_a_result() {
     problem.redundancy.beta_count = 24;
     let outcome = place(&problem, &small(), &TransferSettings::default(), &stopped).unwrap();
     assert!(outcome.interrupted && outcome.refinements.is_empty());
-    // Two populations, and what is planned of them.
-    assert!((33..=36).contains(&outcome.evaluations), "{}", outcome.evaluations);
+    // Of two populations of 16 the search stops at the first that is feasible; nothing else is planned to rank them.
+    assert!((2..=32).contains(&outcome.evaluations), "{}", outcome.evaluations);
+    let mean = |case: &Case| case.plan.mean;
+    let Cases { best, best_worst_plan, worst, .. } = &outcome.cases;
+    assert!(mean(best) <= mean(best_worst_plan) && mean(best) <= mean(worst) * (1.0 + 1e-9));
+    assert_eq!(best.plan.points.len(), 105);
 }
 
 /// Mean of |normal part| over a plan, with other compliances.
@@ -112,7 +126,13 @@ fn the_mean_errs_as_all_its_points_together() {
     let mut problem = with_uncertainty(five_segments(), 0.1);
     problem.redundancy.beta_count = 40;
     let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
+    let scored = score(
+        &problem,
+        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
+        &TransferSettings::default(),
+        &Monitor::silent(),
+    )
+    .unwrap();
     let nominal = problem.robot.constant_compliances().unwrap();
     for plan in [&scored.best, &scored.worst] {
         // The mean moved along each independent error; small steps, so that no normal part changes its sign.
@@ -137,7 +157,97 @@ fn the_mean_errs_as_all_its_points_together() {
 fn score_agrees_with_the_prototype() {
     let problem = five_segments();
     let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(&problem, &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw }).unwrap();
+    let scored = score(
+        &problem,
+        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
+        &TransferSettings::default(),
+        &Monitor::silent(),
+    )
+    .unwrap();
     assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
     assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
+}
+
+/// A problem drawn by number: its cell, its arm's speeds, and its rate of beta against the spacing of its points.
+fn drawn(number: u64) -> Problem {
+    let mut random = ChaCha8Rng::seed_from_u64(number);
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = [18, 24, 36][random.random_range(0..3)];
+    // From a quarter of a step of the grid between neighbours to four steps.
+    let spacing = problem.step_length(1);
+    let steps = [0.25, 0.6, 1.0, 1.7, 4.0][random.random_range(0..5)];
+    problem.redundancy.max_beta_rate = steps * problem.redundancy.beta_step() / spacing;
+    let speed = random.random_range(0.02..0.6);
+    let joints =
+        problem.robot.joints().clone().map(|joint| stead_model::robot::Joint { max_speed: Some(speed), ..joint });
+    problem.robot = stead_model::robot::Robot::new("drawn", joints).unwrap();
+    problem.constraints.min_inverse_condition = random.random_range(0.1..0.25);
+    problem.cell = Cell::at(&Placement {
+        x: random.random_range(-0.4..0.4),
+        y: random.random_range(-2.5..-1.4),
+        z: random.random_range(-0.9..0.6),
+        yaw: random.random_range(-3.1..3.1),
+    });
+    problem
+}
+
+#[test]
+fn what_score_finds_feasible_place_finds_in_a_pinned_cell() {
+    let mut feasible = 0;
+    for number in 0..60 {
+        let problem = drawn(number);
+        let placement = problem.cell.pinned().unwrap();
+        let (transfer, silent) = (TransferSettings::default(), Monitor::silent());
+        let scored = score(&problem, &placement, &transfer, &silent);
+        let placed = place(&problem, &small(), &transfer, &silent);
+        match (scored, placed) {
+            (Ok(scored), Ok(placed)) => {
+                feasible += 1;
+                assert_eq!(placed.evaluations, 1);
+                assert_eq!(placed.cases.best.placement, placement);
+                let difference = (placed.cases.best.plan.mean - scored.best.mean).abs();
+                assert!(difference < 1e-9 * 1e-3 + 1e-10, "{number}: {difference}");
+            }
+            (Err(scored), Err(placed)) => assert_eq!(scored.findings, placed.findings),
+            (scored, placed) => panic!("{number}: {} {}", scored.is_ok(), placed.is_ok()),
+        }
+    }
+    assert!((10..55).contains(&feasible), "{feasible}");
+}
+
+#[test]
+fn score_agrees_with_place_at_every_placement() {
+    for (number, weights) in [(0, Weights::WALL), (1, Weights::TOTAL), (2, Weights::AXIS)] {
+        let mut problem = five_segments();
+        problem.redundancy.beta_count = 36;
+        problem.criterion.weights = weights;
+        let settings = SearchSettings { seed: number, ..small() };
+        let (transfer, silent) = (TransferSettings::default(), Monitor::silent());
+        let placed = place(&problem, &settings, &transfer, &silent).unwrap().cases;
+        for (best, worst) in [(&placed.best, &placed.best_worst_plan), (&placed.worst, &placed.worst_worst_plan)] {
+            let scored = score(&problem, &best.placement, &transfer, &silent).unwrap();
+            for (case, plan) in [(best, &scored.best), (worst, &scored.worst)] {
+                // To the digits of the files, in mm.
+                let printed = |mean: f64| (mean * 1e10).round();
+                assert_eq!(printed(case.plan.mean), printed(plan.mean), "{weights:?} case {}", case.number());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_coarse_grid_does_not_refuse_what_is_feasible() {
+    // So coarse that at many points no grid value of beta is allowed, or none can be reached from the one before.
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 4;
+    problem.redundancy.max_beta_rate *= 0.2;
+    problem.constraints.min_inverse_condition = 0.4;
+    problem.cell.position[0] = Interval { min: -0.01, max: 0.01 };
+    problem.cell.position[1] = Interval { min: -1.66, max: -1.64 };
+    let coarse = Planner::new(&problem);
+    let placement = Placement { x: 0.0, y: -1.65, z: -0.3, yaw: 1.5 };
+    let refused = coarse.objective(&placement, Sense::Min, None, &mut coarse.workspace()).mean().is_none();
+    let outcome = place(&problem, &small(), &TransferSettings::default(), &Monitor::silent());
+    assert!(refused, "the coarse grid gets through");
+    assert!(outcome.is_ok(), "{}", outcome.unwrap_err());
 }

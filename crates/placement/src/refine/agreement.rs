@@ -9,6 +9,7 @@ use crate::problem::Placement;
 use crate::redundancy::{Planner, off_grid};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
 
 /// Objectives that agree to this are the same to whoever reads a result file. m
 const PRINTED: f64 = 1e-10;
@@ -20,8 +21,13 @@ const MAX_ROUNDS: usize = 24;
 const GAIN: f64 = 1e-6;
 
 /// The refined solution of a best placement, if the planner finds one that reads the same there; else the best that it finds in
-/// the neighbourhood.
-pub fn found_again(planner: &Planner<'_>, refined: Solution, scheme: Option<&[Posture]>) -> Solution {
+/// the neighbourhood, as far as it got when `monitor` asks to stop.
+pub fn found_again(
+    planner: &Planner<'_>,
+    refined: Solution,
+    scheme: Option<&[Posture]>,
+    monitor: &Monitor,
+) -> Solution {
     let plan = |placement: &Placement| {
         planned(planner, placement, scheme, off_grid::Spacing::full(planner.grid()), &mut planner.workspace())
     };
@@ -52,7 +58,7 @@ pub fn found_again(planner: &Planner<'_>, refined: Solution, scheme: Option<&[Po
             Some(better) => best = Some(better),
             None => step /= 3.0,
         }
-        if step < STEPS.1 {
+        if step < STEPS.1 || monitor.should_stop() {
             break;
         }
     }

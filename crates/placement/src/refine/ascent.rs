@@ -13,6 +13,7 @@ use super::subproblem::{Question, pose_bounds, pose_step, shortest, solve};
 use super::{Solution, planned};
 use nalgebra::{Matrix4, Vector4};
 use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
 
 /// The trust region at the start, at the most and at the end, in scaled variables.
 const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
@@ -23,8 +24,14 @@ const ARMIJO: f64 = 0.05;
 /// A promised gain of less than this share of the mean ends it.
 const MIN_PROMISE: f64 = 1e-6;
 
-/// Climbs from a solution; never returns a lower one.
-pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Run {
+/// Climbs from a solution until it is at the top or the caller asks to stop; never returns a lower one.
+pub fn run(
+    planner: &Planner<'_>,
+    start: &Solution,
+    scheme: Option<&[Posture]>,
+    workspace: &mut Workspace,
+    monitor: &Monitor,
+) -> Run {
     let problem = planner.problem();
     let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = start.clone();
@@ -38,6 +45,9 @@ pub fn run(planner: &Planner<'_>, start: &Solution, scheme: Option<&[Posture]>, 
     while trust >= TRUST.2 {
         if iterations == MAX_ITERATIONS {
             return ended(best, iterations, RefinementStatus::MaxIterations);
+        }
+        if monitor.should_stop() {
+            return ended(best, iterations, RefinementStatus::Interrupted);
         }
         iterations += 1;
         let Some(step) = pose_step(problem, &best.placement, &gradient, &curvature, trust) else {
@@ -95,8 +105,13 @@ const SAMPLING: f64 = 2e-3;
 ///
 /// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the best
 /// plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector that a
-/// convex combination of them makes with the outward normals of the cell's active bounds.
-pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&[Posture]>) -> f64 {
+/// convex combination of them makes with the outward normals of the cell's active bounds. `None` once the caller asks to stop.
+pub fn kkt_residual(
+    planner: &Planner<'_>,
+    solution: &Solution,
+    scheme: Option<&[Posture]>,
+    monitor: &Monitor,
+) -> Option<f64> {
     let problem = planner.problem();
     let mut workspace = planner.workspace();
     let bounds = pose_bounds(problem, &solution.placement);
@@ -109,11 +124,14 @@ pub fn kkt_residual(planner: &Planner<'_>, solution: &Solution, scheme: Option<&
                 normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
                 continue;
             }
+            if monitor.should_stop() {
+                return None;
+            }
             let mut placement = solution.placement;
             placement[k] += side * SAMPLING * UNITS[k];
             let near = planned(planner, &placement, scheme, off_grid::Spacing::full(planner.grid()), &mut workspace);
             gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
         }
     }
-    shortest(&gradients, &normals)
+    Some(shortest(&gradients, &normals))
 }

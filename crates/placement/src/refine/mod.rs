@@ -17,6 +17,7 @@
 //! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
 //! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
 
+pub mod active;
 mod agreement;
 pub mod ascent;
 pub mod linearise;
@@ -31,6 +32,7 @@ use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
 use super::sense::Sense;
 use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
 
 /// The unit of position in scaled variables. m
 pub const LENGTH_UNIT: f64 = 0.1;
@@ -71,12 +73,13 @@ pub fn planned(
 }
 
 /// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the placement has no
-/// plan to start from.
+/// plan to start from. Once the caller asks to stop, it ends with what it has.
 pub fn refine(
     evaluator: &Evaluator<'_>,
     start: &Placement,
     sense: Sense,
     scheme: Option<&[Posture]>,
+    monitor: &Monitor,
 ) -> Option<(Solution, Refinement)> {
     let planner = evaluator.planner();
     let problem = planner.problem();
@@ -92,25 +95,25 @@ pub fn refine(
         end_mean: best.objective,
         rounds: 0,
         iterations: 0,
-        kkt_residual: f64::INFINITY,
+        kkt_residual: None,
         statuses: Vec::new(),
     };
     let is_cancelled = |solution: &Solution| solution.objective <= CANCELLATION;
     if is_cancelled(&best) {
         report.statuses.push(RefinementStatus::Cancelled);
     }
-    while report.rounds < ROUNDS && !is_cancelled(&best) {
+    while report.rounds < ROUNDS && !is_cancelled(&best) && !monitor.should_stop() {
         report.rounds += 1;
         let before = best.objective;
         let signature = signature(&best);
         let (status, iterations) = match sense {
             Sense::Min => {
-                let run = solver::run(problem, &best);
+                let run = solver::run(problem, &best, monitor);
                 best = run.solution;
                 (run.status, run.iterations)
             }
             Sense::Max => {
-                let run = ascent::run(planner, &best, scheme, &mut workspace);
+                let run = ascent::run(planner, &best, scheme, &mut workspace, monitor);
                 best = run.solution;
                 (run.status, run.iterations)
             }
@@ -120,6 +123,7 @@ pub fn refine(
         // Plan anew at the new placement. For the best placement a better plan is welcome; for the worst one every plan is
         // already the best at its placement.
         if sense == Sense::Min
+            && !monitor.should_stop()
             && let Some(anew) = planned(planner, &best.placement, scheme, spacing, &mut workspace)
             && anew.objective < best.objective
         {
@@ -128,18 +132,22 @@ pub fn refine(
         let gained = (before - best.objective).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
-            match poll(evaluator, &best, sense, scheme, &mut workspace, &mut space) {
+            match poll(evaluator, &best, sense, scheme, (&mut workspace, &mut space), monitor) {
                 Some(better) => best = better,
                 None => break,
             }
         }
     }
     report.kkt_residual = match sense {
+        _ if monitor.should_stop() => None,
         // Nothing is smaller than nothing.
-        _ if is_cancelled(&best) => 0.0,
-        Sense::Min => subproblem::kkt_residual(problem, &best),
-        Sense::Max => ascent::kkt_residual(planner, &best, scheme),
+        _ if is_cancelled(&best) => Some(0.0),
+        Sense::Min => Some(subproblem::kkt_residual(problem, &best)),
+        Sense::Max => ascent::kkt_residual(planner, &best, scheme, monitor),
     };
+    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
+        report.statuses.push(RefinementStatus::Interrupted);
+    }
     report.end = best.placement;
     report.end_mean = best.objective;
     Some((best, report))
@@ -147,14 +155,14 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-/// The best neighbour along the placement axes, if it is better by more than [`GAIN`].
+/// The best neighbour along the placement axes, if it is better by more than [`GAIN`]; of those planned before a stop.
 fn poll(
     evaluator: &Evaluator<'_>,
     centre: &Solution,
     sense: Sense,
     scheme: Option<&[Posture]>,
-    workspace: &mut Workspace,
-    space: &mut evaluator::Workspace,
+    (workspace, space): (&mut Workspace, &mut evaluator::Workspace),
+    monitor: &Monitor,
 ) -> Option<Solution> {
     let planner = evaluator.planner();
     let problem = planner.problem();
@@ -176,6 +184,9 @@ fn poll(
                 // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
                 // next, sees to be no better.
                 let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
+                if monitor.should_stop() {
+                    return best;
+                }
                 if placement == centre.placement || here.zip(look(&placement)).is_some_and(is_no_better) {
                     continue;
                 }

@@ -12,6 +12,7 @@ use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
 };
 use argmin::kv;
+use stead_numerics::monitor::Monitor;
 
 /// argmin's state of this solver.
 pub type Iterate = IterState<Solution, (), (), (), (), f64>;
@@ -38,6 +39,7 @@ pub struct SequentialConvex<'a> {
     trust: f64,
     lazy: usize,
     status: Option<RefinementStatus>,
+    monitor: Monitor,
 }
 
 /// What a run returns.
@@ -51,18 +53,19 @@ pub struct Run {
     pub iterations: usize,
 }
 
-/// Runs the programme from a solution, without observers.
-pub fn run(problem: &Problem, start: &Solution) -> Run {
-    run_observed(problem, start, |executor| executor)
+/// Runs the programme from a solution, without observers, until it converges or the caller asks to stop.
+pub fn run(problem: &Problem, start: &Solution, monitor: &Monitor) -> Run {
+    run_observed(problem, start, monitor, |executor| executor)
 }
 
 /// Runs the programme with an executor that the caller may give observers.
 pub fn run_observed<'a>(
     problem: &'a Problem,
     start: &Solution,
+    monitor: &Monitor,
     observe: impl FnOnce(Executor<(), SequentialConvex<'a>, Iterate>) -> Executor<(), SequentialConvex<'a>, Iterate>,
 ) -> Run {
-    let solver = SequentialConvex { problem, trust: FIRST_TRUST, lazy: 0, status: None };
+    let solver = SequentialConvex { problem, trust: FIRST_TRUST, lazy: 0, status: None, monitor: monitor.clone() };
     let executor =
         Executor::new((), solver).configure(|state| state.param(start.clone()).max_iters(MAX_ITERATIONS)).timer(false);
     match observe(executor).run() {
@@ -89,6 +92,10 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
     fn next_iter(&mut self, _: &mut ArgminProblem<()>, mut state: Iterate) -> Result<(Iterate, Option<KV>), Error> {
         let known = state.take_param().ok_or_else(|| Error::msg("the iterate is missing"))?;
         let mean = known.objective;
+        if self.monitor.should_stop() {
+            self.status = Some(RefinementStatus::Interrupted);
+            return Ok((state.param(known).cost(mean), None));
+        }
         let Some(locals) = linearise(self.problem, &known, Curvature::Full) else {
             self.status = Some(RefinementStatus::NotLinearised);
             return Ok((state.param(known).cost(mean), None));
@@ -116,7 +123,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
 impl SequentialConvex<'_> {
     /// A better solution inside the trust region, which shrinks until there is one or it is gone; the linearisation stays.
     fn step(&mut self, known: &Solution, mean: f64, locals: &[Local]) -> Option<Solution> {
-        while self.trust >= LAST_TRUST {
+        while self.trust >= LAST_TRUST && !self.monitor.should_stop() {
             let question = Question { trust: self.trust, curved: true, pose_stays: false };
             let Ok(answer) = solve(self.problem, known, locals, question) else {
                 self.status = Some(RefinementStatus::SubproblemFailed);

@@ -12,6 +12,7 @@
 use super::super::criterion::Aggregate;
 use super::super::problem::{Interval, Placement, Problem};
 use super::super::redundancy::SegmentPlan;
+use super::active::{Limit, Side};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::{LENGTH_UNIT, Solution};
 use clarabel::algebra::CscMatrix;
@@ -45,6 +46,9 @@ pub struct Answer {
     pub promised: f64,
     /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
     pub pose_gradient: [f64; 4],
+    /// How much smaller the model's minimum becomes where a bound gives way, for every bound near enough to bind and every
+    /// point it holds at. m per scaled unit, or per unit of the constraint
+    pub multipliers: Vec<(Side, f64)>,
 }
 
 /// clarabel refused a subproblem or found no solution.
@@ -59,6 +63,8 @@ struct Rows {
     column: Vec<usize>,
     value: Vec<f64>,
     bound: Vec<f64>,
+    /// Which bound of the problem stands behind a row, ascending by row; none behind those of the model.
+    bounds: Vec<(usize, Side)>,
 }
 
 impl Rows {
@@ -73,11 +79,13 @@ impl Rows {
     }
 
     /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
-    fn add_between(&mut self, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
+    fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
         if high < swing {
+            self.bounds.push((self.bound.len(), Side { limit, is_upper: true }));
             self.add(terms.iter().copied(), high);
         }
         if -low < swing {
+            self.bounds.push((self.bound.len(), Side { limit, is_upper: false }));
             self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
         }
     }
@@ -150,9 +158,9 @@ impl Build<'_> {
     }
 
     /// `low <= terms <= high`, each side only if a step inside the trust region can reach it, twice over for safety.
-    fn add_between(&mut self, terms: &[(usize, f64)], low: f64, high: f64) {
+    fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64) {
         let swing = 2.0 * self.question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
-        self.rows.add_between(terms, low, high, swing);
+        self.rows.add_between(limit, terms, low, high, swing);
     }
 
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
@@ -174,18 +182,21 @@ impl Build<'_> {
             self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
+            self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::MaxDeflection, is_upper: true }));
             self.rows.add([(epigraph, 1.0)], limit / unit);
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
-        self.add_between(&Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
+        self.add_between(Limit::Conditioning, &Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
         if self.problem.constraints.min_base_distance > 0.0 {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
-            self.add_between(&Self::terms(i, &local.state.base_distance.gradient), -spare, f64::INFINITY);
+            let terms = Self::terms(i, &local.state.base_distance.gradient);
+            self.add_between(Limit::BaseDistance, &terms, -spare, f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
-            self.add_between(&Self::terms(i, &local.state.joints[j].gradient), joint.min - q, joint.max - q);
+            let terms = Self::terms(i, &local.state.joints[j].gradient);
+            self.add_between(Limit::Joint(j as u8 + 1), &terms, joint.min - q, joint.max - q);
         }
     }
 
@@ -195,7 +206,7 @@ impl Build<'_> {
             let turned = plan.betas[place] - plan.betas[place - 1];
             let limit = self.problem.beta_step_limit(i);
             let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
-            self.add_between(&row, -limit - turned, limit - turned);
+            self.add_between(Limit::BetaRate, &row, -limit - turned, limit - turned);
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
@@ -203,7 +214,7 @@ impl Build<'_> {
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
                 row.extend([(BETA + i, here[4]), (BETA + i - 1, -there[4])]);
                 let step = at.joints[j] - before.joints[j];
-                self.add_between(&row, -limits[j] - step, limits[j] - step);
+                self.add_between(Limit::JointStep(j as u8 + 1), &row, -limits[j] - step, limits[j] - step);
             }
         }
     }
@@ -212,8 +223,12 @@ impl Build<'_> {
     fn trust_region(&mut self) {
         let trust = self.question.trust;
         for (k, bounds) in pose_bounds(self.problem, &self.solution.placement).into_iter().enumerate() {
-            self.rows.add([(k, 1.0)], bounds.max.min(trust));
-            self.rows.add([(k, -1.0)], (-bounds.min).min(trust));
+            for (is_upper, sign, room) in [(true, 1.0, bounds.max), (false, -1.0, -bounds.min)] {
+                if room < trust {
+                    self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::ALL_WALLS[k], is_upper }));
+                }
+                self.rows.add([(k, sign)], room.min(trust));
+            }
         }
         for i in 0..self.locals.len() {
             self.rows.add([(BETA + i, 1.0)], trust);
@@ -275,7 +290,7 @@ impl Build<'_> {
             Aggregate::Max => linear[variables - 1] = 1.0,
         }
         let curvature = quadratic.matrix(variables);
-        let Rows { row, column, value, bound } = self.rows;
+        let Rows { row, column, value, bound, bounds } = self.rows;
         let matrix = CscMatrix::new_from_triplets(bound.len(), variables, row, column, value);
         let found = programme(&curvature, &linear, &matrix, &bound, cones)?;
         let value = match self.problem.criterion.aggregate {
@@ -295,6 +310,7 @@ impl Build<'_> {
             betas: found.x[BETA..BETA + n].to_vec(),
             promised: ((1.0 - value) * unit).max(0.0),
             pose_gradient,
+            multipliers: bounds.into_iter().map(|(row, side)| (side, found.z[row] * unit)).collect(),
         })
     }
 }

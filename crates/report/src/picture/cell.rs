@@ -8,7 +8,6 @@ use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::problem::Problem;
-use stead_placement::sense::Sense;
 
 const SIZE: Pixel = (1110, 1180);
 /// Left edges of the two columns of panels.
@@ -20,22 +19,44 @@ const SIDE: i32 = 455;
 /// Half the side of the square shown around the origin of the base frame. mm
 const BASE: f64 = 300.0;
 
+/// A placement that is shown.
+struct Shown<'a> {
+    case: &'a Case,
+    colour: Colour,
+    /// What its panel is called.
+    title: &'static str,
+    /// What its tool path is called.
+    path: &'static str,
+}
+
 /// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
 /// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
     let Cases { best, worst, .. } = &outcome.cases;
+    let best = Shown { case: best, colour: GREEN, title: "Best placement", path: "tool path at the best placement" };
+    let worst = Shown { case: worst, colour: RED, title: "Worst placement", path: "tool path at the worst placement" };
+    drawn(problem, &[best, worst])
+}
+
+/// The same with one given placement.
+pub fn cell_with(problem: &Problem, case: &Case) -> String {
+    drawn(problem, &[Shown { case, colour: GREEN, title: "This placement", path: "tool path at this placement" }])
+}
+
+fn drawn(problem: &Problem, all: &[Shown<'_>]) -> String {
     picture(SIZE, |canvas| {
         canvas.title("The cell from above, in the robot base frame", (COLUMNS[0], 24));
-        let near = Region::near(problem, [best, worst]);
-        overview(canvas, problem, [best, worst], &near);
-        legend(canvas, problem);
-        placement(canvas, problem, best, GREEN, near.panel(COLUMNS[0], ROWS[1]));
-        placement(canvas, problem, worst, RED, near.panel(COLUMNS[1], ROWS[1]))
+        let near = Region::near(problem, all);
+        overview(canvas, problem, all, &near);
+        legend(canvas, problem, all);
+        for (shown, left) in all.iter().zip(COLUMNS) {
+            placement(canvas, problem, shown, near.panel(left, ROWS[1]));
+        }
     })
 }
 
 /// The robot, its reach, the cell, and where the other panels are.
-fn overview(canvas: &mut Canvas, problem: &Problem, [best, worst]: [&Case; 2], near: &Region) {
+fn overview(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>], near: &Region) {
     let region = Region::whole(problem, near);
     let view = CellView { problem, panel: region.panel(COLUMNS[0], ROWS[0]) };
     canvas.text("Robot and cell", (COLUMNS[0], ROWS[0] - 18), TextStyle::new(13.0).bold().coloured(INK));
@@ -45,20 +66,17 @@ fn overview(canvas: &mut Canvas, problem: &Problem, [best, worst]: [&Case; 2], n
     canvas.outline(corner(near.from), corner(near.to), PALE);
     view.limits(canvas);
     view.base(canvas);
-    for (case, colour) in [(worst, RED), (best, GREEN)] {
-        view.path(canvas, case, colour);
-        view.origin(canvas, case);
+    for shown in all.iter().rev() {
+        view.path(canvas, shown.case, shown.colour);
+        view.origin(canvas, shown.case);
     }
     view.panel.draw_frame(canvas)
 }
 
 /// One placement with its surroundings.
-fn placement(canvas: &mut Canvas, problem: &Problem, case: &Case, colour: Colour, panel: Panel) {
-    let kind = match case.placement_sense {
-        Sense::Min => "Best",
-        Sense::Max => "Worst",
-    };
-    let title = format!("{kind} placement: mean {} mm", fixed(case.plan.mean * 1e3, 4));
+fn placement(canvas: &mut Canvas, problem: &Problem, shown: &Shown<'_>, panel: Panel) {
+    let Shown { case, colour, title, .. } = *shown;
+    let title = format!("{title}: mean {} mm", fixed(case.plan.mean * 1e3, 4));
     let (left, top) = (panel.x.start, panel.y.end);
     canvas.text(&title, (left, top - 38), TextStyle::new(13.0).bold().coloured(colour));
     let place = &case.placement;
@@ -75,15 +93,16 @@ fn placement(canvas: &mut Canvas, problem: &Problem, case: &Case, colour: Colour
     view.panel.draw_frame(canvas)
 }
 
-fn legend(canvas: &mut Canvas, problem: &Problem) {
+fn legend(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>]) {
     let (left, right, mut y) = (COLUMNS[1], COLUMNS[1] + 34, ROWS[0] + 12);
     let mut entry = |label: &str, sign: &dyn Fn(&mut Canvas, i32)| {
         sign(canvas, y);
         canvas.text(label, (right + 12, y), TextStyle::new(12.0));
         y += 28;
     };
-    entry("tool path at the best placement", &|canvas, y| canvas.line(&[(left, y), (right, y)], GREEN, 3));
-    entry("tool path at the worst placement", &|canvas, y| canvas.line(&[(left, y), (right, y)], RED, 3));
+    for shown in all {
+        entry(shown.path, &|canvas, y| canvas.line(&[(left, y), (right, y)], shown.colour, 3));
+    }
     entry("workpiece origin; below with the axes x and y", &|canvas, y| canvas.dot(exact((left + 17, y)), 4, INK));
     entry("where the workpiece origin may stand", &|canvas, y| canvas.dashed((left, y), (right, y), INK));
     if is_upright(problem) {
@@ -116,10 +135,10 @@ impl Region {
     }
 
     /// The cell, and of each case the tool path and the wrist centres that are drawn.
-    fn near(problem: &Problem, cases: [&Case; 2]) -> Self {
+    fn near(problem: &Problem, all: &[Shown<'_>]) -> Self {
         let [x, y, _] = problem.cell.position;
         let mut points = vec![[x.min * 1e3, y.min * 1e3], [x.max * 1e3, y.max * 1e3]];
-        for case in cases {
+        for Shown { case, .. } in all {
             points.extend(case.plan.points.iter().map(|point| top_view(&point.position)));
             points.extend(middles(problem, case).map(|point| top_view(&wrist_centre(problem, point))));
         }

@@ -27,12 +27,13 @@ const COLUMNS: usize = 240;
 
 /// A heat map of the smallest allowed score over path point and beta, with the best and the worst plan of that placement.
 /// States without an allowed posture have a pale ground that tells the reason. A path of more than 240 points is thinned
-/// out evenly, the plans are not.
-pub fn deflection_map(problem: &Problem, map: &DeflectionMap, best: &Case, worst: &Case) -> String {
-    picture(SIZE, |canvas| Picture::new(problem, map, best, worst).draw(canvas))
+/// out evenly, the plans are not. `place` is what the placement is called: "the best placement".
+pub fn deflection_map(problem: &Problem, map: &DeflectionMap, plans: [&Case; 2], place: &str) -> String {
+    picture(SIZE, |canvas| Picture::new(problem, map, plans, place).draw(canvas))
 }
 
 struct Picture<'a> {
+    place: &'a str,
     problem: &'a Problem,
     map: &'a DeflectionMap,
     best: &'a Case,
@@ -51,7 +52,7 @@ enum Cell {
 }
 
 impl<'a> Picture<'a> {
-    fn new(problem: &'a Problem, map: &'a DeflectionMap, best: &'a Case, worst: &'a Case) -> Self {
+    fn new(problem: &'a Problem, map: &'a DeflectionMap, [best, worst]: [&'a Case; 2], place: &'a str) -> Self {
         let points = map.rows.len();
         let x = Scale::new(-0.5, points as f64 - 0.5, LEFT, RIGHT);
         let y = Scale::new(-180.0, 180.0, BOTTOM, TOP);
@@ -62,7 +63,7 @@ impl<'a> Picture<'a> {
         ascending.sort_by(f64::total_cmp);
         let colours = ColourRange::below_peaks(0.0, &ascending);
         let cells = cells(map, &panel, colours);
-        Self { problem, map, best, worst, panel, colours, cells }
+        Self { place, problem, map, best, worst, panel, colours, cells }
     }
 
     fn draw(&self, canvas: &mut Canvas) {
@@ -82,9 +83,7 @@ impl<'a> Picture<'a> {
     }
 
     fn title(&self, canvas: &mut Canvas) {
-        let kind = names::sense(self.best.placement_sense);
-        let title = format!("Deflection at the {kind} placement");
-        canvas.title(&title, (LEFT, 24));
+        canvas.title(&format!("Deflection at {}", self.place), (LEFT, 24));
         let place = &self.best.placement;
         let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
         let (q4, yaw) = (fixed(place.q4(), 4), fixed(place.yaw.to_degrees(), 1));

@@ -28,7 +28,7 @@ mod plane_view;
 mod polar;
 mod simulation;
 
-pub use cell::cell;
+pub use cell::{cell, cell_with};
 pub use circularity_map::circularity_map;
 pub use compensation::compensation;
 pub use convergence::convergence;

@@ -11,9 +11,9 @@ use stead_study::PathStability;
 const LEFT: i32 = 95;
 const RIGHT: i32 = 970;
 
-/// Critical depth of cut over the points of the path, for the best and for the worst placement, and the depth of the cut at hand.
+/// Critical depth of cut over the points of the path, for two plans by their names, and the depth of the cut at hand.
 /// Where every depth examined is stable the curve runs along the top.
-pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> String {
+pub fn path_stability(stability: &PathStability, plans: [&Plan; 2], names: [&str; 2]) -> String {
     let (max_depth, cut) = (stability.analysis.max_depth, stability.analysis.cut.section.axial_depth);
     let depths = stability
         .plans
@@ -38,8 +38,8 @@ pub fn path_stability(stability: &PathStability, plans: [&Plan; 2]) -> String {
             canvas,
             52,
             &[
-                (LEFT, Sign::Line(GREEN), "best placement"),
-                (LEFT + 170, Sign::Line(RED), "worst placement"),
+                (LEFT, Sign::Line(GREEN), names[0]),
+                (LEFT + 170, Sign::Line(RED), names[1]),
                 (LEFT + 340, Sign::Dashed(INK), &format!("this cut, {} mm", fixed(cut * 1e3, 2))),
             ],
         );

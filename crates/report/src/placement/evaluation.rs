@@ -7,7 +7,7 @@ use crate::names;
 use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_placement::feasibility::{Explanation, Finding};
-use stead_placement::outcome::Plan;
+use stead_placement::outcome::{Cycle, Plan};
 use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::Placement;
 
@@ -18,7 +18,7 @@ const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
 
 /// What `stead score --json` prints, with the critical depths along both plans where they were asked for.
 pub fn score_json(score: &Score, context: &Context) -> Value {
-    let plan = |plan: &Plan| {
+    let plan = |plan: &Plan, cycle: &Cycle| {
         let mut value = json!({
             "objective_mm": Unit::DEFLECTION_MM.number(plan.objective),
             "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
@@ -27,6 +27,8 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
             "p95_mm": Unit::DEFLECTION_MM.number(plan.percentiles[1]),
             "deflection_mm": deflection_mm(&plan.deflection),
             "postures": plan.postures,
+            "cutting_s": Unit::TIME_S.number(cycle.cutting),
+            "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
         });
         put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
         value
@@ -35,8 +37,9 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
         "placement": placement_json(&score.placement),
         "placement_exact": placement_exact(&score.placement),
         "feasible": true,
-        "best": plan(&score.best),
-        "worst": plan(&score.worst),
+        "interrupted": score.interrupted,
+        "best": plan(&score.best, &score.cycles[0]),
+        "worst": plan(&score.worst, &score.cycles[1]),
     });
     if let Some(stability) = &context.stability {
         entries["stability"] = crate::stability::path::document(stability, true);
@@ -58,6 +61,7 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
         "placement": placement_json(&nothing.placement),
         "placement_exact": placement_exact(&nothing.placement),
         "feasible": false,
+        "interrupted": nothing.interrupted,
         "best": Value::Null,
         "worst": Value::Null,
         "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),

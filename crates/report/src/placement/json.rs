@@ -10,8 +10,10 @@ use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::lookup::Axis;
-use stead_placement::outcome::{Case, LookupSummary, Outcome, PlanPoint, Refinement, Transfer};
+use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan, PlanPoint, Refinement, Transfer};
 use stead_placement::problem::{Interval, Problem};
+use stead_placement::refine::active::ActiveBound;
+use stead_placement::sensitivity::ForceSensitivity;
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
@@ -59,6 +61,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
+    document.extend(outcome.sensitivity.as_ref().map(|found| ("sensitivity".to_owned(), sensitivity(found))));
     document.extend(
         context
             .stability
@@ -115,6 +118,8 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "p95_mm": number(Unit::DEFLECTION_MM, case.plan.percentiles[1]),
         "deflection_mm": deflection_mm(&case.plan.deflection),
         "postures": case.plan.postures,
+        "mean_by_stiffness": mean_by_stiffness(&case.plan),
+        "active_bounds": case.active_bounds.iter().map(active_bound).collect::<Vec<_>>(),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
         "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
@@ -124,6 +129,46 @@ fn case(case: &Case, with_plan: bool) -> Value {
         map.insert("plan".to_owned(), case.plan.points.iter().map(plan_point).collect());
     }
     value
+}
+
+/// What one per cent more stiffness of each joint does to the mean: mm, and per cent of the mean where that is not nothing.
+fn mean_by_stiffness(plan: &Plan) -> Value {
+    let entry = |(slope, joint): (&f64, usize)| {
+        let share = if plan.mean > CANCELLATION { json!(Unit::PLAIN.number(slope / plan.mean)) } else { Value::Null };
+        json!({ "joint": joint, "mm_per_percent": number(Unit::DEFLECTION_MM, slope / 100.0), "percent_per_percent": share })
+    };
+    plan.mean_by_stiffness.iter().zip(1..).map(entry).collect()
+}
+
+fn active_bound(bound: &ActiveBound) -> Value {
+    let (gain, unit) = names::gain(bound);
+    json!({
+        "bound": names::limit(bound.side.limit),
+        "side": if bound.side.is_upper { "upper" } else { "lower" },
+        "gain": GAIN.number(gain),
+        "unit": unit,
+    })
+}
+
+/// What moving a bound gains.
+const GAIN: Unit = Unit { factor: 1.0, decimals: 7 };
+
+/// How far the best placement moves where scores have to cover errors of the force.
+fn sensitivity(found: &ForceSensitivity) -> Value {
+    let figures = |[plain, with_errors]: [f64; 2]| {
+        json!({
+            "objective_mm": number(Unit::DEFLECTION_MM, plain),
+            "with_force_errors_mm": number(Unit::DEFLECTION_MM, with_errors),
+        })
+    };
+    json!({
+        "force_uncertainty": found.force_uncertainty,
+        "nominal": figures(found.nominal),
+        "robust": figures(found.robust),
+        "robust_placement": placement(&found.placement),
+        "distance_mm": number(Unit::PLACE_MM, found.distance),
+        "turn_deg": number(Unit::ANGLE_DEG, found.turn),
+    })
 }
 
 fn plan_point(point: &PlanPoint) -> Value {
@@ -159,7 +204,7 @@ fn refinement(refinement: &Refinement) -> Value {
         "end_mean_mm": number(Unit::DEFLECTION_MM, refinement.end_mean),
         "rounds": refinement.rounds,
         "iterations": refinement.iterations,
-        "kkt_residual_mm": number(Unit::RESIDUAL_MM, refinement.kkt_residual),
+        "kkt_residual_mm": optional(Unit::RESIDUAL_MM, refinement.kkt_residual),
         "status": names::statuses(&refinement.statuses),
     })
 }

@@ -18,7 +18,9 @@ use stead_format::Run;
 use stead_format::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::Warning;
-use stead_placement::outcome::{Cases, Outcome};
+use stead_placement::feasibility::DeflectionMap;
+use stead_placement::outcome::{Case, Cases, Outcome};
+use stead_placement::place::Score;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{SearchSettings, TransferSettings};
 use stead_study::PathStability;
@@ -62,11 +64,60 @@ impl Context {
     }
 }
 
+/// The files of the maps at the best and at the worst placement.
+const MAPS: [[&str; 2]; 2] =
+    [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
+
+/// Table and picture of a map with the best and the worst plan, under these names.
+fn map_files(
+    problem: &Problem,
+    map: &DeflectionMap,
+    plans: [&Case; 2],
+    names: [&'static str; 2],
+    place: &str,
+) -> Result<[(&'static str, Vec<u8>); 2], ReportError> {
+    let svg = picture::deflection_map(problem, map, plans, place);
+    Ok([(names[0], tables::deflection_map(problem, map)?), (names[1], svg.into_bytes())])
+}
+
+/// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
+/// `placement.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
+/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`. Returns the paths.
+///
+/// # Errors
+/// As [`write_placement`].
+pub fn write_score(
+    folder: &Folder,
+    problem: &Problem,
+    score: &Score,
+    map: Option<&DeflectionMap>,
+    context: &Context,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let [best, worst] = score.cases();
+    let mut files = vec![
+        ("best-plan.csv", tables::plan(&best.plan)?),
+        ("worst-plan.csv", tables::plan(&worst.plan)?),
+        ("score.json", bytes(&evaluation::score_json(score, context))),
+        ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
+    ];
+    let map_names = ["deflection-map.csv", "deflection-map.svg"];
+    match map {
+        Some(map) => files.extend(map_files(problem, map, [&best, &worst], map_names, "this placement")?),
+        None => map_names.into_iter().try_for_each(|name| folder.remove(name))?,
+    }
+    if let Some(stability) = &context.stability {
+        let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
+        files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
+    }
+    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+}
+
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`. Returns the paths in that order.
+/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`. Where there are no maps, those of an
+/// earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -78,8 +129,6 @@ pub fn write_placement(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
-    let map_best = picture::deflection_map(problem, &outcome.map_best, best, best_worst_plan);
-    let map_worst = picture::deflection_map(problem, &outcome.map_worst, worst, worst_worst_plan);
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
@@ -87,18 +136,23 @@ pub fn write_placement(
         ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
-        ("deflection-map-best.csv", tables::deflection_map(problem, &outcome.map_best)?),
-        ("deflection-map-worst.csv", tables::deflection_map(problem, &outcome.map_worst)?),
         ("transfers.csv", tables::transfers(&outcome.cases)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         ("summary.json", bytes(&summary)),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
-        ("deflection-map-best.svg", map_best.into_bytes()),
-        ("deflection-map-worst.svg", map_worst.into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
     if let Some(stability) = &context.stability {
-        files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan])?);
+        let (tables, names) = (["stability-best.csv", "stability-worst.csv"], ["best placement", "worst placement"]);
+        files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan], tables, names)?);
+    }
+    match &outcome.maps {
+        Some([map_best, map_worst]) => {
+            let plans = [[best, best_worst_plan], [worst, worst_worst_plan]];
+            files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
+            files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
+        }
+        None => MAPS.into_iter().flatten().try_for_each(|name| folder.remove(name))?,
     }
     files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
 }

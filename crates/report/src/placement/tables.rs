@@ -220,7 +220,7 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
         row.extend(placement(&refinement.end, false));
         row.push(Unit::DEFLECTION_MM.text(refinement.end_mean));
         row.extend([refinement.rounds.to_string(), refinement.iterations.to_string()]);
-        row.push(Unit::RESIDUAL_MM.text(refinement.kkt_residual));
+        row.push(refinement.kkt_residual.map_or(String::new(), |residual| Unit::RESIDUAL_MM.text(residual)));
         row.push(names::statuses(&refinement.statuses));
         row
     });

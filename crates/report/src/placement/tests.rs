@@ -102,7 +102,7 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
 
 #[test]
 fn maps_have_a_row_per_state_with_a_score_or_a_reason() {
-    let map = &outcome().map_best;
+    let [map, _] = outcome().maps.as_ref().unwrap();
     let table = rows(&tables::deflection_map(problem(), map).unwrap());
     assert_eq!(table[0].join(","), "point,segment,beta_deg,score_mm,posture,reason");
     assert_eq!(table.len(), 1 + 105 * 120);
@@ -191,7 +191,12 @@ fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
     let make = || {
         [
             picture::convergence(outcome()),
-            picture::deflection_map(problem(), &outcome().map_best, best, best_worst_plan),
+            picture::deflection_map(
+                problem(),
+                &outcome().maps.as_ref().unwrap()[0],
+                [best, best_worst_plan],
+                "the best placement",
+            ),
             picture::cell(problem(), outcome()),
         ]
     };

@@ -5,8 +5,10 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::outcome::Outcome;
+use stead_placement::outcome::{CANCELLATION, Case, Outcome, Plan};
 use stead_placement::problem::Problem;
+use stead_placement::refine::active::ActiveBound;
+use stead_placement::sensitivity::ForceSensitivity;
 use stead_placement::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
@@ -25,6 +27,14 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
     if let Some(reference) = &context.reference {
         line(&mut text, &format!("ref: {}", reference.source));
+    }
+    text.push('\n');
+    for case in [&outcome.cases.best, &outcome.cases.worst] {
+        line(&mut text, &held_by(case));
+    }
+    line(&mut text, &stiffest(&outcome.cases.best.plan));
+    if let Some(found) = &outcome.sensitivity {
+        line(&mut text, &sensitivity(found));
     }
     if let Some(stability) = &context.stability {
         text.push('\n');
@@ -53,6 +63,50 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         line(&mut text, "The search was stopped before its end: this is the best result so far.");
     }
     text
+}
+
+/// Bounds that are named; the others are counted.
+const NAMED: usize = 3;
+
+/// Which bounds hold a best or worst placement, and what moving them would gain.
+fn held_by(case: &Case) -> String {
+    let word = names::sense(case.placement_sense);
+    if case.active_bounds.is_empty() {
+        return format!("no bound holds the {word} placement: the robot and the path decide");
+    }
+    let name = |bound: &ActiveBound| {
+        let (gain, unit) = names::gain(bound);
+        let side = if bound.side.is_upper { "upper" } else { "lower" };
+        format!("{} ({side}: {} {unit})", names::limit(bound.side.limit), figures(gain))
+    };
+    let named: Vec<String> = case.active_bounds.iter().take(NAMED).map(name).collect();
+    let others = case.active_bounds.len().saturating_sub(NAMED);
+    let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+    format!("the {word} placement is held by {}{others}", named.join(", "))
+}
+
+/// The joint whose stiffness matters most to the best placement.
+fn stiffest(plan: &Plan) -> String {
+    let largest = plan.mean_by_stiffness.iter().zip(1..).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let (slope, joint): (f64, usize) = largest.map_or((0.0, 1), |(slope, joint)| (*slope, joint));
+    let share = if plan.mean > CANCELLATION { slope / plan.mean } else { 0.0 };
+    format!(
+        "joint {joint} matters most to it: with 1 % more stiffness the mean changes by {} % under the same plan",
+        figures(share)
+    )
+}
+
+/// What force errors do to the best placement.
+fn sensitivity(found: &ForceSensitivity) -> String {
+    let [[plain, with], [robust, robust_with]] =
+        [found.nominal, found.robust].map(|pair| pair.map(|value| fixed(value * 1e3, 4)));
+    format!(
+        "force errors of {} %: {plain} mm becomes {with} mm at the best placement; the best for these errors has {robust} mm and \
+         {robust_with} mm, {} mm and {} deg away",
+        figures(found.force_uncertainty * 100.0),
+        fixed(found.distance * 1e3, 1),
+        fixed(found.turn.to_degrees(), 1)
+    )
 }
 
 fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {

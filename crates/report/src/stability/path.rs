@@ -13,15 +13,20 @@ use stead_simulation::path_stability::smallest;
 use stead_simulation::stability_analysis::CutStability;
 use stead_study::PathStability;
 
-/// `stability-best.csv`, `stability-worst.csv` and `stability.svg` for the two plans.
+/// The tables of two plans by their file names and `stability.svg`, which calls the plans by other names.
 ///
 /// # Errors
 /// [`ReportError::Format`] when a file cannot be made.
-pub fn files(stability: &PathStability, plans: [&Plan; 2]) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
+pub fn files(
+    stability: &PathStability,
+    plans: [&Plan; 2],
+    tables: [&'static str; 2],
+    names: [&str; 2],
+) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
     Ok([
-        ("stability-best.csv", along(plans[0], &stability.plans[0])?),
-        ("stability-worst.csv", along(plans[1], &stability.plans[1])?),
-        ("stability.svg", picture::path_stability(stability, plans).into_bytes()),
+        (tables[0], along(plans[0], &stability.plans[0])?),
+        (tables[1], along(plans[1], &stability.plans[1])?),
+        ("stability.svg", picture::path_stability(stability, plans, names).into_bytes()),
     ])
 }
 

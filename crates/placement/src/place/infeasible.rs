@@ -1,0 +1,65 @@
+//! The placement that comes nearest, and why it is not allowed.
+
+use crate::feasibility::{AFTER_STOP, Finding, diagnose};
+use crate::problem::Placement;
+use crate::redundancy::Planner;
+use crate::sense::Sense;
+use stead_model::robot::Posture;
+use stead_numerics::monitor::Monitor;
+
+/// Why a placement job has no result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Infeasible {
+    /// The placement that comes nearest: of all tried the one with the fewest blocked points.
+    pub placement: Placement,
+    /// Whether it was the only one asked for, or the nearest of a search.
+    pub searched: bool,
+    /// Which constraint fails at which points there; of a search that was stopped, for some of the points.
+    pub findings: Vec<Finding>,
+    /// Whether the caller stopped the search before its end.
+    pub interrupted: bool,
+}
+
+impl std::fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Placement { x, y, z, .. } = self.placement;
+        if self.searched {
+            write!(f, "no feasible placement was found; the nearest is")?;
+        } else {
+            write!(f, "nothing is feasible at")?;
+        }
+        write!(
+            f,
+            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, Q4 = {:.4} (yaw {:.2} deg):",
+            x * 1e3,
+            y * 1e3,
+            z * 1e3,
+            self.placement.q4(),
+            self.placement.yaw.to_degrees()
+        )?;
+        self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
+        if self.searched {
+            write!(f, "\na search may miss a small feasible region: more population and generations look closer")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Infeasible {}
+
+/// Why a placement has no plan, in any posture or in a scheme of them. Once the caller asks to stop, some of its points tell it.
+pub(super) fn infeasible(
+    planner: &Planner<'_>,
+    placement: &Placement,
+    scheme: Option<&[Posture]>,
+    searched: bool,
+    monitor: &Monitor,
+) -> Infeasible {
+    let mut none = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace()).err();
+    let interrupted = monitor.should_stop();
+    if let (true, Some(none)) = (interrupted, &mut none) {
+        none.blocked_points.truncate(AFTER_STOP / planner.problem().redundancy.beta_count);
+    }
+    let findings = none.map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
+    Infeasible { placement: *placement, searched, findings, interrupted }
+}

@@ -1,0 +1,37 @@
+//! What should be known about a result.
+
+use crate::criterion::Criterion;
+use crate::outcome::{CANCELLATION, Plan};
+use crate::problem::Problem;
+use stead_numerics::digits::figures;
+use stead_numerics::message::Warning;
+
+/// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
+pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
+    (mean <= CANCELLATION && problem.criterion == Criterion::default()).then(|| {
+        let message = "the best plan cancels the deflection to nothing, which no real force will; \
+                       criterion.force_uncertainty makes the score the worst case over force errors";
+        Warning::new("cancellation", message)
+    })
+}
+
+/// A scored part below this share of the whole deflection is small.
+const SMALL_PART: f64 = 0.2;
+
+/// A note on a plan whose scored part is small beside the whole deflection: it may have been balanced against itself.
+pub(super) fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {
+    let (scored, total) = (plan.mean * 1e3, plan.deflection.total.mean * 1e3);
+    (problem.criterion.force_uncertainty == 0.0 && scored < SMALL_PART * total).then(|| {
+        format!(
+            "the scored part of the deflection, {} mm in the mean, is below a fifth of the whole, {} mm: a plan that balances one \
+             part leaves the rest; criterion.direction = \"total\" scores the whole, and criterion.force_uncertainty covers errors of \
+             the force",
+            figures(scored),
+            figures(total)
+        )
+    })
+}
+
+pub(super) fn interruption() -> Warning {
+    Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
+}

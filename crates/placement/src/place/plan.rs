@@ -1,0 +1,65 @@
+//! Plans with everything that there is to say of them.
+
+use crate::evaluate::reference::{scored_part_by_parameters, state};
+use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
+use crate::problem::{Placement, Problem};
+use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
+use crate::sense::Sense;
+use crate::sensitivity::mean_by_stiffness;
+use stead_model::robot::{Posture, angles::wrap};
+use stead_numerics::mean_max::percentile;
+
+/// The worst plan at a placement.
+pub(super) fn worst_plan(
+    planner: &Planner<'_>,
+    placement: &Placement,
+    scheme: Option<&[Posture]>,
+) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+    let spacing = off_grid::Spacing::full(planner.grid());
+    planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
+}
+
+/// A plan with everything that there is to say of each point, from the reference evaluator.
+pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
+    let mut points = Vec::with_capacity(problem.task.points().len());
+    let known = problem.robot.uncertainty();
+    let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
+    for (segment, plan) in plans.iter().enumerate() {
+        for (place, point) in plan.points.clone().enumerate() {
+            let Ok(s) = state(problem, point, placement, plan.betas[place], plan.posture) else { continue };
+            let placed = problem.placed(point, placement);
+            let sign = if s.scored < 0.0 { -1.0 } else { 1.0 };
+            for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {
+                *sum += sign * slope;
+            }
+            points.push(PlanPoint {
+                point,
+                segment: segment + 1,
+                position: placed.tip,
+                beta: wrap(plan.betas[place]),
+                posture: plan.posture,
+                joints: plan.joints[place],
+                inverse_condition: s.inverse_condition,
+                force: placed.force,
+                deflection: s.deflection,
+                feed_part: s.feed_part,
+                normal_part: s.normal_part,
+                axial_part: s.axial_part,
+                surface_part: s.surface_part,
+                score: s.score(),
+                deviation: s.deviation,
+            });
+        }
+    }
+    Plan {
+        postures: plans.iter().map(|plan| plan.posture).collect(),
+        objective: problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score))),
+        mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
+        max: points.iter().map(|p| p.score).fold(0.0, f64::max),
+        percentiles: [0.5, 0.95].map(|share| percentile(points.iter().map(|p| p.score), share)),
+        deflection: DeflectionFigures::of(&points),
+        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
+        mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
+        points,
+    }
+}

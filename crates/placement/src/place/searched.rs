@@ -1,0 +1,78 @@
+//! The searches for the best and the worst placement.
+
+use super::infeasible::{Infeasible, infeasible};
+use crate::candidate::Objective;
+use crate::evaluator::Evaluator;
+use crate::lookup::LookupTable;
+use crate::outcome::LookupSummary;
+use crate::redundancy::Planner;
+use crate::search::{self, SearchResult};
+use crate::sense::Sense;
+use crate::settings::{LookupUse, SearchSettings};
+use crate::symmetry::Unsupported;
+use stead_numerics::monitor::Monitor;
+
+/// What the searches of both senses come to.
+pub(super) struct Searched<'a> {
+    pub found: [SearchResult; 2],
+    pub table: Option<LookupTable<'a>>,
+    pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
+    pub evaluations: usize,
+}
+
+/// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last word on
+/// what is feasible.
+pub(super) fn search_cell<'a>(
+    finer: &Planner<'a>,
+    settings: &SearchSettings,
+    monitor: &Monitor,
+) -> Result<Searched<'a>, Infeasible> {
+    let problem = finer.problem();
+    if let Some(placement) = problem.cell.pinned() {
+        let found = Sense::BOTH.map(|sense| search::pinned(finer, placement, sense));
+        return match found[0].basins[0].objective {
+            Objective::Feasible(_) => Ok(Searched { found, table: None, lookup_summary: None, evaluations: 1 }),
+            Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false, monitor)),
+        };
+    }
+    let planner = Planner::new(problem);
+    let table = match settings.tables {
+        LookupUse::Auto | LookupUse::Always => Some(LookupTable::monitored(problem, monitor)),
+        LookupUse::Never => None,
+    };
+    let mut lookup_summary = table.as_ref().map(|table| match table {
+        Ok(table) => Ok(LookupSummary { shape: *table.shape(), accuracy: table.accuracy() }),
+        Err(unsuited) => Err(unsuited.clone()),
+    });
+    let mut table = table.and_then(Result::ok);
+    let search = |table: Option<&LookupTable<'_>>| {
+        let evaluator = Evaluator::new(&planner, table).with_finer_planner(finer);
+        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
+    };
+    let mut found = search(table.as_ref());
+    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
+    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
+        (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
+        found = search(None);
+        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+    }
+    let is_feasible = |f: &SearchResult| f.basins.first().is_some_and(|i| i.objective.mean().is_some());
+    if !found.iter().any(is_feasible) {
+        evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
+        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+            search::evaluate_finer(finer, sense, &mut found.basins, monitor);
+            found.basins.truncate(settings.basins);
+        }
+    }
+    // A search that met nothing feasible goes on from what the other met.
+    match found.each_ref().map(is_feasible) {
+        [true, true] => {}
+        [true, false] => found[1].basins = found[0].basins.clone(),
+        [false, true] => found[0].basins = found[1].basins.clone(),
+        [false, false] => {
+            let nearest = &found[0].basins[0];
+            return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
+        }
+    }
+    Ok(Searched { found, table, lookup_summary, evaluations })
+}
