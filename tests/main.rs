@@ -19,5 +19,6 @@ mod place;
 mod score_explain;
 mod simulate;
 mod stability;
+mod standard_output;
 mod starting;
 mod uncertainty;

@@ -19,6 +19,5 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     if options.json {
         return print_json(&score);
     }
-    print(score.to_string().as_bytes());
-    Ok(())
+    print(score.to_string().as_bytes())
 }
