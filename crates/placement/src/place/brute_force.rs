@@ -32,7 +32,8 @@ fn arms() -> [Robot; 3] {
 
 /// A straight cut and a quarter of a circle with the tool tilted along the cut, each with the normal of its floor.
 fn paths() -> [Task; 2] {
-    let force = |feed: Vector3<f64>| Wrench { force: feed * -90.0 + Vector3::new(30.0, 10.0, 60.0), moment: Vector3::zeros() };
+    let force =
+        |feed: Vector3<f64>| Wrench { force: feed * -90.0 + Vector3::new(30.0, 10.0, 60.0), moment: Vector3::zeros() };
     let task = |points: Vec<(u32, PathPoint)>| {
         let wrenches = points.iter().map(|(_, point)| force(point.feed)).collect();
         let normals = points.iter().map(|(_, point)| point.axis).collect();
@@ -46,7 +47,14 @@ fn paths() -> [Task; 2] {
         let (s, c) = libm::sincos(0.2 * f64::from(k));
         let tilt = 0.04 * f64::from(k);
         let (position, feed) = (Vector3::new(0.15 * s, -0.15 * c, 0.02), Vector3::new(c, s, 0.0));
-        (if k < 4 { 1 } else { 2 }, PathPoint { position, feed, axis: Vector3::z() * libm::cos(tilt) + feed.cross(&Vector3::z()) * libm::sin(tilt) })
+        (
+            if k < 4 { 1 } else { 2 },
+            PathPoint {
+                position,
+                feed,
+                axis: Vector3::z() * libm::cos(tilt) + feed.cross(&Vector3::z()) * libm::sin(tilt),
+            },
+        )
     });
     [task(straight.collect()), task(bent.collect())]
 }
@@ -63,7 +71,8 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
             (problem.robot, problem.task) = (robot.clone(), task);
             problem.redundancy.beta_count = 24;
             problem.redundancy.max_beta_rate *= 2.0;
-            problem.cell.position = [(-0.15, 0.15), (-1.75, -1.45), (-0.3, 0.0)].map(|(min, max)| Interval { min, max });
+            problem.cell.position =
+                [(-0.15, 0.15), (-1.75, -1.45), (-0.3, 0.0)].map(|(min, max)| Interval { min, max });
             problem.cell.yaw = Interval { min: 0.0, max: 1.2 };
             // Every direction and every aggregate with every arm and path would take minutes: each pair in turn.
             for (k, direction) in Direction::ALL.into_iter().enumerate() {
