@@ -19,6 +19,7 @@ mod place;
 mod score_explain;
 mod simulate;
 mod stability;
+mod standard_output;
 mod starting;
 mod stop;
 mod uncertainty;

@@ -17,6 +17,5 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     if options.json {
         return print_json(&circularity);
     }
-    print(format!("{circularity}{}", results_in(folder)).as_bytes());
-    Ok(())
+    print(format!("{circularity}{}", results_in(folder)).as_bytes())
 }

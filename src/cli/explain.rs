@@ -13,6 +13,5 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     if options.json {
         return print_json(&explanations);
     }
-    print(explanations.to_string().as_bytes());
-    Ok(())
+    print(explanations.to_string().as_bytes())
 }

@@ -14,6 +14,5 @@ pub(super) fn run(options: &InitOptions) -> Result<(), Failure> {
     let files = init(set, &options.folder).map_err(stead::Error::from)?;
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     let first = names.first().cloned().unwrap_or_default();
-    print(format!("written: {}\nnow run: stead {command} {first}\n", names.join(", ")).as_bytes());
-    Ok(())
+    print(format!("written: {}\nnow run: stead {command} {first}\n", names.join(", ")).as_bytes())
 }

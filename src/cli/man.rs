@@ -11,8 +11,7 @@ pub(super) fn run(options: &ManOptions) -> Result<(), Failure> {
     let folder = Folder::create(&options.folder).map_err(Failure::Output)?;
     let mut names = Vec::new();
     write_pages(&folder, command, &mut names)?;
-    print(format!("{} pages in {}\n", names.len(), folder.path().display()).as_bytes());
-    Ok(())
+    print(format!("{} pages in {}\n", names.len(), folder.path().display()).as_bytes())
 }
 
 /// Writes the page of a command, then those of the commands below it; `names` receives the files.

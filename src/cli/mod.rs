@@ -26,7 +26,7 @@ use arguments::{Arguments, Command};
 use clap::{CommandFactory, FromArgMatches};
 use serde::Serialize;
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stead::Warning;
@@ -111,10 +111,15 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell.
-fn print(text: &[u8]) {
+/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell. A disk that is full is one.
+fn print(text: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text).and_then(|()| out.flush());
+    match out.write_all(text).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Job(format!("the result cannot be written to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes a line to standard error.
@@ -166,13 +171,13 @@ impl OutFolder {
         is_json: bool,
         ending: impl FnOnce(String) -> String,
     ) -> Result<(), Failure> {
-        if is_json {
-            print_json(result)?;
+        let printed = if is_json {
+            print_json(result)
         } else {
             let place = written.as_ref().map_or_else(|_| String::new(), |_| self.path.display().to_string());
-            print(format!("{result}{}", ending(place)).as_bytes());
-        }
-        files_written(written)
+            print(format!("{result}{}", ending(place)).as_bytes())
+        };
+        files_written(written).and(printed)
     }
 }
 
@@ -184,8 +189,7 @@ fn files_written<T>(written: Result<T, impl Display>) -> Result<(), Failure> {
 /// Prints a result as one JSON document.
 fn print_json(result: &impl Serialize) -> Result<(), Failure> {
     let document = serde_json::to_value(result).map_err(|e| Failure::Job(e.to_string()))?;
-    print(&document::bytes(&document));
-    Ok(())
+    print(&document::bytes(&document))
 }
 
 /// Where results are, as the last line of a text, where they could be written.

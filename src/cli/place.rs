@@ -41,7 +41,8 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         let timing = placements.timing();
         let folder =
             written.as_ref().map_or_else(|_| String::new(), |()| format!("; results in {}", out.path.display()));
-        print(format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads).as_bytes());
+        let text = format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads);
+        written = written.and(print(text.as_bytes()));
     }
     say_warnings(placements.warnings());
 
@@ -57,11 +58,11 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         if let (false, Some(text), Some(certificate)) =
             (options.json, placements.certificate_text(), placements.certificate())
         {
-            print(format!("\n{text}in {:.1} s\n", certificate.wall).as_bytes());
+            written = written.and(print(format!("\n{text}in {:.1} s\n", certificate.wall).as_bytes()));
         }
     }
     if options.json {
-        print_json(&placements)?;
+        written = written.and(print_json(&placements));
     }
     written?;
     if placements.outcome().interrupted { Err(Failure::Interrupted) } else { Ok(()) }

@@ -38,7 +38,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     if options.json {
         print_json(&score)?;
     } else {
-        print(score.to_string().as_bytes());
+        print(score.to_string().as_bytes())?;
     }
     written?;
     if score.score().interrupted { Err(Failure::Interrupted) } else { Ok(()) }

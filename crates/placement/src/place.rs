@@ -134,4 +134,6 @@ fn force_sensitivity(
 }
 
 #[cfg(test)]
+mod brute_force;
+#[cfg(test)]
 mod tests;

@@ -47,21 +47,6 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_schemes_are_counted() {
-        let [three, four] = [Posture::ALL[2], Posture::ALL[3]];
-        assert_eq!(postures_within(&[three, three, four], 8), "3 3 4");
-        let long = [[three; 12].as_slice(), &[four; 18]].concat();
-        assert_eq!(postures_within(&long, 12), "3x12 4x18");
-        let mixed: Vec<_> = (0..40).map(|k| Posture::ALL[k % 8]).collect();
-        assert_eq!(postures_within(&mixed, 12), "40 segments");
-    }
-}
-
 /// A limit that can hold an optimum, by its key of the files where it has one.
 pub fn limit(limit: Limit) -> String {
     match limit {
@@ -89,5 +74,20 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
             (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
         }
         Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_schemes_are_counted() {
+        let [three, four] = [Posture::ALL[2], Posture::ALL[3]];
+        assert_eq!(postures_within(&[three, three, four], 8), "3 3 4");
+        let long = [[three; 12].as_slice(), &[four; 18]].concat();
+        assert_eq!(postures_within(&long, 12), "3x12 4x18");
+        let mixed: Vec<_> = (0..40).map(|k| Posture::ALL[k % 8]).collect();
+        assert_eq!(postures_within(&mixed, 12), "40 segments");
     }
 }

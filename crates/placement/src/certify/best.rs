@@ -13,7 +13,7 @@ use crate::settings::CertificateSettings;
 use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
-use stead_numerics::monitor::Monitor;
+use stead_numerics::monitor::{Monitor, Stop};
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean score, m)
 /// by more than the gap of the settings.
@@ -36,21 +36,19 @@ pub fn best(
     let (model, whole) = (Model::new(problem, with_rate), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len(), memory };
     // Of no placement anything is known until the tables are made.
-    let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
-        Ok(coarse) => coarse,
+    let ceiling = search.ceiling();
+    let mut nodes = 0;
+    let coarse = CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0));
+    let left = coarse.and_then(|coarse| survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor));
+    let left = match left {
+        Ok(left) => left,
         Err(stop) => {
             let open = vec![(whole, 0.0)];
             return Ok(Bound { value, met: None, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
         }
     };
-    let ceiling = search.ceiling();
-    let mut nodes = 0;
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
-    let start = survivors(&model, &coarse, whole, ceiling, &mut nodes)
-        .into_iter()
-        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
-        .collect();
-    drop(coarse);
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) }).collect();
     let all = Parts {
         start,
         nodes,
@@ -62,16 +60,23 @@ pub fn best(
 }
 
 /// The boxes that the coarse tables leave open.
+///
+/// # Errors
+/// Why the caller ended it.
 fn survivors(
     model: &Model,
     coarse: &CoarseBounds,
     whole: Region,
     ceiling: f64,
     nodes: &mut usize,
-) -> Vec<(f64, Region)> {
+    monitor: &Monitor,
+) -> Result<Vec<(f64, Region)>, Stop> {
     let mut open = vec![whole];
     let mut left = Vec::new();
     while !open.is_empty() {
+        if let Some(stop) = monitor.stop() {
+            return Err(stop);
+        }
         *nodes += open.len();
         let bounds: Vec<Option<f64>> = open.par_iter().map(|region| coarse.lower_bound(model, region)).collect();
         let mut next = Vec::new();
@@ -86,7 +91,7 @@ fn survivors(
         }
         open = next;
     }
-    left
+    Ok(left)
 }
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.

@@ -181,19 +181,6 @@ fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
 }
 
 #[test]
-fn memory_that_is_used_up_leaves_a_bound() {
-    let (problem, placement) = corner_of_the_cell();
-    let value = relaxed_value(&problem, &placement).unwrap();
-    let with = |memory| {
-        worst(&problem, value, &CertificateSettings { memory, ..CertificateSettings::new(1e-4) }, &Monitor::silent())
-    };
-    let Err(Unsupported::TooLarge { bytes, max: 1 }) = with(1) else { panic!("tables in one byte") };
-    let found = with(bytes + 1_000_000).unwrap();
-    assert_eq!(found.status, Status::Memory);
-    assert!(found.bound >= value && !found.open.is_empty());
-}
-
-#[test]
 fn what_is_ended_early_is_a_bound_all_the_same() {
     let (problem, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
