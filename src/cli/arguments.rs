@@ -7,7 +7,7 @@ use super::values::{
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
 use stead_model::robot::angles::yaw_from_q4;
@@ -366,24 +366,36 @@ pub(super) struct GivenPlacement {
     /// z of the workpiece origin in mm
     #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
     z_mm: Option<f64>,
-    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
-    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true, conflicts_with = "yaw_deg",
-          required_unless_present_any = ["yaw_deg", "placement_of"])]
-    q4: Option<f64>,
-    /// Yaw of the workpiece in degrees
-    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
-    yaw_deg: Option<f64>,
-    /// Results folder of `stead place` from the same run file: its exact placement is taken
-    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"])]
-    pub placement_of: Option<PathBuf>,
+    #[command(flatten)]
+    turn: GivenTurn,
     /// Case of the results: 1, the best placement, or 3, the worst [default: 1]
     #[arg(long, value_name = "N", value_parser = case, allow_hyphen_values = true, requires = "placement_of")]
     pub case: Option<u8>,
 }
 
+/// The yaw, in one of two ways, or all of a placement.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct GivenTurn {
+    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
+    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true)]
+    q4: Option<f64>,
+    /// Yaw of the workpiece in degrees
+    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
+    yaw_deg: Option<f64>,
+    /// Results folder of `stead place` from the same run file: its exact placement is taken
+    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["x_mm", "y_mm", "z_mm"])]
+    placement_of: Option<PathBuf>,
+}
+
 impl GivenPlacement {
     /// The placement in numbers.
     pub fn placement(&self) -> Placement {
-        placement([self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0)), self.q4, self.yaw_deg)
+        placement([self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0)), self.turn.q4, self.turn.yaw_deg)
+    }
+
+    /// The results folder whose placement is taken.
+    pub fn placement_of(&self) -> Option<&Path> {
+        self.turn.placement_of.as_deref()
     }
 }
