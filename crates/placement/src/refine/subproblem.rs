@@ -21,6 +21,7 @@ use clarabel::solver::{
     SupportedConeT, ZeroConeT,
 };
 use nalgebra::{Matrix4, Vector4};
+use std::ops::Range;
 use stead_model::robot::angles::wrap;
 use stead_numerics::scalar::Dual;
 
@@ -95,9 +96,17 @@ impl Rows {
 ///
 /// # Errors
 /// [`Unsolved`] when clarabel refused it or found no solution.
-pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
-    let vectors = |i: usize| [&locals[i].changes[..], &locals[i].parts[..]].map(|vector| (i, vector));
-    let kinked = (0..locals.len()).flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
+pub fn solve<'p>(
+    problem: &'p Problem,
+    solution: &'p Solution,
+    locals: &'p [Local],
+    question: Question,
+) -> Result<Answer, Unsolved> {
+    let vectors = |(i, local): (usize, &'p Local)| {
+        let sets = local.sets.iter().enumerate();
+        sets.flat_map(move |(set, of)| [&of.changes[..], &of.parts[..]].map(|vector| ((i, set), vector)))
+    };
+    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
     let rows = Rows::default();
     let mut build = Build { problem, solution, locals, question, kinked, unit: solution.objective, rows };
     if question.pose_stays {
@@ -122,8 +131,8 @@ struct Build<'a> {
     solution: &'a Solution,
     locals: &'a [Local],
     question: Question,
-    /// Points whose score has the norm of a vector in it that needs a second-order cone.
-    kinked: Vec<(usize, &'a [Dual<LOCAL>])>,
+    /// Points, and sets of compliances, whose score has the norm of a vector in it that needs a second-order cone.
+    kinked: Vec<((usize, usize), &'a [Dual<LOCAL>])>,
     /// Scores are in this unit. m
     unit: f64,
     rows: Rows,
@@ -138,9 +147,20 @@ impl Build<'_> {
         BETA + self.locals.len()
     }
 
+    /// Number of scores of each point: one for every set of compliances where their mean counts, else one above all.
+    fn copies(&self) -> usize {
+        if self.problem.is_over_worst() { 1 } else { self.problem.scored_robots().len() }
+    }
+
+    /// Columns of the scores of a point.
+    fn scores_of(&self, i: usize) -> Range<usize> {
+        let first = self.epigraph() + i * self.copies();
+        first..first + self.copies()
+    }
+
     /// Column of the first norm with a kink.
     fn norms(&self) -> usize {
-        BETA + 2 * self.locals.len()
+        self.epigraph() + self.copies() * self.locals.len()
     }
 
     /// Number of variables; the largest score is the last.
@@ -166,24 +186,13 @@ impl Build<'_> {
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
     fn point(&mut self, i: usize) {
         let (local, unit) = (&self.locals[i], self.unit);
-        let (epigraph, norms) = (self.epigraph() + i, self.norms());
-        let first = self.kinked.partition_point(|(point, _)| *point < i);
-        let own = self.kinked[first..].iter().take_while(|(point, _)| *point == i).count();
-        let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
-        let (c, u) = (&local.state.scored, &local.added);
-        let signs: &[f64] = match self.problem.criterion.weights.is_single() {
-            true => &[1.0, -1.0],
-            false if local.parts.is_empty() => &[1.0],
-            false => &[0.0],
-        };
-        for sign in signs {
-            let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
-            self.rows.add(row, -(sign * c.value + u.value) / unit);
+        for set in 0..local.sets.len() {
+            self.score(i, set);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
+            let (scores, share) = (self.scores_of(i), 1.0 / self.copies() as f64);
             self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::MaxDeflection, is_upper: true }));
-            self.rows.add([(epigraph, 1.0)], limit / unit);
+            self.rows.add(scores.map(|column| (column, share)), limit / unit);
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
@@ -197,6 +206,28 @@ impl Build<'_> {
             let q = local.joints[j];
             let terms = Self::terms(i, &local.state.joints[j].gradient);
             self.add_between(Limit::Joint(j as u8 + 1), &terms, joint.min - q, joint.max - q);
+        }
+    }
+
+    /// The score of point `i` under one set of compliances.
+    fn score(&mut self, i: usize, set: usize) {
+        let (local, unit) = (&self.locals[i].sets[set], self.unit);
+        let scores = self.scores_of(i);
+        let epigraph = scores.start + set % self.copies();
+        let norms = self.norms();
+        let first = self.kinked.partition_point(|(place, _)| *place < (i, set));
+        let own = self.kinked[first..].iter().take_while(|(place, _)| *place == (i, set)).count();
+        let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
+        let (c, u) = (&local.scored, &local.added);
+        let signs: &[f64] = match self.problem.criterion.weights.is_single() {
+            true => &[1.0, -1.0],
+            false if local.parts.is_empty() => &[1.0],
+            false => &[0.0],
+        };
+        for sign in signs {
+            let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
+            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
+            self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
     }
 
@@ -238,10 +269,12 @@ impl Build<'_> {
 
     /// The largest score is above that of every point.
     fn largest(&mut self) {
-        let (largest, epigraph) = (self.variables() - 1, self.epigraph());
+        let (largest, copies) = (self.variables() - 1, self.copies() as f64);
         if self.aggregate() == Aggregate::Max {
             for i in 0..self.locals.len() {
-                self.rows.add([(epigraph + i, self.problem.point_weight(i)), (largest, -1.0)], 0.0);
+                let weight = self.problem.point_weight(i) / copies;
+                let scores = self.scores_of(i).map(|column| (column, weight));
+                self.rows.add(scores.chain([(largest, -1.0)]), 0.0);
             }
         }
     }
@@ -250,7 +283,7 @@ impl Build<'_> {
     fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
         let (norms, unit) = (self.norms(), self.unit);
         let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, (i, vector)) in self.kinked.iter().enumerate() {
+        for (place, ((i, _), vector)) in self.kinked.iter().enumerate() {
             self.rows.add([(norms + place, -1.0)], 0.0);
             for entry in *vector {
                 let slopes = entry.gradient.map(|slope| -slope / unit);
@@ -276,17 +309,23 @@ impl Build<'_> {
     fn answer(self, cones: &[SupportedConeT<f64>]) -> Result<Answer, Unsolved> {
         let (n, unit, question) = (self.locals.len(), self.unit, self.question);
         let variables = self.variables();
-        let (mut linear, epigraph) = (vec![0.0; variables], self.epigraph());
+        let mut linear = vec![0.0; variables];
+        let copies = self.copies() as f64;
         let (shares, total) = (self.shares(), self.problem.total_weight());
         let mut quadratic = match question.curved {
             true => curvature(self.locals, &shares, unit * total),
             false => Triplets::default(),
         };
         match self.aggregate() {
-            Aggregate::Mean => (0..n).for_each(|i| linear[epigraph + i] = shares[i] / total),
-            Aggregate::Rms => {
-                (0..n).for_each(|i| quadratic.add(epigraph + i, epigraph + i, self.problem.point_weight(i) / total))
+            Aggregate::Mean => {
+                (0..n).for_each(|i| linear[self.scores_of(i)].fill(shares[i] / total / copies));
             }
+            Aggregate::Rms => (0..n).for_each(|i| {
+                let weight = self.problem.point_weight(i) / total / (copies * copies);
+                for column in self.scores_of(i) {
+                    (self.scores_of(i).start..=column).for_each(|row| quadratic.add(row, column, weight));
+                }
+            }),
             Aggregate::Max => linear[variables - 1] = 1.0,
         }
         let curvature = quadratic.matrix(variables);
