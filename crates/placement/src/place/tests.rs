@@ -176,7 +176,7 @@ fn drawn(number: u64) -> Problem {
     // From a quarter of a step of the grid between neighbours to four steps.
     let spacing = problem.step_length(1);
     let steps = [0.25, 0.6, 1.0, 1.7, 4.0][random.random_range(0..5)];
-    problem.redundancy.max_beta_rate = steps * problem.redundancy.beta_step() / spacing;
+    problem.redundancy.max_beta_rate = Some(steps * problem.redundancy.beta_step() / spacing);
     let speed = random.random_range(0.02..0.6);
     let joints =
         problem.robot.joints().clone().map(|joint| stead_model::robot::Joint { max_speed: Some(speed), ..joint });

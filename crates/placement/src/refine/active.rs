@@ -32,6 +32,8 @@ pub enum Limit {
     Conditioning,
     /// The rate of beta along the path.
     BetaRate,
+    /// The turn of the spindle in space along the path.
+    SpindleTurn,
     /// The largest score of a point.
     MaxDeflection,
     /// The smallest distance of the path from axis 1.
@@ -58,7 +60,7 @@ pub struct ActiveBound {
     /// Which.
     pub side: Side,
     /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
-    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and rates (rad per step),
+    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),
     /// m per unit of 1/kappa_F.
     pub gain: f64,
 }

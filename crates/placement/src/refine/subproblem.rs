@@ -3,7 +3,7 @@
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
 //! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
 //! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
-//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
+//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the limits on beta, the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out. Where the margin of a
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
@@ -200,13 +200,15 @@ impl Build<'_> {
         }
     }
 
-    /// What holds between the points of a segment: the rate of beta and the steps of the joints.
+    /// What holds between the points of a segment: the limits on the change of beta and the steps of the joints.
     fn steps(&mut self, plan: &SegmentPlan) {
         for (place, i) in plan.points.clone().enumerate().skip(1) {
-            let turned = plan.betas[place] - plan.betas[place - 1];
-            let limit = self.problem.beta_step_limit(i);
+            let allowed = self.problem.beta_step(i);
+            let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
             let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
-            self.add_between(Limit::BetaRate, &row, -limit - turned, limit - turned);
+            let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
+            self.add_between(upper, &row, f64::NEG_INFINITY, allowed.half - off);
+            self.add_between(lower, &row, -allowed.half - off, f64::INFINITY);
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
