@@ -58,6 +58,7 @@ pub fn limit(limit: Limit) -> String {
         Limit::JointStep(joint) => format!("speed of joint {joint}"),
         Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
         Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
+        Limit::SpindleTurn => "turn of the spindle".to_owned(),
         Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
         Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
     }
@@ -69,7 +70,7 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         Limit::CellX | Limit::CellY | Limit::CellZ | Limit::MaxDeflection | Limit::BaseDistance => {
             (bound.gain, "mm per mm")
         }
-        Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate => {
+        Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate | Limit::SpindleTurn => {
             (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
         }
         Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),

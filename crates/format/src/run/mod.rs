@@ -4,6 +4,7 @@ mod certificate;
 mod criterion;
 mod notes;
 mod output;
+mod redundancy;
 mod stability;
 mod tables;
 #[cfg(test)]
@@ -12,8 +13,9 @@ mod tests;
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
 pub use output::OutputTable;
+pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
-pub use tables::{CellTable, ConstraintsTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable};
+pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
 
 use crate::document::NamedFile;
 use crate::input::{InputError, InputFile, input_file};
@@ -24,6 +26,7 @@ use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
 use notes::{density_note, direction_note, speed_note, tilt_note};
+use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -159,6 +162,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));

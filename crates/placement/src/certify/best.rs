@@ -19,7 +19,7 @@ use stead_numerics::monitor::{Monitor, Stop};
 /// by more than the gap of the settings.
 ///
 /// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
-/// `with_rate` that of beta as well. The result does not depend on the number of threads.
+/// `with_rate`, or where none is set, that of beta as well. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
@@ -32,6 +32,7 @@ pub fn best(
 ) -> Result<Bound, Unsupported> {
     let CertificateSettings { gap, memory, .. } = *settings;
     certifiable(problem, memory)?;
+    let with_rate = with_rate && problem.redundancy.max_beta_rate.is_some();
     let (model, whole) = (Model::new(problem, with_rate), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len(), memory };
     // Of no placement anything is known until the tables are made.

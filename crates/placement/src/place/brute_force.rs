@@ -73,7 +73,7 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
             let mut problem = five_segments();
             (problem.robot, problem.task) = (robot.clone(), task);
             problem.redundancy.beta_count = 24;
-            problem.redundancy.max_beta_rate *= 2.0;
+            problem = crate::testing::with_beta_rate(problem, 2.0);
             problem.cell.position =
                 [(-0.15, 0.15), (-1.75, -1.45), (-0.3, 0.0)].map(|(min, max)| Interval { min, max });
             problem.cell.yaw = Interval { min: 0.0, max: 1.2 };

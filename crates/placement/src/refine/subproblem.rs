@@ -3,26 +3,23 @@
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
 //! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
 //! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
-//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the rate of beta, the cell, the trust region.
+//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the limits on beta, the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out. Where the margin of a
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
 //! likewise for the norm of the parts where several directions are scored.
 
 use super::super::criterion::Aggregate;
-use super::super::problem::{Interval, Placement, Problem};
+use super::super::problem::Problem;
 use super::super::redundancy::SegmentPlan;
+use super::Solution;
 use super::active::{Limit, Side};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
-use super::{LENGTH_UNIT, Solution};
+use super::programme::{pose_bounds, programme};
+use super::rows::{Rows, Triplets, curvature};
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
-    SupportedConeT, ZeroConeT,
-};
-use nalgebra::{Matrix4, Vector4};
+use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
 use std::ops::Range;
-use stead_model::robot::angles::wrap;
 use stead_numerics::scalar::Dual;
 
 /// What a subproblem is asked.
@@ -56,41 +53,6 @@ pub struct Answer {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the subproblem could not be solved")]
 pub struct Unsolved;
-
-/// Coefficients of inequalities `row . x <= bound`.
-#[derive(Default)]
-struct Rows {
-    row: Vec<usize>,
-    column: Vec<usize>,
-    value: Vec<f64>,
-    bound: Vec<f64>,
-    /// Which bound of the problem stands behind a row, ascending by row; none behind those of the model.
-    bounds: Vec<(usize, Side)>,
-}
-
-impl Rows {
-    fn add(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, bound: f64) {
-        let row = self.bound.len();
-        for (column, value) in terms {
-            self.row.push(row);
-            self.column.push(column);
-            self.value.push(value);
-        }
-        self.bound.push(bound);
-    }
-
-    /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
-    fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
-        if high < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: true }));
-            self.add(terms.iter().copied(), high);
-        }
-        if -low < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: false }));
-            self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
-        }
-    }
-}
 
 /// Solves the subproblem at a solution with its linearisation.
 ///
@@ -231,13 +193,15 @@ impl Build<'_> {
         }
     }
 
-    /// What holds between the points of a segment: the rate of beta and the steps of the joints.
+    /// What holds between the points of a segment: the limits on the change of beta and the steps of the joints.
     fn steps(&mut self, plan: &SegmentPlan) {
         for (place, i) in plan.points.clone().enumerate().skip(1) {
-            let turned = plan.betas[place] - plan.betas[place - 1];
-            let limit = self.problem.beta_step_limit(i);
+            let allowed = self.problem.beta_step(i);
+            let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
             let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
-            self.add_between(Limit::BetaRate, &row, -limit - turned, limit - turned);
+            let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
+            self.add_between(upper, &row, f64::NEG_INFINITY, allowed.half - off);
+            self.add_between(lower, &row, -allowed.half - off, f64::INFINITY);
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
@@ -352,139 +316,6 @@ impl Build<'_> {
             multipliers: bounds.into_iter().map(|(row, side)| (side, found.z[row] * unit)).collect(),
         })
     }
-}
-
-/// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
-fn programme(
-    quadratic: &CscMatrix<f64>,
-    linear: &[f64],
-    matrix: &CscMatrix<f64>,
-    bound: &[f64],
-    cones: &[SupportedConeT<f64>],
-) -> Result<DefaultSolution<f64>, Unsolved> {
-    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings).map_err(|_| Unsolved)?;
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
-        _ => Err(Unsolved),
-    }
-}
-
-/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
-/// clarabel found none.
-pub fn pose_step(
-    problem: &Problem,
-    placement: &Placement,
-    gradient: &Vector4<f64>,
-    curvature: &Matrix4<f64>,
-    trust: f64,
-) -> Option<Vector4<f64>> {
-    let unit = gradient.norm();
-    let upper = curvature.upper_triangle() / unit;
-    let entries = (0..4).flat_map(|k| (0..=k).map(move |j| (j, k)));
-    let (row, column): (Vec<usize>, Vec<usize>) = entries.unzip();
-    let value = row.iter().zip(&column).map(|(j, k)| upper[(*j, *k)]).collect();
-    let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
-    let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
-    let mut rows = Rows::default();
-    let bounds = pose_bounds(problem, placement);
-    for (k, bound) in bounds.iter().enumerate() {
-        rows.add([(k, 1.0)], bound.max.min(trust));
-        rows.add([(k, -1.0)], (-bound.min).min(trust));
-    }
-    let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
-    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)]).ok()?;
-    Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
-}
-
-/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
-/// infinite when there is no gradient or clarabel found none.
-pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
-    let unit = gradients.iter().map(|g| g.norm()).fold(0.0, f64::max);
-    if gradients.is_empty() || unit == 0.0 {
-        return if gradients.is_empty() { f64::INFINITY } else { 0.0 };
-    }
-    let columns: Vec<Vector4<f64>> =
-        gradients.iter().map(|g| g / unit).chain(normals.iter().map(|normal| -normal)).collect();
-    let n = columns.len();
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-    for k in 0..n {
-        for j in 0..=k {
-            row.push(j);
-            column.push(k);
-            value.push(columns[j].dot(&columns[k]));
-        }
-    }
-    let quadratic = CscMatrix::new_from_triplets(n, n, row, column, value);
-    let mut rows = Rows::default();
-    rows.add((0..gradients.len()).map(|i| (i, 1.0)), 1.0);
-    for k in 0..n {
-        rows.add([(k, -1.0)], 0.0);
-    }
-    let matrix = CscMatrix::new_from_triplets(n + 1, n, rows.row, rows.column, rows.value);
-    let cones = [ZeroConeT(1), NonnegativeConeT(n)];
-    let Ok(found) = programme(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones) else { return f64::INFINITY };
-    let sum = columns.iter().zip(&found.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
-    sum.norm() * unit
-}
-
-/// How far each pose variable may move inside the cell, in scaled variables.
-pub fn pose_bounds(problem: &Problem, placement: &Placement) -> [Interval; 4] {
-    let cell = &problem.cell;
-    std::array::from_fn(|k| {
-        if k < 3 {
-            let Interval { min, max } = cell.position[k];
-            Interval { min: (min - placement[k]) / LENGTH_UNIT, max: (max - placement[k]) / LENGTH_UNIT }
-        } else if cell.is_yaw_free() {
-            Interval { min: f64::NEG_INFINITY, max: f64::INFINITY }
-        } else {
-            let middle = (cell.yaw.min + cell.yaw.max) / 2.0;
-            let yaw = middle + wrap(placement.yaw - middle);
-            Interval { min: cell.yaw.min - yaw, max: cell.yaw.max - yaw }
-        }
-    })
-}
-
-/// The entries of a symmetric matrix on and above its diagonal.
-#[derive(Default)]
-struct Triplets {
-    row: Vec<usize>,
-    column: Vec<usize>,
-    value: Vec<f64>,
-}
-
-impl Triplets {
-    fn add(&mut self, row: usize, column: usize, value: f64) {
-        self.row.push(row);
-        self.column.push(column);
-        self.value.push(value);
-    }
-
-    fn matrix(self, size: usize) -> CscMatrix<f64> {
-        CscMatrix::new_from_triplets(size, size, self.row, self.column, self.value)
-    }
-}
-
-/// The curvature of the objective, each point's by its share of `whole`: an arrow of the pose block, its coupling with every
-/// beta, and the diagonal.
-fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplets {
-    let mut entries = Triplets::default();
-    let mut pose = [[0.0; 4]; 4];
-    for (i, local) in locals.iter().enumerate() {
-        let share = shares[i] / whole;
-        for k in 0..4 {
-            for j in 0..=k {
-                pose[j][k] += local.curvature[(j, k)] * share;
-            }
-            entries.add(k, 4 + i, local.curvature[(k, 4)] * share);
-        }
-        entries.add(4 + i, 4 + i, local.curvature[(4, 4)] * share);
-    }
-    for (j, row) in pose.iter().enumerate() {
-        (j..4).for_each(|k| entries.add(j, k, row[k]));
-    }
-    entries
 }
 
 /// Trust region in which the linear model is asked what it still promises.

@@ -12,7 +12,7 @@ use stead_format::input::InputFile;
 use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan, PlanPoint, Refinement, Transfer};
-use stead_placement::problem::{Interval, Problem};
+use stead_placement::problem::{Interval, Problem, Redundancy};
 use stead_placement::refine::active::ActiveBound;
 use stead_placement::sensitivity::{ForceSensitivity, SetOutcome};
 use stead_placement::settings::{LookupUse, PostureSearch};
@@ -292,11 +292,18 @@ fn constraints(problem: &Problem) -> Value {
 }
 
 fn redundancy(problem: &Problem) -> Value {
-    json!({
-        "beta_count": problem.redundancy.beta_count,
-        "feed_mm_per_s": number(Unit::SPEED_MM_PER_S, problem.redundancy.feed),
-        "max_beta_rate_deg_per_mm": number(Unit::RATE_DEG_PER_MM, problem.redundancy.max_beta_rate),
-    })
+    let Redundancy { beta_count, feed, max_beta_rate, max_spindle_turn, max_spindle_speed } = problem.redundancy;
+    let mut value = json!({ "beta_count": beta_count, "feed_mm_per_s": number(Unit::SPEED_MM_PER_S, feed) });
+    for (key, unit, limit) in [
+        ("max_beta_rate_deg_per_mm", Unit::RATE_DEG_PER_MM, max_beta_rate),
+        ("max_spindle_turn_deg_per_mm", Unit::RATE_DEG_PER_MM, max_spindle_turn),
+        ("max_spindle_turn_deg_per_s", Unit::SPEED_DEG_PER_S, max_spindle_speed),
+    ] {
+        if let (Some(limit), Value::Object(map)) = (limit, &mut value) {
+            map.insert(key.to_owned(), number(unit, limit));
+        }
+    }
+    value
 }
 
 fn task(problem: &Problem) -> Value {

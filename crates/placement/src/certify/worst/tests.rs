@@ -117,7 +117,7 @@ fn boxes_are_worth_no_more_than_is_said() {
 #[test]
 fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     let mut problem = five_segments();
-    problem.redundancy.max_beta_rate = 1e9;
+    problem.redundancy.max_beta_rate = Some(1e9);
     let planner = Planner::new(&problem);
     for yaw in [-2.6, 1.4] {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
