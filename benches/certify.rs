@@ -13,6 +13,7 @@ use stead_format::read_run;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_placement::certify::best;
 use stead_placement::place::place;
+use stead_placement::settings::CertificateSettings;
 
 /// Run, gap in per cent, and the time allowed for the certificate on two cores. s
 const FLOORS: [(&str, f64, f64); 4] = [
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 first.get_or_init(|| started.elapsed().as_secs_f64());
             }
         });
-        let bound = best(&run.problem, value, percent / 100.0, true, &monitor)?;
+        let bound = best(&run.problem, value, &CertificateSettings::new(percent / 100.0), true, &monitor)?;
         println!(
             "{name:<16}  {percent:>5}  {allowed:>9}  {:>7.1}  {:>14.1}  {:.7}  {:.7}  {} ({:?})",
             started.elapsed().as_secs_f64(),

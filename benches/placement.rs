@@ -77,7 +77,7 @@ fn planner(bencher: Bencher, instructions: usize) {
         .iter()
         .map(|(step, states)| {
             let allowed = classes.iter().flat_map(|class| states.inner_scores(*class));
-            allowed.filter(|score| score.is_finite()).count() * (2 * step.reach + 1)
+            allowed.filter(|score| score.is_finite()).count() * step.change.count()
         })
         .sum();
     let mut way = vec![0; count];

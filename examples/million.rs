@@ -12,8 +12,9 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
-use stead_format::read_run;
+use stead_format::{Run, read_run};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_numerics::monitor::Monitor;
 use stead_placement::place::score;
 use stead_placement::problem::{Placement, Problem};
 
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (files, counts): (Vec<String>, Vec<String>) =
         env::args().skip(1).partition(|text| text.parse::<usize>().is_err());
     let config = files.first().ok_or("usage: million CONFIG POINTS.. [PATH.csv]")?;
-    let problem = read_run(Path::new(config))?.problem;
+    let Run { problem, transfer, .. } = read_run(Path::new(config))?;
     // Within easy reach of the arm of the shipped run file.
     let placement = Placement { x: 0.0, y: -1.8, z: -0.4, yaw: 0.0 };
     println!("points    seconds  us a point  peak MB  best mm   worst mm");
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let problem = Problem { task, ..problem.clone() };
         let start = Instant::now();
-        let scored = score(&problem, &placement)?;
+        let scored = score(&problem, &placement, &transfer, &Monitor::silent())?;
         let seconds = start.elapsed().as_secs_f64();
         let each = seconds / count as f64 * 1e6;
         let memory = peak_memory().map_or("?".to_owned(), |bytes| format!("{:.0}", bytes as f64 / 1e6));

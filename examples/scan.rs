@@ -10,6 +10,7 @@ use std::env;
 use std::error::Error;
 use std::path::Path;
 use stead_format::read_run;
+use stead_numerics::monitor::Monitor;
 use stead_placement::candidate::{Candidate, rank};
 use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
@@ -67,7 +68,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut sorted: Vec<Candidate> = scanned.iter().filter(|i| i.objective.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(sense, a.objective, b.objective));
         let basins = distinct(cell, &sorted, REFINED);
-        let refined = basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.placement, sense, None));
+        let refined =
+            basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.placement, sense, None, &Monitor::silent()));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();
         reports.sort_by(|a, b| match sense {
             Sense::Min => a.end_mean.total_cmp(&b.end_mean),

@@ -39,6 +39,11 @@ impl Error {
         matches!(self, Self::Input(_) | Self::Argument(_))
     }
 
+    /// Whether the caller stopped the job before it had a result.
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self, Self::Infeasible(nothing) if nothing.interrupted)
+    }
+
     /// A job that failed, in its own words.
     pub(crate) fn failed(error: impl std::fmt::Display) -> Self {
         Self::Failed(error.to_string())

@@ -8,14 +8,14 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_placement::certify::{self, Certificate};
-use stead_placement::feasibility::{self, Explanation};
-use stead_placement::outcome::{Cases, Outcome};
+use stead_placement::feasibility::{self, DeflectionMap, Explanation};
+use stead_placement::outcome::{Cases, Outcome, left_out};
 use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
 use stead_report::Folder;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
 use stead_report::document::Timing;
-use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement};
+use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement, write_score};
 use stead_study::{self as study, Placed, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
@@ -32,6 +32,9 @@ pub struct Run {
 }
 
 impl Run {
+    /// The relative size of the force error of `stead place --sensitivity`.
+    pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
+
     /// Reads a run file and the files that it names.
     ///
     /// # Errors
@@ -43,7 +46,7 @@ impl Run {
     /// Reads a run file to be placed with a certificate of this gap (relative), whatever the file says of one.
     ///
     /// # Errors
-    /// As [`Run::read`], and for a cell too large for a certificate.
+    /// As [`Run::read`].
     pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
         Ok(Self { run: Arc::new(format::read_run_to_certify(file.as_ref(), Some(gap))?) })
     }
@@ -102,8 +105,8 @@ impl Run {
 
     /// Why the run cannot be certified, where it asks for a certificate and that is so: to be said before a long search.
     pub fn certificate_warning(&self) -> Option<Warning> {
-        self.run.certificate?;
-        certify::certifiable(self.problem()).err().map(|reason| certify::no_certificate(&reason))
+        let settings = self.run.certificate?;
+        certify::certifiable(self.problem(), settings.memory).err().map(|reason| certify::no_certificate(&reason))
     }
 
     /// A note on a placement outside the cell, which is evaluated all the same.
@@ -117,17 +120,33 @@ impl Run {
         evaluation::infeasible_json(nothing, &Context::new(&self.run, self.run.search))
     }
 
+    /// The exact placement of case 1 (the best) or 3 (the worst) in a results folder that `stead place` has written from the same files.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a folder that is no such result, or one of other files.
+    pub fn placement_of(&self, results: impl AsRef<Path>, case: u8) -> Result<Placement, Error> {
+        Ok(format::read_placement_of(results.as_ref(), case, &self.run.inputs)?)
+    }
+
     /// Plans a given placement, best and worst.
     ///
     /// # Errors
     /// [`Error::Infeasible`] with the constraint that fails at which points.
     pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
-        let Scored { score, stability, notes } = study::score(&self.run, placement, &Monitor::silent())?;
+        self.score_with(placement, &Monitor::silent())
+    }
+
+    /// As [`Run::score`]. A stop that the monitor asks for leaves out the critical depths.
+    ///
+    /// # Errors
+    /// As [`Run::score`].
+    pub fn score_with(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
+        let Scored { score, stability, notes } = study::score(&self.run, placement, monitor)?;
         let warnings = score.warnings.clone();
         let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         context.notes.extend(notes);
         context.notes.extend(score.notes.iter().cloned());
-        Ok(PlacementScore { score, context })
+        Ok(PlacementScore { run: Arc::clone(&self.run), score, map: None, context })
     }
 
     /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
@@ -209,7 +228,9 @@ impl Placements {
 /// A given placement with its best and its worst plan.
 #[derive(Debug, Clone)]
 pub struct PlacementScore {
+    run: Arc<format::Run>,
     score: Score,
+    map: Option<DeflectionMap>,
     context: Context,
 }
 
@@ -260,6 +281,19 @@ impl PlacementScore {
     pub fn score(&self) -> &Score {
         &self.score
     }
+
+    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does without. A stop that
+    /// the monitor asks for leaves out the map of a long path.
+    pub fn map(&mut self, monitor: &Monitor) {
+        if !self.run.maps {
+            return;
+        }
+        self.map = feasibility::deflection_map(&self.run.problem, &self.score.placement, monitor);
+        if self.map.is_none() {
+            self.context.warnings.push(left_out("the deflection map is"));
+        }
+        self.score.interrupted |= monitor.should_stop();
+    }
 }
 
 impl Explanations {
@@ -270,6 +304,10 @@ impl Explanations {
 }
 
 impl Report for PlacementScore {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
+    }
+
     fn document(&self) -> Value {
         evaluation::score_json(&self.score, &self.context)
     }

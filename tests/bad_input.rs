@@ -121,6 +121,10 @@ fn a_run_file_that_breaks_a_rule_is_refused_at_its_line() {
     let line = bench.replace(RUN, "characteristic_length_mm = 682.0", "") - 2;
     let parts = ["constraints.characteristic_length_mm: is missing", "above 0"];
     refused_by_all(&bench, &format!("{RUN}:{line}: "), &parts);
+    let bench = self::bench();
+    let line = bench.replace(RUN, "max_beta_rate_deg_per_mm = 0.9", "") - 3;
+    let parts = ["redundancy: sets no limit", "at least one of max_beta_rate_deg_per_mm, max_spindle_turn_deg_per_mm"];
+    refused_by_all(&bench, &format!("{RUN}:{line}: "), &parts);
 }
 
 #[test]

@@ -125,18 +125,33 @@ fn gaps_and_limits_of_the_run_file_are_refused_at_their_line() {
 }
 
 #[test]
-fn a_cell_too_large_says_how_much_it_would_take() {
+fn tables_beyond_the_memory_do_not_cost_the_placement() {
     let bench = bench();
-    let line = bench.replace(RUN, "x_mm = [-60.0, 60.0]", "x_mm = [-900000.0, 900000.0]") - 1;
-    let ended = place(&bench, &["--certify", "1"]);
-    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
-    ended.assert_says(&[
-        &format!("error: {RUN}:{line}: cell: "),
-        "tables would take ",
-        " GB",
-        "; allowed: a cell whose",
-    ]);
-    assert!(!bench.path("out").exists());
+    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 1\nmemory_gb = 0.001\n[constraints]");
+    let ended = place(&bench, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let start = "warning: no certificate: the cell is so large that tables would take ";
+    assert!(ended.stderr.starts_with(start) && ended.stderr.lines().count() == 1, "{}", ended.stderr);
+    ended.assert_says(&["at most 0.001 GB are allowed by certificate.memory_gb; the workpiece is placed without one"]);
+    let found = certificate(&bench);
+    assert_eq!((&found["best"], &found["memory_gb"]), (&Value::Null, &0.001.into()));
+    assert!(found["worst_reason"].as_str().unwrap().contains("at most 0.001 GB"), "{found:#}");
+    assert!(bench.path("out/best.csv").exists());
+}
+
+#[test]
+fn memory_used_up_on_the_way_leaves_the_bound_reached() {
+    let bench = bench();
+    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.01\nmemory_gb = 0.005\n[constraints]");
+    let ended = place(&bench, &["--threads", "2"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["the 0.00500 GB of certificate.memory_gb are used up: "]);
+    let found = lasting(certificate(&bench));
+    assert_eq!(found["best"]["status"], "memory", "{found:#}");
+    assert!(found["best_reason"].as_str().unwrap().starts_with("the 0.00500 GB of certificate.memory_gb"));
+    // It is counted, not measured.
+    assert_eq!(place(&bench, &["--threads", "1"]).code, Some(0));
+    assert_eq!(lasting(certificate(&bench)), found);
 }
 
 #[test]

@@ -21,4 +21,5 @@ mod simulate;
 mod stability;
 mod standard_output;
 mod starting;
+mod stop;
 mod uncertainty;

@@ -137,8 +137,10 @@ fn summary_says_what_it_comes_from_and_nothing_of_time() {
         let digest: String = Sha256::digest(bench.read(file)).iter().map(|byte| format!("{byte:02x}")).collect();
         assert_eq!(input["sha256"], digest.as_str());
     }
+    // The wall of the deflection is that of the part.
+    let timeless = text.replace("\"wall\":", "").replace("\"wall\",", "");
     for key in ["wall", "per_second", "threads", "date", "host"] {
-        assert!(!text.contains(&format!("{key}_")) && !text.contains(&format!("\"{key}")), "{key}");
+        assert!(!timeless.contains(&format!("{key}_")) && !timeless.contains(&format!("\"{key}")), "{key}");
     }
     let mut cases = ended.json()["cases"].clone();
     for case in cases.as_array_mut().unwrap() {
@@ -380,8 +382,9 @@ mod interrupt {
         std::thread::sleep(Duration::from_millis(1500));
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let said = "warning: interrupted: the results are the best found so far, not the end of the search\n";
+        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+        let said = "interrupted: ending with what there is; Ctrl-C again ends at once\n\
+                    warning: interrupted: the results are the best found so far, not the end of the search\n";
         assert_eq!(ended.stderr, said);
         assert_eq!(names(&bench, "out"), FILES);
         let document = ended.json();
@@ -403,7 +406,8 @@ mod interrupt {
         std::thread::sleep(Duration::from_millis(300));
         interrupt(&child);
         let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(1), Some(false)), "{}", ended.stderr);
+        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(130), Some(false)), "{}", ended.stderr);
+        assert_eq!(ended.json()["interrupted"], true);
         ended.assert_says(&["interrupted: ", "error: no feasible placement was found", "segment 1, points 0 to 20"]);
     }
 
@@ -414,7 +418,8 @@ mod interrupt {
         let child = started(&bench, 100_000);
         std::thread::sleep(Duration::from_millis(500));
         interrupt(&child);
-        std::thread::sleep(Duration::from_millis(200));
+        // So soon that the two plans that are still made are not there yet.
+        std::thread::sleep(Duration::from_millis(20));
         interrupt(&child);
         let begun = Instant::now();
         let ended = Ended::from(child.wait_with_output().unwrap());

@@ -215,3 +215,34 @@ fn help_and_version_are_no_failures() {
     assert_eq!((nothing.code, nothing.stdout.as_str()), (Some(2), ""));
     nothing.assert_says(&["Usage: stead <COMMAND>"]);
 }
+
+#[test]
+fn a_tight_corner_needs_a_limit_in_space_and_score_says_so() {
+    let bench = bench();
+    // A straight wall of 40 mm, a corner of 2 mm radius in steps of 10 deg, and another wall.
+    let mut path = String::from(
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n",
+    );
+    let mut row = |x: f64, y: f64, heading: f64| {
+        let (sine, cosine) = heading.sin_cos();
+        path +=
+            &format!("1,{x:.6},{y:.6},0,{cosine:.9},{sine:.9},0,0,0,1,{:.6},{:.6},0\n", 80.0 * sine, -80.0 * cosine);
+    };
+    (0..4).for_each(|k| row(10.0 * f64::from(k), 0.0, 0.0));
+    (0..=9).for_each(|k| {
+        let turned = f64::from(k) * 10.0_f64.to_radians();
+        row(40.0 + 2.0 * turned.sin(), 2.0 - 2.0 * turned.cos(), turned);
+    });
+    (1..5).for_each(|k| row(42.0, 2.0 + 10.0 * f64::from(k), 90.0_f64.to_radians()));
+    bench.write("tasks/five-segments.csv", &path);
+    let ended = run(&bench, "score", &[&PLACE, &Q4]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+    ended.assert_says(&[
+        "segment 1, point ",
+        "every point has allowed states, but no posture gets here",
+        "without rate of beta",
+    ]);
+    bench.replace(RUN, "max_beta_rate_deg_per_mm", "max_spindle_turn_deg_per_mm");
+    let ended = run(&bench, "score", &[&PLACE, &Q4]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}

@@ -1,15 +1,14 @@
 //! The arguments of the command line: subcommands and options.
 
+use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
-use super::values::{damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant};
+use super::values::{damping_scale, finite, gap, point, positive, rpm, sector, seed, threads, variant};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
-use stead_model::robot::angles::yaw_from_q4;
-use stead_placement::problem::Placement;
 use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
@@ -114,6 +113,9 @@ pub(super) struct PlaceOptions {
     /// Continue until it is proved that no placement is better, or worse, by more than G per cent
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
+    /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
+    #[arg(long)]
+    pub sensitivity: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -188,7 +190,10 @@ pub(super) struct ScoreOptions {
     /// Run file (TOML)
     pub config: PathBuf,
     #[command(flatten)]
-    pub place: PlaceArguments,
+    pub place: GivenPlacement,
+    /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub json: bool,
@@ -297,44 +302,5 @@ impl From<&ModelArguments> for Overrides {
     fn from(model: &ModelArguments) -> Self {
         let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
         Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
-    }
-}
-
-/// A placement: the workpiece origin in the robot base frame, and its yaw.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub(super) struct PlaceArguments {
-    /// x of the workpiece origin in mm
-    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true)]
-    x_mm: f64,
-    /// y of the workpiece origin in mm
-    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true)]
-    y_mm: f64,
-    /// z of the workpiece origin in mm
-    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
-    z_mm: f64,
-    #[command(flatten)]
-    turn: Turn,
-}
-
-/// The yaw, in one of two ways.
-#[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
-struct Turn {
-    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
-    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true)]
-    q4: Option<f64>,
-    /// Yaw of the workpiece in degrees
-    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
-    yaw_deg: Option<f64>,
-}
-
-impl PlaceArguments {
-    pub fn placement(&self) -> Placement {
-        let yaw = match (self.turn.q4, self.turn.yaw_deg) {
-            (Some(q4), _) => yaw_from_q4(q4),
-            (None, yaw) => stead_model::robot::angles::wrap(yaw.unwrap_or(0.0).to_radians()),
-        };
-        Placement { x: self.x_mm / 1e3, y: self.y_mm / 1e3, z: self.z_mm / 1e3, yaw }
     }
 }

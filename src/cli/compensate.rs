@@ -1,6 +1,7 @@
 //! `stead compensate`: correct a path, then files, then a table.
 
 use super::arguments::CompensateOptions;
+use super::progress::Terminal;
 use super::{Failure, out_folder, print_json, say_notes, say_warnings};
 use stead::{CompensationRun, Error};
 
@@ -8,7 +9,9 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = CompensationRun::read_with(&options.config, options.reality.as_deref())?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
+    let shown = Terminal::unstoppable().show(None);
     let path = if options.all_or_nothing { run.compensate_all() } else { run.compensate() };
+    drop(shown);
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.

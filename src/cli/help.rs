@@ -34,7 +34,9 @@ Start with: stead place configs/caro-2013.toml
 `stead COMMAND --help` shows examples, the files that a command writes and its exit codes.
 With --json a command prints one JSON document on standard output. Notes, warnings, progress and errors go to standard error.
 
-Exit codes: 0 done; 1 the job failed or nothing is feasible; 2 wrong usage or bad input.";
+Exit codes: 0 done; 1 the job failed or nothing is feasible; 2 wrong usage or bad input; 130 ended early by Ctrl-C.
+Ctrl-C ends a job with what it has by then; pressed again it ends the command at once. Where standard error is no terminal, a line
+every 30 s says how far a job is.";
 
 pub(super) const PLACE: &str = "\
 Examples:
@@ -48,7 +50,7 @@ Files written to the results folder:
   best-worst-plan.csv, worst-worst-plan.csv
                                      the same placements with the worst plan of the spindle angle
   deflection-map-{best,worst}.{csv,svg}
-                                     deflection over path point and spindle angle
+                                     deflection over path point and spindle angle, unless [output] maps = false
   convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
   summary.json                       all of it for programs
   stability-{best,worst}.csv, stability.svg
@@ -57,21 +59,30 @@ Files written to the results folder:
                                      with --certify or a table [certificate]
 
 Exit codes:
-  0  done; also when a certificate did not reach its gap, or the search was ended by Ctrl-C with a feasible placement found
+  0  done; also when a certificate did not reach its gap or was ended by Ctrl-C
   1  no feasible placement was found, or a file could not be written after the search
-  2  wrong usage, bad input, or a results folder that cannot be written to";
+  2  wrong usage, bad input, or a results folder that cannot be written to
+130  Ctrl-C ended the search: results are the best found so far, maps of a long path are left out";
 
 pub(super) const SCORE: &str = "\
 Examples:
   stead score configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258
   stead score configs/caro-2013.toml --x-mm 0 --y-mm -1640 --z-mm -214 --yaw-deg 79 --json
+  stead score configs/caro-2013.toml --placement-of results/caro-2013 --case 3 --out results/worst
 
-Files written: none.
+Files written with --out:
+  best-plan.csv, worst-plan.csv      the two plans, point by point
+  deflection-map.{csv,svg}           deflection over path point and spindle angle, unless [output] maps = false
+  placement.svg                      the cell from above with the placement
+  score.json                         what --json prints
+  stability-{best,worst}-plan.csv, stability.svg
+                                     with a table [stability]: critical depth along the path
 
 Exit codes:
   0  done
-  1  the placement is infeasible; the message names the violated constraints and the path points
-  2  wrong usage or bad input";
+  1  the placement is infeasible, with the violated constraints and the path points, or a file could not be written
+  2  wrong usage, bad input, or a results folder that cannot be written to
+130  ended early by Ctrl-C: both plans are there, critical depths and the map of a long path may be left out";
 
 pub(super) const EXPLAIN: &str = "\
 Example:

@@ -1,8 +1,8 @@
 //! The command line: one file per subcommand, no physics.
 //!
 //! Tables for people, or with `--json` one JSON document, go to standard output; progress and diagnostics to standard
-//! error, progress bars only to a terminal. Exit code 0: done. 1: the job failed, or nothing is feasible. 2: wrong usage or
-//! bad input.
+//! error, progress bars only to a terminal and else as a line now and then. Exit code 0: done. 1: the job failed, or nothing is
+//! feasible. 2: wrong usage or bad input. 130: Ctrl-C ended it early.
 
 mod arguments;
 mod assess;
@@ -10,6 +10,7 @@ mod circularity;
 mod compensate;
 mod completions;
 mod explain;
+mod given;
 mod help;
 mod identify;
 mod init;
@@ -45,6 +46,9 @@ enum Failure {
     /// A place to write to is wrong.
     #[error("{0}")]
     Output(ReportError),
+    /// Ctrl-C ended the job early; what it had by then is shown, and that it was interrupted is said.
+    #[error("interrupted")]
+    Interrupted,
     /// A file could not be written, or the threads not be started.
     #[error("{0}")]
     Job(String),
@@ -55,6 +59,8 @@ impl Failure {
         match self {
             Failure::Usage(_) | Failure::Output(_) => 2,
             Failure::Stead(error) if error.is_bad_input() => 2,
+            Failure::Stead(error) if error.is_interrupted() => 130,
+            Failure::Interrupted => 130,
             Failure::Stead(_) | Failure::Job(_) => 1,
         }
     }
@@ -98,6 +104,7 @@ pub fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        Err(failure @ Failure::Interrupted) => ExitCode::from(failure.exit_code()),
         Err(failure) => {
             say(&format!("error: {failure}"));
             ExitCode::from(failure.exit_code())

@@ -13,6 +13,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if let Some(seed) = options.seed {
         run = run.with_seed(seed);
     }
+    if options.sensitivity {
+        run = run.with_sensitivity(Run::FORCE_ERROR);
+    }
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());
@@ -61,5 +64,6 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.json {
         written = written.and(print_json(&placements));
     }
-    written
+    written?;
+    if placements.outcome().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }

@@ -1,21 +1,31 @@
-//! Progress bars on a terminal, and Ctrl-C.
+//! Progress on standard error, as bars on a terminal and else as a line now and then, and Ctrl-C.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_placement::certify::MAX_GAP_PERCENT;
 use stead_report::units::figures;
 
+/// Between two lines where standard error is no terminal.
+const LINE_EVERY: Duration = Duration::from_secs(30);
+
 /// Shows the progress of the jobs of one command, and stops them at Ctrl-C.
 pub(super) struct Terminal {
     stop: StopHandle,
+    /// The bar that is shown, which a word about Ctrl-C must not tear.
+    bar: Arc<Mutex<ProgressBar>>,
 }
 
-/// A monitor that draws on standard error if that is a terminal, until it is dropped.
+/// A monitor that shows progress on standard error, until it is dropped.
 pub(super) struct Shown {
     /// What the job reports to.
     pub monitor: Monitor,
     bar: ProgressBar,
+    /// What writes lines, where there is no terminal.
+    _lines: Option<Lines>,
 }
 
 impl Drop for Shown {
@@ -27,24 +37,130 @@ impl Drop for Shown {
 impl Terminal {
     /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process.
     pub fn start() -> Self {
-        let stop = StopHandle::default();
-        let handle = stop.clone();
+        let terminal = Self::unstoppable();
+        let (stop, bar) = (terminal.stop.clone(), Arc::clone(&terminal.bar));
         // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
         let _ = ctrlc::set_handler(move || {
-            if handle.stop() {
+            if stop.stop() {
                 // Nobody is left to return to.
                 std::process::exit(130);
             }
+            let word = "interrupted: ending with what there is; Ctrl-C again ends at once";
+            locked(&bar).suspend(|| super::say(word));
         });
-        Self { stop }
+        terminal
+    }
+
+    /// Leaves Ctrl-C as it is: it ends the process.
+    pub fn unstoppable() -> Self {
+        Self { stop: StopHandle::default(), bar: Arc::new(Mutex::new(ProgressBar::hidden())) }
     }
 
     /// A monitor of one job, stopped by Ctrl-C, or at a deadline.
     pub fn show(&self, deadline: Option<Instant>) -> Shown {
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
-        let drawn = bar.clone();
-        let monitor = Monitor::new(move |progress| draw(&drawn, progress));
-        Shown { monitor: monitor.with_stop(self.stop.clone()).with_deadline(deadline), bar }
+        *locked(&self.bar) = bar.clone();
+        let (monitor, lines) = if std::io::stderr().is_terminal() {
+            let drawn = bar.clone();
+            (Monitor::new(move |progress| draw(&drawn, progress)), None)
+        } else {
+            let lines = Lines::start(LINE_EVERY, super::say);
+            let state = Arc::clone(&lines.state);
+            (Monitor::new(move |progress| locked(&state.0).latest = Some(*progress)), Some(lines))
+        };
+        Shown { monitor: monitor.with_stop(self.stop.clone()).with_deadline(deadline), bar, _lines: lines }
+    }
+}
+
+/// A thread that says every now and then how far a job is, until this is dropped.
+struct Lines {
+    state: Arc<(Mutex<LineState>, Condvar)>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Default)]
+struct LineState {
+    latest: Option<Progress>,
+    has_ended: bool,
+}
+
+impl Lines {
+    fn start(every: Duration, say: impl Fn(&str) + Send + 'static) -> Self {
+        let state = Arc::<(Mutex<LineState>, Condvar)>::default();
+        let shared = Arc::clone(&state);
+        let started = Instant::now();
+        let work = move || {
+            let (state, ended) = &*shared;
+            let mut state = locked(state);
+            while !state.has_ended {
+                let (woken, timeout) = ended.wait_timeout(state, every).unwrap_or_else(PoisonError::into_inner);
+                state = woken;
+                if timeout.timed_out() && !state.has_ended {
+                    say(&line(state.latest.as_ref(), started.elapsed()));
+                }
+            }
+        };
+        // Without a thread there are no lines, which is no reason not to run.
+        let thread = std::thread::Builder::new().name("progress".to_owned()).spawn(work).ok();
+        Self { state, thread }
+    }
+}
+
+impl Drop for Lines {
+    fn drop(&mut self) {
+        locked(&self.state.0).has_ended = true;
+        self.state.1.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // A thread that has failed has nothing left to say.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// What a mutex guards, whatever became of a thread that held it: progress is worth no failure.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// How far a job is, as one line.
+fn line(progress: Option<&Progress>, elapsed: Duration) -> String {
+    let elapsed = format!("{} s", elapsed.as_secs());
+    let Some(progress) = progress else { return format!("progress: {elapsed}") };
+    let Described { stage, steps, message } = Described::of(progress);
+    let steps = steps.map_or_else(String::new, |(done, total)| format!("{done} of {total}"));
+    let parts = [steps, message, elapsed].into_iter().filter(|part| !part.is_empty());
+    format!("progress: {stage}: {}", parts.collect::<Vec<_>>().join(", "))
+}
+
+/// A report of progress in words.
+struct Described {
+    stage: &'static str,
+    /// Done and in all, where that is known.
+    steps: Option<(usize, usize)>,
+    message: String,
+}
+
+impl Described {
+    fn of(progress: &Progress) -> Self {
+        let (stage, steps, message) = match *progress {
+            Progress::Search { stage, done, total, best } => {
+                let best = best.map_or("nothing feasible yet".to_owned(), |best| format!("{:.4} mm", best * 1e3));
+                (stage, Some((done, total)), best)
+            }
+            Progress::Steps { stage, done, total } => (stage, Some((done, total)), String::new()),
+            Progress::Bound { stage, nodes: 0, .. } => (stage, None, "tables are being made".to_owned()),
+            Progress::Bound { stage, value, bound, gap, open, nodes } => {
+                let reached = 100.0 * (1.0 - bound / value).abs();
+                let reached = if bound > 0.0 && reached <= MAX_GAP_PERCENT {
+                    format!("gap {} %", figures(reached))
+                } else {
+                    "no gap yet".to_owned()
+                };
+                let asked = figures(100.0 * gap);
+                (stage, None, format!("{reached} (asked {asked} %), {open} boxes open, {nodes} evaluated"))
+            }
+        };
+        Self { stage, steps, message }
     }
 }
 
@@ -53,25 +169,9 @@ const STEPS: &str = "{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}";
 const BOUND: &str = "{prefix:>16} {spinner} {msg}  {elapsed}";
 
 fn draw(bar: &ProgressBar, progress: &Progress) {
-    let (template, stage, steps, message) = match *progress {
-        Progress::Search { stage, done, total, best } => {
-            let best = best.map_or("nothing feasible yet".to_owned(), |best| format!("{:.4} mm", best * 1e3));
-            (STEPS, stage, Some((done, total)), best)
-        }
-        Progress::Steps { stage, done, total } => (STEPS, stage, Some((done, total)), String::new()),
-        Progress::Bound { stage, nodes: 0, .. } => (BOUND, stage, None, "tables are being made".to_owned()),
-        Progress::Bound { stage, value, bound, gap, open, nodes } => {
-            let reached = 100.0 * (1.0 - bound / value).abs();
-            let reached = if bound > 0.0 && reached <= MAX_GAP_PERCENT {
-                format!("gap {} %", figures(reached))
-            } else {
-                "no gap yet".to_owned()
-            };
-            let asked = figures(100.0 * gap);
-            (BOUND, stage, None, format!("{reached} (asked {asked} %), {open} boxes open, {nodes} evaluated"))
-        }
-    };
+    let Described { stage, steps, message } = Described::of(progress);
     if bar.prefix() != stage {
+        let template = if steps.is_some() { STEPS } else { BOUND };
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> "));
         }
@@ -85,4 +185,35 @@ fn draw(bar: &ProgressBar, progress: &Progress) {
         bar.set_position(done as u64);
     }
     bar.set_message(message);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+
+    #[test]
+    fn a_line_says_what_is_done_how_far_and_for_how_long() {
+        let at = Duration::from_millis(30_400);
+        assert_eq!(line(None, at), "progress: 30 s");
+        let search = Progress::Search { stage: "best placement", done: 3, total: 51, best: Some(1.075e-4) };
+        assert_eq!(line(Some(&search), at), "progress: best placement: 3 of 51, 0.1075 mm, 30 s");
+        let steps = Progress::Steps { stage: "refining", done: 1, total: 8 };
+        assert_eq!(line(Some(&steps), at), "progress: refining: 1 of 8, 30 s");
+    }
+
+    #[test]
+    fn lines_come_again_and_again_and_end_with_the_job() {
+        let (sender, lines_said) = mpsc::channel();
+        let lines = Lines::start(Duration::from_millis(1), move |line| {
+            // The test may have gone on.
+            let _ = sender.send(line.to_owned());
+        });
+        locked(&lines.state.0).latest = Some(Progress::Steps { stage: "refining", done: 1, total: 8 });
+        let is_told = |line: String| line.starts_with("progress: refining: 1 of 8, ");
+        assert!(lines_said.iter().any(is_told) && lines_said.iter().any(is_told));
+        drop(lines);
+        // The sender is gone with the thread, so that this ends.
+        assert!(lines_said.iter().all(is_told));
+    }
 }

@@ -1,23 +1,45 @@
 //! `stead score`: one given placement.
 
 use super::arguments::ScoreOptions;
-use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
+use super::progress::Terminal;
+use super::{Failure, files_written, on_threads, print, print_json, say_notes, say_warnings};
 use stead::{Error, Run};
+use stead_report::Folder;
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = Run::read(&options.config)?;
-    let placement = options.place.placement();
+    let placement = match options.place.placement_of() {
+        Some(results) => run.placement_of(results, options.place.case.unwrap_or(1))?,
+        None => options.place.placement(),
+    };
+    if let Some(out) = &options.out {
+        // Found out before the work is done.
+        Folder::create(out).map_err(Failure::Output)?;
+    }
     say_notes(run.notes());
     say_notes(run.outside_cell(&placement).as_slice());
-    let score = on_threads(None, || run.score(&placement))?.inspect_err(|error| {
+    let shown = Terminal::start().show(None);
+    let score = on_threads(None, || {
+        let mut score = run.score_with(&placement, &shown.monitor)?;
+        if options.out.is_some() {
+            score.map(&shown.monitor);
+        }
+        Ok(score)
+    })?;
+    drop(shown);
+    let score = score.inspect_err(|error| {
         if let (true, Error::Infeasible(nothing)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.infeasible_json(nothing));
         }
     })?;
     say_warnings(score.warnings());
+    let written = options.out.as_ref().map_or(Ok(()), |out| files_written(score.write(out)));
     if options.json {
-        return print_json(&score);
+        print_json(&score)?;
+    } else {
+        print(score.to_string().as_bytes())?;
     }
-    print(score.to_string().as_bytes())
+    written?;
+    if score.score().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }

@@ -56,6 +56,10 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
 }
 
+pub(super) fn case(text: &str) -> Result<u8, String> {
+    text.parse().ok().filter(|case| [1, 3].contains(case)).ok_or_else(|| "allowed: 1 or 3".to_owned())
+}
+
 pub(super) fn point(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
+//! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
@@ -47,6 +48,8 @@ pub mod identify {}
 pub mod library {}
 #[doc = include_str!("method.md")]
 pub mod method {}
+#[doc = include_str!("objective.md")]
+pub mod objective {}
 #[doc = include_str!("place.md")]
 pub mod place {}
 #[doc = include_str!("robot_file.md")]

@@ -75,6 +75,8 @@ units! {
     NewtonMetreSecondPerRadian NmsPerRad "N m s/rad" up to 1e9, = |value| value;
     /// An amount of money. EUR
     Euro Eur "EUR" up to 1e12, = |value| value;
+    /// An amount of memory. GB
+    Gigabyte Gb "GB" up to 1e6, = |value| value * 1e9;
     /// A share in per cent.
     Hundredth Percent "%" up to 1e6, = |value| value / 100.0;
 }

@@ -26,6 +26,8 @@ pub enum ConstraintKind {
     Conditioning,
     /// The rate of beta along the path.
     BetaRate,
+    /// The turn of the spindle in space along the path.
+    SpindleTurn,
     /// The largest score of a point.
     MaxDeflection,
     /// The smallest distance of a path point from axis 1.
@@ -46,6 +48,7 @@ impl ConstraintKind {
             Self::JointLimit(joint) => format!("joint_{joint}"),
             Self::Conditioning => "conditioning".to_owned(),
             Self::BetaRate => "beta_rate".to_owned(),
+            Self::SpindleTurn => "spindle_turn".to_owned(),
             Self::MaxDeflection => "deflection".to_owned(),
             Self::BaseDistance => "base_distance".to_owned(),
             Self::CellPosition => "cell_position".to_owned(),
@@ -60,7 +63,10 @@ impl Problem {
         use ConstraintKind::*;
         let mut kinds = vec![JointStep, JointTurn, Reach];
         kinds.extend((1..=6).map(JointLimit));
-        kinds.extend([Conditioning, BetaRate]);
+        kinds.push(Conditioning);
+        kinds.extend(self.redundancy.max_beta_rate.map(|_| BetaRate));
+        let turns = [self.redundancy.max_spindle_turn, self.redundancy.max_spindle_speed];
+        kinds.extend(turns.iter().any(Option::is_some).then_some(SpindleTurn));
         kinds.extend(self.constraints.max_deflection.map(|_| MaxDeflection));
         kinds.extend((self.constraints.min_base_distance > 0.0).then_some(BaseDistance));
         kinds.push(CellPosition);
@@ -99,6 +105,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
             Reach => Some("reach"),
             Conditioning => Some("conditioning"),
             BetaRate => Some("rate of beta"),
+            SpindleTurn => Some("turn of the spindle"),
             MaxDeflection => Some("max_deflection_mm"),
             BaseDistance => Some("distance of the path from axis 1"),
             CellPosition => Some("bounds of x, y and z"),
@@ -124,7 +131,8 @@ mod tests {
         problem.constraints.max_deflection = Some(1e-3);
         problem.constraints.min_base_distance = 0.3;
         problem.cell.yaw.max = 1.0;
-        assert_eq!(problem.constraint_kinds().len(), in_force + 3);
+        problem.redundancy.max_spindle_speed = Some(1.0);
+        assert_eq!(problem.constraint_kinds().len(), in_force + 4);
         let all = relaxed(&problem, &[]);
         // The joints' limits are one name, and so are their steps and turns.
         assert_eq!(describe(&all).len(), all.len() - 6);
@@ -139,9 +147,10 @@ mod tests {
         let mut problem = five_segments();
         problem.constraints.max_deflection = Some(1e-3);
         problem.constraints.min_base_distance = 0.3;
+        problem.redundancy.max_spindle_turn = Some(1.0);
         use ConstraintKind::*;
         let batch = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both);
-        assert_eq!(batch.relaxed(), [JointStep, JointTurn, BetaRate, CellPosition]);
+        assert_eq!(batch.relaxed(), [JointStep, JointTurn, BetaRate, SpindleTurn, CellPosition]);
         assert_eq!(LookupTable::new(&problem).unwrap().relaxed(), [JointStep, JointTurn]);
     }
 }

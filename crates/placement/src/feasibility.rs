@@ -1,9 +1,9 @@
 //! Why a state or a placement is not allowed: which constraint is broken, and by how much.
 
-use super::constraints::{ConstraintKind, Measured, on_joints, on_state};
+use super::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
 use super::evaluate::reference::{State, state};
 use super::problem::{Placement, Problem};
-use super::redundancy::NoFeasiblePlan;
+use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
 use stead_model::robot::{Posture, turns::Range};
@@ -107,6 +107,9 @@ pub struct Finding {
     /// The reason, at the state that comes nearest to being allowed, or `None` where every point has allowed states but no
     /// one posture gets from one to the next.
     pub nearest: Option<Nearest>,
+    /// Where no one posture gets through: sets of limits between neighbouring points of which each, left out, lets one past the
+    /// last point. None where the limits and turns of the joints stop every posture.
+    pub stopped_by: Vec<Vec<ConstraintKind>>,
 }
 
 /// The state of a blocked point that comes nearest to being allowed.
@@ -126,11 +129,19 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "segment {}, ", self.segment)?;
         match (&self.nearest, self.points) {
-            (None, (_, point)) => write!(
-                f,
-                "point {point}: every point has allowed states, but no posture gets here from the segment's start within \
-                 the joint limits, the joint steps and the rate of beta"
-            ),
+            (None, (_, point)) => {
+                write!(
+                    f,
+                    "point {point}: every point has allowed states, but no posture gets here from the segment's start"
+                )?;
+                match &self.stopped_by[..] {
+                    [] => write!(f, ", whatever the steps between points: limits and turns of the joints stop it"),
+                    sets => {
+                        let sets = sets.iter().map(|kinds| format!("without {}", describe(kinds).join(" and ")));
+                        write!(f, "; one would {}", sets.collect::<Vec<_>>().join(", or "))
+                    }
+                }
+            }
             (Some(nearest), (first, last)) => {
                 if first == last {
                     write!(f, "point {first}")?;
@@ -190,15 +201,31 @@ pub fn diagnose(
                 last.nearest = Some(nearest);
             }
         } else {
-            findings.push((severity, Finding { segment, points: (point, point), nearest: Some(nearest) }));
+            findings.push((
+                severity,
+                Finding { segment, points: (point, point), nearest: Some(nearest), stopped_by: Vec::new() },
+            ));
         }
     }
     let mut findings: Vec<Finding> = findings.into_iter().map(|(_, finding)| finding).collect();
-    findings.extend(none.broken_segments.iter().map(|(segment, point)| Finding {
-        segment: segment + 1,
-        points: (problem.task.segments()[*segment].start, *point),
-        nearest: None,
-    }));
+    let obstruction = (!none.broken_segments.is_empty()).then(|| Obstruction::new(problem));
+    findings.extend(
+        none.broken_segments
+            .par_iter()
+            .map(|(segment, point)| {
+                let only = scheme.map(|postures| postures[*segment]);
+                Finding {
+                    segment: segment + 1,
+                    points: (problem.task.segments()[*segment].start, *point),
+                    nearest: None,
+                    stopped_by: obstruction
+                        .as_ref()
+                        .map(|o| o.at(placement, *segment, *point, only))
+                        .unwrap_or_default(),
+                }
+            })
+            .collect::<Vec<_>>(),
+    );
     findings.sort_by_key(|finding| (finding.segment, finding.points));
     findings
 }

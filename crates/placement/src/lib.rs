@@ -17,6 +17,7 @@
 //! makes the published bound of 0.2 possible. The posture scheme of a placement is found exactly, since continuity binds
 //! only inside a segment. The "worst placement" is the one with the largest mean deflection under its best plan.
 
+mod beta_step;
 pub mod candidate;
 pub mod certify;
 pub mod constraints;
@@ -66,8 +67,20 @@ pub mod testing {
                 ..Constraints::default()
             },
             criterion: Criterion::default(),
-            redundancy: Redundancy { beta_count: 120, feed: 0.066667, max_beta_rate: 0.9_f64.to_radians() * 1e3 },
+            redundancy: Redundancy {
+                beta_count: 120,
+                feed: 0.066667,
+                max_beta_rate: Some(0.9_f64.to_radians() * 1e3),
+                max_spindle_turn: None,
+                max_spindle_speed: None,
+            },
         }
+    }
+
+    /// The same problem with so many times the rate of beta.
+    pub fn with_beta_rate(mut problem: Problem, times: f64) -> Problem {
+        problem.redundancy.max_beta_rate = problem.redundancy.max_beta_rate.map(|rate| rate * times);
+        problem
     }
 
     /// The five segments with forces in every direction.

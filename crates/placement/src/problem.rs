@@ -195,8 +195,12 @@ pub struct Redundancy {
     pub beta_count: usize,
     /// Feed speed; with the joint speeds it bounds the joint step from point to point. m/s
     pub feed: f64,
-    /// Largest change of beta along the path. rad/m
-    pub max_beta_rate: f64,
+    /// Largest change of beta along the path, where one is set. rad/m
+    pub max_beta_rate: Option<f64>,
+    /// Largest angle between the tool frames at neighbouring points along the path, where one is set. rad/m
+    pub max_spindle_turn: Option<f64>,
+    /// Largest angle between the tool frames at neighbouring points in time, at the feed, where one is set. rad/s
+    pub max_spindle_speed: Option<f64>,
 }
 
 impl Redundancy {
@@ -309,16 +313,12 @@ impl Problem {
             self.robot.joints()[j].max_speed.map_or(MAX_JOINT_STEP, |speed| MAX_JOINT_STEP.min(speed * time))
         })
     }
-
-    /// Largest step of beta from path point `point - 1` to `point`. rad
-    pub fn beta_step_limit(&self, point: usize) -> f64 {
-        self.redundancy.max_beta_rate * self.step_length(point)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::five_segments;
 
     #[test]
     fn yaw_bounds_are_read_modulo_a_turn() {
@@ -334,7 +334,7 @@ mod tests {
 
     #[test]
     fn a_divided_grid_has_the_old_values_in_it() {
-        let coarse = Redundancy { beta_count: 30, feed: 1.0, max_beta_rate: 1.0 };
+        let coarse = Redundancy { beta_count: 30, ..five_segments().redundancy };
         let fine = coarse.divided(1.0_f64.to_radians());
         assert_eq!(fine.beta_count, 360);
         assert!((0..30).all(|k| (coarse.beta(k) - fine.beta(12 * k)).abs() < 1e-12));

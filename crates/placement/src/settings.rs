@@ -84,11 +84,20 @@ pub struct CertificateSettings {
     /// Time for the certificate, of the best and of the worst placement together, where it is limited. What is reached by
     /// then depends on the machine. s
     pub time_limit: Option<f64>,
+    /// Memory for tables and open boxes, counted and not measured, so that what is reached with it is the same on every machine. Bytes
+    pub memory: u64,
 }
 
 impl CertificateSettings {
     /// The finest gap that can be asked for: rounding and the digits of the files are well below.
     pub const MIN_GAP: f64 = 1e-6;
+    /// What the memory is where nothing is said of it. Bytes
+    pub const DEFAULT_MEMORY: u64 = 4_000_000_000;
+
+    /// A certificate of this gap (relative), without a time limit, in the memory that is allowed by default.
+    pub fn new(gap: f64) -> Self {
+        Self { gap, time_limit: None, memory: Self::DEFAULT_MEMORY }
+    }
 
     /// The gap of so many per cent, where it can be asked for: not zero or below, not finer than rounding allows, and less
     /// than everything.

@@ -61,7 +61,7 @@ pub enum Unsupported {
     },
     /// The cell is so large that tables do not fit in memory.
     #[error(
-        "the cell is so large that tables would take {:.1} GB, and at most {:.1} GB are allowed",
+        "the cell is so large that tables would take {:.3} GB, and at most {:.3} GB are allowed",
         *bytes as f64 / 1e9, *max as f64 / 1e9
     )]
     TooLarge {
@@ -131,6 +131,8 @@ pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
     let Criterion { weights, aggregate, .. } = &problem.criterion;
     if *weights != Weights::WALL {
         Err(Unsupported::OtherCriterion { key: "criterion.direction" })
+    } else if problem.criterion.stiffness.is_some() {
+        Err(Unsupported::OtherCriterion { key: "criterion.robots" })
     } else if *aggregate != Aggregate::Mean {
         Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
     } else {

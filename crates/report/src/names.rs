@@ -47,6 +47,36 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
 }
 
+/// A limit that can hold an optimum, by its key of the files where it has one.
+pub fn limit(limit: Limit) -> String {
+    match limit {
+        Limit::CellX => "cell.x_mm".to_owned(),
+        Limit::CellY => "cell.y_mm".to_owned(),
+        Limit::CellZ => "cell.z_mm".to_owned(),
+        Limit::CellYaw => "cell.q4".to_owned(),
+        Limit::Joint(joint) => format!("limit of joint {joint}"),
+        Limit::JointStep(joint) => format!("speed of joint {joint}"),
+        Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
+        Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
+        Limit::SpindleTurn => "turn of the spindle".to_owned(),
+        Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
+        Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
+    }
+}
+
+/// What moving a bound gains, with its unit.
+pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
+    match bound.side.limit {
+        Limit::CellX | Limit::CellY | Limit::CellZ | Limit::MaxDeflection | Limit::BaseDistance => {
+            (bound.gain, "mm per mm")
+        }
+        Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate | Limit::SpindleTurn => {
+            (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
+        }
+        Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,34 +89,5 @@ mod tests {
         assert_eq!(postures_within(&long, 12), "3x12 4x18");
         let mixed: Vec<_> = (0..40).map(|k| Posture::ALL[k % 8]).collect();
         assert_eq!(postures_within(&mixed, 12), "40 segments");
-    }
-}
-
-/// A limit that can hold an optimum, by its key of the files where it has one.
-pub fn limit(limit: Limit) -> String {
-    match limit {
-        Limit::CellX => "cell.x_mm".to_owned(),
-        Limit::CellY => "cell.y_mm".to_owned(),
-        Limit::CellZ => "cell.z_mm".to_owned(),
-        Limit::CellYaw => "cell.q4".to_owned(),
-        Limit::Joint(joint) => format!("limit of joint {joint}"),
-        Limit::JointStep(joint) => format!("speed of joint {joint}"),
-        Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
-        Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
-        Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
-        Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
-    }
-}
-
-/// What moving a bound gains, with its unit.
-pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
-    match bound.side.limit {
-        Limit::CellX | Limit::CellY | Limit::CellZ | Limit::MaxDeflection | Limit::BaseDistance => {
-            (bound.gain, "mm per mm")
-        }
-        Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate => {
-            (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
-        }
-        Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),
     }
 }

@@ -33,6 +33,8 @@ impl Unit {
     pub const TIME_S: Self = Self { factor: 1.0, decimals: 4 };
     /// Speeds, from m/s to mm/s.
     pub const SPEED_MM_PER_S: Self = Self { factor: 1e3, decimals: 4 };
+    /// Speeds of turning, from rad/s to deg/s.
+    pub const SPEED_DEG_PER_S: Self = Self { factor: 180.0 / std::f64::consts::PI, decimals: 4 };
     /// Rates of turning along a path, from rad/m to deg/mm.
     pub const RATE_DEG_PER_MM: Self = Self { factor: 180.0 / std::f64::consts::PI * 1e-3, decimals: 6 };
 

@@ -1,16 +1,11 @@
-//! The table `[certificate]` of a run file, and what a certificate asks of the rest of it.
+//! The table `[certificate]` of a run file.
 
-use crate::input::InputError;
-use crate::place::Place;
 use crate::quantity::Quantity;
-use crate::units::{Percent, Positive, S, ranges};
+use crate::units::{Gb, Percent, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_placement::certify::certifiable;
-use stead_placement::problem::Problem;
 use stead_placement::settings::CertificateSettings;
-use stead_placement::symmetry::Unsupported;
 
 /// Which gaps can be asked for, on the command line as well.
 pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";
@@ -18,6 +13,8 @@ pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is withi
 ranges! {
     /// A gap in per cent; finer ones are within rounding.
     Gap: Included(1e-4), Excluded(100.0);
+    /// Memory from a megabyte to a petabyte. GB
+    Memory: Included(1e-3), Included(1e6);
 }
 
 /// A proof of how far the placement found is from the best possible.
@@ -28,26 +25,19 @@ pub struct CertificateTable {
     pub gap_percent: Percent<Gap>,
     /// Time after which the proof ends with the bound that it has; no limit where left out.
     pub time_limit_s: Option<S<Positive>>,
+    /// Memory for the tables of the proof and the boxes that it has open; 4 GB where left out, on every machine. Where it does not
+    /// suffice, the workpiece is placed with the bound reached by then, or without one.
+    pub memory_gb: Option<Gb<Memory>>,
 }
 
 impl CertificateTable {
     pub(super) fn settings(&self) -> CertificateSettings {
-        CertificateSettings { gap: self.gap_percent.si(), time_limit: self.time_limit_s.map(Quantity::si) }
-    }
-}
-
-/// Refuses a cell whose tables would not fit in memory; other reasons against a certificate are left to the job, which places
-/// the workpiece without one.
-pub(super) fn check_size(problem: &Problem, cell: &Place<'_>) -> Result<(), InputError> {
-    match certifiable(problem) {
-        Err(too_large @ Unsupported::TooLarge { max, .. }) => {
-            let allowed = format!("a cell whose tables take up to {:.1} GB, or no certificate", max as f64 / 1e9);
-            Err(InputError::new(cell.file.file(), too_large.to_string())
-                .at_line(cell.line())
-                .in_field("cell")
-                .allowed(allowed))
+        let default = CertificateSettings::new(self.gap_percent.si());
+        CertificateSettings {
+            time_limit: self.time_limit_s.map(Quantity::si),
+            memory: self.memory_gb.map_or(default.memory, |memory| memory.si() as u64),
+            ..default
         }
-        _ => Ok(()),
     }
 }
 
@@ -61,7 +51,7 @@ mod tests {
     fn a_certificate_is_asked_for_in_per_cent() {
         assert_eq!(read(RUN).unwrap().certificate, None);
         let text = format!("{RUN}[certificate]\ngap_percent = 0.5\n");
-        assert_eq!(read(&text).unwrap().certificate, Some(CertificateSettings { gap: 0.005, time_limit: None }));
+        assert_eq!(read(&text).unwrap().certificate, Some(CertificateSettings::new(0.005)));
         let settings = read(&format!("{text}time_limit_s = 20\n")).unwrap().certificate.unwrap();
         assert_eq!(settings.time_limit, Some(20.0));
         assert_eq!(read(&text.replace("0.5", "0.0001")).unwrap().certificate.unwrap().gap, 1e-6);
@@ -74,10 +64,13 @@ mod tests {
         std::fs::write(&file, format!("{RUN}[certificate]\ngap_percent = 0.5\ntime_limit_s = 20\n")).unwrap();
         let asked = |gap| read_run_to_certify(&file, gap).unwrap().certificate;
         assert_eq!(asked(None), read_run(&file).unwrap().certificate);
-        assert_eq!(asked(Some(0.02)), Some(CertificateSettings { gap: 0.02, time_limit: Some(20.0) }));
+        assert_eq!(
+            asked(Some(0.02)),
+            Some(CertificateSettings { time_limit: Some(20.0), ..CertificateSettings::new(0.02) })
+        );
         std::fs::write(&file, RUN).unwrap();
         assert_eq!(asked(None), None);
-        assert_eq!(asked(Some(0.02)), Some(CertificateSettings { gap: 0.02, time_limit: None }));
+        assert_eq!(asked(Some(0.02)), Some(CertificateSettings::new(0.02)));
     }
 
     #[test]
@@ -100,13 +93,19 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_too_large_for_the_tables_is_refused_only_where_a_certificate_is_asked_for() {
+    fn a_cell_too_large_for_the_tables_is_no_bad_input() {
         let large = RUN.replace("x_mm = [-300, 300]", "x_mm = [-300000, 300000]");
-        assert_eq!(read(&large).unwrap().certificate, None);
-        let message = read(&format!("{large}[certificate]\ngap_percent = 1\n")).unwrap_err().to_string();
-        for part in ["run.toml:6: cell: the cell is so large that tables would take ", " GB", "; allowed: a cell whose"]
-        {
-            assert!(message.contains(part), "{part} in {message}");
+        assert!(read(&format!("{large}[certificate]\ngap_percent = 1\n")).is_ok());
+    }
+
+    #[test]
+    fn the_memory_of_a_certificate_is_the_same_on_every_machine() {
+        let with =
+            |line: &str| read(&format!("{RUN}[certificate]\ngap_percent = 1\n{line}")).unwrap().certificate.unwrap();
+        assert_eq!((with("").memory, with("memory_gb = 0.5\n").memory), (4_000_000_000, 500_000_000));
+        for bad in ["0", "-1", "0.0001", "1e7", "nan"] {
+            let table = format!("[certificate]\ngap_percent = 1\nmemory_gb = {bad}\n[cell]");
+            assert_refused("[cell]", &table, &["run.toml:8: certificate.memory_gb: ", &format!("found {bad};")]);
         }
     }
 }

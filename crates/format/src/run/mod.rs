@@ -4,6 +4,7 @@ mod certificate;
 mod criterion;
 mod notes;
 mod output;
+mod redundancy;
 mod stability;
 mod tables;
 #[cfg(test)]
@@ -12,8 +13,9 @@ mod tests;
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
 pub use output::OutputTable;
+pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
-pub use tables::{CellTable, ConstraintsTable, RedundancyTable, ReferenceTable, SearchTable, TransferTable};
+pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
 
 use crate::document::NamedFile;
 use crate::input::{InputError, InputFile, input_file};
@@ -23,8 +25,8 @@ use crate::spindle::SpindleTable;
 use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
-use certificate::check_size;
 use notes::{density_note, direction_note, speed_note, tilt_note};
+use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -103,8 +105,7 @@ pub struct Run {
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
-/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none, a cell too
-/// large for the certificate that is asked for.
+/// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none.
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
     read_run_to_certify(file, None)
 }
@@ -127,8 +128,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let transfer = run.transfer.unwrap_or_default().settings();
     let maps = run.output.unwrap_or_default().maps();
     let certificate = run.certificate.map(|table| table.settings());
-    let limit = certificate.and_then(|settings| settings.time_limit);
-    let certificate = gap.map(|gap| CertificateSettings { gap, time_limit: limit }).or(certificate);
+    let with_gap = |gap| CertificateSettings { gap, ..certificate.unwrap_or(CertificateSettings::new(gap)) };
+    let certificate = gap.map(with_gap).or(certificate);
     let cutting = Cutting::of(&run.tool, &run.cut, &at)?;
 
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
@@ -147,20 +148,22 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let imported = parse_csv(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> =
         [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
-    let inputs = vec![
+    let mut inputs = vec![
         source.as_config(),
         input_file("robot", robot_file.name, robot_source.bytes()),
         input_file("task", &task_file.name, &task_file.bytes),
     ];
     let task = task_from(imported, &task_file, &task_field, cutting.as_ref(), run.stability.is_some())?;
     let segments = run.segment.unwrap_or_default();
-    let criterion = run.criterion.unwrap_or_default().criterion(&segments, &robot, &task, &at)?;
+    let criterion = run.criterion.unwrap_or_default();
+    let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
+    let (sets, files) = criterion.sets(&robot, narrowed, &at)?;
+    inputs.extend(files);
+    let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
-    if certificate.is_some() {
-        check_size(&problem, &at.key("cell"))?;
-    }
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));

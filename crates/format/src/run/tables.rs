@@ -5,14 +5,14 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::{Array, Interval};
-use crate::units::{Deg, DegPerMm, Mm, MmPerS, NotNegative, Number, Positive, S, ranges};
+use crate::units::{Deg, Mm, NotNegative, Number, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_model::published::Published;
 use stead_model::robot::{Robot, angles::yaw_from_q4};
 use stead_placement::lookup::LookupTable;
-use stead_placement::problem::{self, Cell, Constraints, Problem, Redundancy};
+use stead_placement::problem::{self, Cell, Constraints, Problem};
 use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
 
 ranges! {
@@ -85,44 +85,6 @@ impl ConstraintsTable {
             let half = (ranges.fold(f64::INFINITY, f64::min) / 2.0).to_degrees();
             let allowed = format!("less than {half} deg, half the smallest range of a joint");
             at.key("joint_margin_deg").error(format!("leaves no range: {e}"), allowed)
-        })
-    }
-}
-
-/// The free rotation of the spindle about the tool axis, beta, along the path.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RedundancyTable {
-    /// Step of the grid of beta; 360 over a whole number from 4 to 7200. Final plans are refined off the grid.
-    pub beta_step_deg: Deg<Positive>,
-    /// Speed of the tool along the path.
-    pub feed_mm_per_s: MmPerS<Positive>,
-    /// Largest change of beta along the path.
-    pub max_beta_rate_deg_per_mm: DegPerMm<Positive>,
-}
-
-/// Bounds of the number of grid values of beta over a full turn.
-const BETA_COUNT: std::ops::RangeInclusive<f64> = 4.0..=7200.0;
-
-impl RedundancyTable {
-    pub(super) fn redundancy(&self, at: &Place<'_>) -> Result<Redundancy, InputError> {
-        let step = self.beta_step_deg.written();
-        let count = (360.0 / step).round();
-        if !BETA_COUNT.contains(&count) || (count * step - 360.0).abs() > 360.0 * 1e-9 {
-            let (most, fewest) = (BETA_COUNT.end(), BETA_COUNT.start());
-            return Err(at.key("beta_step_deg").error(
-                "does not divide a full turn into an allowed number of steps",
-                format!(
-                    "360 over a whole number from {fewest} to {most}, so from {} to {}",
-                    360.0 / most,
-                    360.0 / fewest
-                ),
-            ));
-        }
-        Ok(Redundancy {
-            beta_count: count as usize,
-            feed: self.feed_mm_per_s.si(),
-            max_beta_rate: self.max_beta_rate_deg_per_mm.si(),
         })
     }
 }

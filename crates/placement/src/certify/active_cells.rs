@@ -48,6 +48,11 @@ impl ActiveCells {
         Self { level: self.level + 1, count: self.count * 2, words }
     }
 
+    /// What it takes. bytes
+    pub fn bytes(&self) -> u64 {
+        size_of_val(self.words.as_slice()) as u64
+    }
+
     /// Cells in a turn.
     pub fn count(&self) -> usize {
         self.count

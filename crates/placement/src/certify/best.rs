@@ -1,7 +1,7 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
 use super::model::Model;
@@ -9,53 +9,74 @@ use super::region::Region;
 use super::requirements::certifiable;
 use crate::problem::Problem;
 use crate::sense::Sense;
+use crate::settings::CertificateSettings;
 use crate::symmetry::Unsupported;
 use rayon::prelude::*;
 use std::sync::Arc;
-use stead_numerics::monitor::Monitor;
+use stead_numerics::monitor::{Monitor, Stop};
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean score, m)
-/// by more than `gap` (relative).
+/// by more than the gap of the settings.
 ///
 /// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
-/// `with_rate` that of beta as well. The result does not depend on the number of threads.
+/// `with_rate`, or where none is set, that of beta as well. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn best(problem: &Problem, value: f64, gap: f64, with_rate: bool, monitor: &Monitor) -> Result<Bound, Unsupported> {
-    certifiable(problem)?;
+pub fn best(
+    problem: &Problem,
+    value: f64,
+    settings: &CertificateSettings,
+    with_rate: bool,
+    monitor: &Monitor,
+) -> Result<Bound, Unsupported> {
+    let CertificateSettings { gap, memory, .. } = *settings;
+    certifiable(problem, memory)?;
+    let with_rate = with_rate && problem.redundancy.max_beta_rate.is_some();
     let (model, whole) = (Model::new(problem, with_rate), whole(problem));
-    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len() };
+    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len(), memory };
     // Of no placement anything is known until the tables are made.
-    let coarse = match CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0)) {
-        Ok(coarse) => coarse,
-        Err(stop) => {
-            let open = vec![(whole, 0.0)];
-            return Ok(Bound { value, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
-        }
-    };
     let ceiling = search.ceiling();
     let mut nodes = 0;
+    let coarse = CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0));
+    let left = coarse.and_then(|coarse| survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor));
+    let left = match left {
+        Ok(left) => left,
+        Err(stop) => {
+            let open = vec![(whole, 0.0)];
+            return Ok(Bound { value, met: None, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
+        }
+    };
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
-    let start = survivors(&model, &coarse, whole, ceiling, &mut nodes)
-        .into_iter()
-        .map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) })
-        .collect();
-    drop(coarse);
-    Ok(search.explore(start, nodes, monitor, |open| parts(&model, open, ceiling)))
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) }).collect();
+    let all = Parts {
+        start,
+        nodes,
+        of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling),
+        used: || model.table.used(),
+        bytes: |active: &Arc<ActiveCells>| active.bytes(),
+    };
+    Ok(search.explore(all, monitor, |_| None))
 }
 
 /// The boxes that the coarse tables leave open.
+///
+/// # Errors
+/// Why the caller ended it.
 fn survivors(
     model: &Model,
     coarse: &CoarseBounds,
     whole: Region,
     ceiling: f64,
     nodes: &mut usize,
-) -> Vec<(f64, Region)> {
+    monitor: &Monitor,
+) -> Result<Vec<(f64, Region)>, Stop> {
     let mut open = vec![whole];
     let mut left = Vec::new();
     while !open.is_empty() {
+        if let Some(stop) = monitor.stop() {
+            return Err(stop);
+        }
         *nodes += open.len();
         let bounds: Vec<Option<f64>> = open.par_iter().map(|region| coarse.lower_bound(model, region)).collect();
         let mut next = Vec::new();
@@ -70,7 +91,7 @@ fn survivors(
         }
         open = next;
     }
-    left
+    Ok(left)
 }
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.

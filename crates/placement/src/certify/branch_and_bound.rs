@@ -1,6 +1,7 @@
 //! Boxes of placements, most promising first: the search that bounds from below and from above share.
 
 use super::region::Region;
+use crate::problem::Placement;
 use crate::sense::Sense;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,8 +12,10 @@ use stead_numerics::monitor::{Monitor, Progress, Stop};
 /// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one ([`super::worst()`]).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
-    /// The mean score that was compared with. m
+    /// The mean score that is compared with. m
     pub value: f64,
+    /// The placement of that score, where the search from above met a worse one than it was given.
+    pub met: Option<Placement>,
     /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding; or, of the
     /// worst, none with its best plan has a mean score above. m
     pub bound: f64,
@@ -37,6 +40,8 @@ pub enum Status {
     Exhausted,
     /// The time was over.
     TimeLimit,
+    /// The memory was used up.
+    Memory,
     /// The caller ended it.
     Interrupted,
 }
@@ -99,6 +104,22 @@ pub(super) struct BranchAndBound {
     pub with_rate: bool,
     /// Number of path points.
     pub points: usize,
+    /// Memory for tables and boxes. Bytes
+    pub memory: u64,
+}
+
+/// What a search is made of.
+pub(super) struct Parts<T, P, U, B> {
+    /// The boxes to begin with.
+    pub start: Vec<Open<T>>,
+    /// The number of boxes bounded before.
+    pub nodes: usize,
+    /// Those of a box, `None` where it is not to be cut further.
+    pub of: P,
+    /// What the tables take. Bytes
+    pub used: U,
+    /// What is known of a box takes. Bytes
+    pub bytes: B,
 }
 
 /// A box in the queue.
@@ -107,6 +128,8 @@ struct Queued<T> {
     rank: f64,
     /// Of equal ranks the greater one comes first.
     priority: u64,
+    /// What is known of it takes.
+    bytes: u64,
     open: Open<T>,
 }
 
@@ -156,65 +179,143 @@ impl BranchAndBound {
         self.value * self.points as f64 * (1.0 + sign * self.gap) * (1.0 - sign * ROUNDING)
     }
 
-    /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, or the bound can no longer change.
+    /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, the memory is used up, or the bound can
+    /// no longer change.
     ///
-    /// `nodes` is the number of boxes bounded before; `parts` gives those of a box, `None` where it is not to be cut further.
     /// Where bounds are the same, the younger box comes first: boxes that tables cannot distinguish are found by going down, not by cutting
     /// all of it. Only from above, where nothing is known of them yet, the boxes to begin with come before, in the order given.
-    /// The result does not depend on the number of threads.
+    /// Where boxes are left that tables cannot tell apart, `improve` is asked for a value further out than the one compared with, from
+    /// among them; with one the search goes on. The result does not depend on the number of threads.
     pub fn explore<T: Send + Sync>(
-        &self,
-        start: Vec<Open<T>>,
-        mut nodes: usize,
+        mut self,
+        parts: Parts<T, impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync, impl Fn() -> u64, impl Fn(&T) -> u64>,
         monitor: &Monitor,
-        parts: impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
+        mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
     ) -> Bound {
+        let mut queue = Queue::new(self.sign(), self.sense, parts.start);
+        let (mut nodes, mut met) = (parts.nodes, None);
+        let status = loop {
+            if let Err(status) = self.refine(&mut queue, &mut nodes, monitor, &parts.of, (&parts.used, &parts.bytes)) {
+                break status;
+            }
+            if queue.stuck.is_empty() {
+                break Status::Reached;
+            }
+            match improve(&queue.most_stuck()) {
+                Some((value, placement)) => {
+                    (self.value, met) = (value, Some(placement));
+                    queue.keep_past(self.sign() * self.ceiling());
+                }
+                None => break Status::Exhausted,
+            }
+        };
         let (sign, count) = (self.sign(), self.points as f64);
-        let ceiling = sign * self.ceiling();
-        let queued = |open: Open<T>, priority: u64| Queued { rank: sign * open.bound, priority, open };
-        let mut number = 0;
-        let mut heap = BinaryHeap::new();
-        for open in start {
-            number += 1;
-            heap.push(queued(open, if self.sense == Sense::Min { number } else { u64::MAX - number }));
-        }
-        let mut stuck: Vec<Queued<T>> = Vec::new();
-        let mut status = Status::Reached;
-        while let Some(first) = heap.peek() {
+        let left = queue.left();
+        let farthest = left.iter().map(|queued| queued.rank).fold(sign * self.ceiling(), f64::max);
+        let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
+        let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
+        Bound { value: self.value, met, bound, with_rate: self.with_rate, nodes, status, open }
+    }
+
+    /// Cuts boxes until none is left, or the bound stays where boxes are that are not to be cut further.
+    ///
+    /// # Errors
+    /// Why it ended before that.
+    fn refine<T: Send + Sync>(
+        &self,
+        queue: &mut Queue<T>,
+        nodes: &mut usize,
+        monitor: &Monitor,
+        parts: &(impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync),
+        (used, bytes): (&impl Fn() -> u64, &impl Fn(&T) -> u64),
+    ) -> Result<(), Status> {
+        let ceiling = self.sign() * self.ceiling();
+        while let Some(first) = queue.heap.peek() {
             // Whatever becomes of the others, the bound stays there.
-            if stuck.iter().any(|stuck| stuck.rank >= first.rank) {
+            if queue.stuck.iter().any(|stuck| stuck.rank >= first.rank) {
                 break;
             }
-            if let Some(stop) = self.report(monitor, first.open.bound / count, heap.len() + stuck.len(), nodes) {
-                status = stop.into();
-                break;
+            let bound = first.open.bound / self.points as f64;
+            if let Some(stop) = self.report(monitor, bound, queue.heap.len() + queue.stuck.len(), *nodes) {
+                return Err(stop.into());
             }
-            let batch: Vec<_> = std::iter::from_fn(|| heap.pop()).take(BATCH).collect();
+            if used().saturating_add(queue.bytes) > self.memory {
+                return Err(Status::Memory);
+            }
+            let batch: Vec<_> = std::iter::from_fn(|| queue.heap.pop()).take(BATCH).collect();
             let results: Vec<_> = batch.par_iter().map(|queued| parts(&queued.open)).collect();
             for (whole, parts) in batch.into_iter().zip(results) {
                 let Some(parts) = parts else {
-                    stuck.push(whole);
+                    queue.stuck.push(whole);
                     continue;
                 };
-                nodes += parts.len();
+                queue.bytes -= whole.bytes;
+                *nodes += parts.len();
                 for part in parts {
-                    number += 1;
-                    let part = queued(part, number);
-                    if part.rank > ceiling {
-                        heap.push(part);
-                    }
+                    let bytes = bytes(&part.known);
+                    queue.push(part, bytes, ceiling);
                 }
             }
         }
-        if status == Status::Reached && !stuck.is_empty() {
-            status = Status::Exhausted;
+        Ok(())
+    }
+}
+
+/// The boxes of a search.
+struct Queue<T> {
+    sign: f64,
+    /// Boxes met so far.
+    number: u64,
+    heap: BinaryHeap<Queued<T>>,
+    /// Boxes that are not to be cut further.
+    stuck: Vec<Queued<T>>,
+    /// What is known of all of them takes; the boxes to begin with share it.
+    bytes: u64,
+}
+
+/// Boxes among which a value further out is sought at a time.
+const SOUGHT: usize = 4;
+
+impl<T> Queue<T> {
+    fn new(sign: f64, sense: Sense, start: Vec<Open<T>>) -> Self {
+        let mut queue = Self { sign, number: 0, heap: BinaryHeap::new(), stuck: Vec::new(), bytes: 0 };
+        for open in start {
+            queue.number += 1;
+            let priority = if sense == Sense::Min { queue.number } else { u64::MAX - queue.number };
+            queue.heap.push(Queued { rank: sign * open.bound, priority, bytes: 0, open });
         }
-        let mut left = heap.into_sorted_vec();
+        queue
+    }
+
+    /// Adds a box, if it is past the ceiling.
+    fn push(&mut self, open: Open<T>, bytes: u64, ceiling: f64) {
+        self.number += 1;
+        let queued = Queued { rank: self.sign * open.bound, priority: self.number, bytes, open };
+        if queued.rank > ceiling {
+            self.bytes += bytes;
+            self.heap.push(queued);
+        }
+    }
+
+    /// The boxes not to be cut further that are farthest out.
+    fn most_stuck(&self) -> Vec<Region> {
+        let mut stuck: Vec<&Queued<T>> = self.stuck.iter().collect();
+        stuck.sort_by(|a, b| b.cmp(a));
+        stuck.into_iter().take(SOUGHT).map(|queued| queued.open.region).collect()
+    }
+
+    /// Leaves out boxes that are not past a ceiling.
+    fn keep_past(&mut self, ceiling: f64) {
+        self.stuck.retain(|queued| queued.rank > ceiling);
+        self.heap.retain(|queued| queued.rank > ceiling);
+        self.bytes = self.stuck.iter().chain(&self.heap).map(|queued| queued.bytes).sum();
+    }
+
+    /// All of them, the farthest out first, then those that are not to be cut further.
+    fn left(self) -> Vec<Queued<T>> {
+        let mut left = self.heap.into_sorted_vec();
         left.reverse();
-        left.extend(stuck);
-        let farthest = left.iter().map(|queued| queued.rank).fold(ceiling, f64::max);
-        let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
-        let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
-        Bound { value: self.value, bound, with_rate: self.with_rate, nodes, status, open }
+        left.extend(self.stuck);
+        left
     }
 }

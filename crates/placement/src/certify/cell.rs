@@ -2,7 +2,7 @@
 
 use super::compliance_table::Extent;
 use super::region::{Point, Region};
-use crate::problem::{Cell, Problem};
+use crate::problem::{Cell, Placement, Problem};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::wrap;
 use stead_model::task::{PathPoint, Wrench};
@@ -62,6 +62,29 @@ pub(super) fn extent(problem: &Problem) -> Extent {
     let [(near, far), (bottom, top)] =
         [0, 1].map(|k| (region.middle[k] - region.half[k], region.middle[k] + region.half[k]));
     Extent { radius: ((near - most).max(NEAREST), far + most), height: (bottom + low, top + high) }
+}
+
+/// Azimuths tried about axis 1.
+const AZIMUTHS: usize = 1440;
+
+/// The placement of the cell that is nearest to the middle of a box, whatever its azimuth.
+pub(super) fn placement_in(problem: &Problem, region: &Region) -> Placement {
+    let (side, root, cell) = (side(problem), problem.robot.geometry().root_in_base, &problem.cell);
+    let [radius, height, turn] = region.middle;
+    let z = root.z + side * height;
+    let at = |azimuth: f64| {
+        let (sine, cosine) = libm::sincos(azimuth);
+        let wanted =
+            Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z, yaw: azimuth + side * turn };
+        let inside = cell.clamp(&wanted);
+        let off = libm::hypot(inside.x - wanted.x, inside.y - wanted.y) + radius * wrap(inside.yaw - wanted.yaw).abs();
+        (off, inside)
+    };
+    let [x, y] = corners(cell, problem);
+    let corners = [(x[0], y[0]), (x[0], y[1]), (x[1], y[0]), (x[1], y[1])].map(|(x, y)| libm::atan2(y, x));
+    let even = (1..AZIMUTHS).map(|k| TAU * k as f64 / AZIMUTHS as f64);
+    let all = even.chain(corners).map(at);
+    all.fold(at(0.0), |best, other| if other.0 < best.0 { other } else { best }).1
 }
 
 /// Nearer to axis 1 nothing is known of a path point. m

@@ -47,8 +47,10 @@ pub struct Certificate {
 pub struct Proof {
     /// Whether nothing is better, or nothing is worse.
     pub sense: Sense,
-    /// The placement that it was compared with.
+    /// The placement that it is compared with: the one found, or for the worst one met on the way that is worse with constraints relaxed.
     pub placement: Placement,
+    /// The mean score of the placement found, with the same constraints relaxed. m
+    pub found: f64,
     /// What no placement gets past.
     pub bound: Bound,
     /// The constraints of the problem less those that the bound evaluates.
@@ -100,30 +102,36 @@ pub fn certify(
         Some(deadline) => monitor.clone().with_deadline(Some(deadline)),
         None => monitor.clone(),
     };
-    let prove = |sense: Sense, placement: &Placement, value: Option<f64>| -> Result<Proof, NoProof> {
-        certifiable(problem)?;
-        let value = value.ok_or(NoProof::NoRelaxedValue)?;
+    let prove = |sense: Sense, placement: &Placement, value: &dyn Fn() -> Option<f64>| -> Result<Proof, NoProof> {
+        certifiable(problem, settings.memory)?;
         match monitor.stop() {
             Some(Stop::Asked) => return Err(NoProof::Interrupted),
             Some(Stop::Deadline) => return Err(NoProof::TimeLimit),
-            None if value <= CANCELLATION => return Err(NoProof::Cancelled),
             None => {}
         }
+        let value = value().ok_or(NoProof::NoRelaxedValue)?;
+        if value <= CANCELLATION {
+            return Err(NoProof::Cancelled);
+        }
         let bound = match sense {
-            Sense::Min => best(problem, value, settings.gap, true, &monitor)?,
-            Sense::Max => worst(problem, value, settings.gap, &monitor)?,
+            Sense::Min => best(problem, value, &settings, true, &monitor)?,
+            Sense::Max => worst(problem, value, &settings, &monitor)?,
         };
-        Ok(Proof::new(problem, sense, *placement, bound))
+        Ok(Proof { found: value, ..Proof::new(problem, sense, *placement, bound) })
     };
-    let best = prove(Sense::Min, found, Some(mean));
-    let worst = prove(Sense::Max, found_worst, relaxed_value(problem, found_worst));
+    let best = prove(Sense::Min, found, &|| Some(mean));
+    let worst = prove(Sense::Max, found_worst, &|| relaxed_value(problem, found_worst));
     let warnings = shortfalls(&settings, &best, &worst);
     Certificate { settings, best, worst, warnings, wall: started.elapsed().as_secs_f64() }
 }
 
 /// The warning that a problem cannot be certified.
 pub fn no_certificate(reason: &Unsupported) -> Warning {
-    Warning::new("no-certificate", format!("no certificate: {reason}; the workpiece is placed without one"))
+    let help = match reason {
+        Unsupported::TooLarge { .. } => " by certificate.memory_gb",
+        _ => "",
+    };
+    Warning::new("no-certificate", format!("no certificate: {reason}{help}; the workpiece is placed without one"))
 }
 
 /// Where bounds fall short of what was asked for.
@@ -156,10 +164,10 @@ fn evaluated(problem: &Problem, with_rate: bool) -> Vec<ConstraintKind> {
 }
 
 impl Proof {
-    /// What a bound proves of a placement.
+    /// What a bound proves of a placement found, of the score that it is compared with.
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {
         let relaxed = relaxed(problem, &evaluated(problem, bound.with_rate));
-        Self { sense, placement, bound, relaxed }
+        Self { sense, placement: bound.met.unwrap_or(placement), found: bound.value, bound, relaxed }
     }
 
     /// The relaxed constraints in words.
@@ -213,6 +221,9 @@ impl Proof {
             Status::Interrupted => "interrupted".to_owned(),
             Status::TimeLimit => {
                 format!("the time limit of {} s is over", settings.time_limit.map(figures).unwrap_or_default())
+            }
+            Status::Memory => {
+                format!("the {} GB of certificate.memory_gb are used up", figures(settings.memory as f64 / 1e9))
             }
         };
         let (asked, open) = (figures(settings.gap * 100.0), self.bound.open.len());

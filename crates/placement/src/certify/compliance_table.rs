@@ -11,6 +11,7 @@ use super::interval_simd::{Lanes, WIDTH};
 use super::number::PAIR;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 
 /// What is known of the states around a node.
@@ -64,6 +65,8 @@ pub(super) struct ComplianceTable {
     extent: Extent,
     steps: Steps,
     levels: Vec<Level>,
+    /// Chunks made so far.
+    made: AtomicU64,
 }
 
 #[derive(Debug)]
@@ -83,7 +86,13 @@ impl ComplianceTable {
                 Level { counts, chunks: std::iter::repeat_with(OnceLock::new).take(chunks).collect() }
             })
             .collect();
-        Self { levels, extent, steps }
+        Self { levels, extent, steps, made: AtomicU64::new(0) }
+    }
+
+    /// What it takes with the nodes made so far. bytes
+    pub fn used(&self) -> u64 {
+        let empty = Self::bytes(self.extent, self.steps, self.levels.len());
+        empty + self.made.load(Ordering::Relaxed) * size_of::<[Node; CHUNK]>() as u64
     }
 
     /// What a table takes before its first node is made. bytes
@@ -164,6 +173,7 @@ impl ComplianceTable {
         let chunk =
             ((at[0] * stored.counts[1] + at[1]) * (stored.counts[2] / CHUNK) + cell / CHUNK) * 4 + class.index();
         let nodes = stored.chunks[chunk].get_or_init(|| {
+            self.made.fetch_add(1, Ordering::Relaxed);
             let mut nodes = Box::new([Node::Empty; CHUNK]);
             let first = cell / CHUNK * CHUNK;
             for start in (0..CHUNK).step_by(WIDTH) {

@@ -19,7 +19,7 @@ pub(super) struct Model {
     pub table: ComplianceTable,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
-    /// Largest change of beta from the point before. rad; infinite without the rate
+    /// Largest change of beta from the point before, by its rate alone. rad; infinite without
     pub rates: Vec<f64>,
     /// Compliance of joint 1. rad/(N m)
     pub first: f64,
@@ -27,11 +27,15 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Of a problem with constant compliances, with the rate of beta or without.
+    /// Of a problem with constant compliances, with the rate of beta, where there is one, or without.
     pub fn new(problem: &Problem, with_rate: bool) -> Self {
         let compliances = problem.robot.compliances_at(&[0.0; 6]);
         let extent = extent(problem);
-        let rate = |point: usize| if with_rate && point > 0 { problem.beta_step_limit(point) } else { f64::INFINITY };
+        let max_rate = problem.redundancy.max_beta_rate.filter(|_| with_rate);
+        let rate = |point: usize| match max_rate {
+            Some(rate) if point > 0 => rate * problem.step_length(point),
+            _ => f64::INFINITY,
+        };
         let points = points_of(problem);
         Self {
             arm: Arm::new(problem, &compliances, extent.radius.0),

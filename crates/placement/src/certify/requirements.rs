@@ -8,14 +8,11 @@ use super::model::{LEVELS, STEPS};
 use crate::problem::Problem;
 use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 
-/// What tables may take, empty. bytes
-const MAX_BYTES: u64 = 400_000_000;
-
-/// Whether a problem can be certified, found without work.
+/// Whether a problem can be certified with tables of at most `memory` bytes when they are empty, found without work.
 ///
 /// # Errors
 /// The first reason why not.
-pub fn certifiable(problem: &Problem) -> Result<(), Unsupported> {
+pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     Upright::of(problem)?;
     require_mean_wall(problem)?;
     if !problem.criterion.segment_weights.is_empty() {
@@ -32,5 +29,5 @@ pub fn certifiable(problem: &Problem) -> Result<(), Unsupported> {
     }
     let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
     let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS).saturating_add(coarse);
-    if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(()) }
+    if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
 }

@@ -43,6 +43,11 @@ pub(super) struct Inherited {
 }
 
 impl Inherited {
+    /// What it takes. bytes
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(self.cells.as_slice()) + size_of_val(self.out.as_slice())) as u64
+    }
+
     pub fn nothing(model: &Model) -> Self {
         let (points, segments) = (model.points.len(), model.segments.len());
         Self { level: 0, cells: vec![NONE; points * 4], out: vec![[false; 4]; segments] }

@@ -2,15 +2,17 @@
 //!
 //! Dropping limits lowers the objective of a placement, so this is no upper bound of values with the rate of beta or joint steps.
 
-use super::branch_and_bound::{Bound, BranchAndBound, Open, halves, widest};
-use super::cell::whole;
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
+use super::cell::{placement_in, whole};
 use super::compliance_table::{ComplianceTable, Steps};
 use super::model::Model;
 use super::region::Region;
+use super::relaxed::relaxed_value;
 use super::requirements::certifiable;
 use super::upper_bound::{BoxBounds, Inherited};
-use crate::problem::Problem;
+use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
+use crate::settings::CertificateSettings;
 use crate::symmetry::Unsupported;
 use std::sync::Arc;
 use stead_numerics::monitor::Monitor;
@@ -25,7 +27,11 @@ const SMALL: f64 = 0.25;
 type WorstBox = Open<Option<Arc<Inherited>>>;
 
 /// Bounds the objective of all placements of a problem from above, without the limits between neighbouring points, until none can
-/// be worse than `value` ([`super::relaxed_value`] of the worst placement known, m) by more than `gap` (relative).
+/// be worse than `value` ([`super::relaxed_value`] of the worst placement known, m) by more than the gap of the settings.
+///
+/// The worst placement known keeps limits that are dropped here, so that others may well be worse without them. Where the search comes
+/// to boxes that tables cannot tell apart, placements in these are evaluated, and what is worse than the worst placement known
+/// takes its place ([`Bound::met`]).
 ///
 /// The rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest deflection of a point are relaxed, both in
 /// which placements are feasible and in their objective: see [`super::relaxed_value`]. The result does not depend on the number of
@@ -33,14 +39,46 @@ type WorstBox = Open<Option<Arc<Inherited>>>;
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
-pub fn worst(problem: &Problem, value: f64, gap: f64, monitor: &Monitor) -> Result<Bound, Unsupported> {
-    certifiable(problem)?;
+pub fn worst(
+    problem: &Problem,
+    value: f64,
+    settings: &CertificateSettings,
+    monitor: &Monitor,
+) -> Result<Bound, Unsupported> {
+    let CertificateSettings { gap, memory, .. } = *settings;
+    certifiable(problem, memory)?;
     let model = without_rate(problem);
-    let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len() };
+    let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len(), memory };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
     let start = first(&model, whole(problem)).into_iter().map(unknown).collect();
-    Ok(search.explore(start, 0, monitor, |open| parts(&model, open, ceiling)))
+    let all = Parts {
+        start,
+        nodes: 0,
+        of: |open: &WorstBox| parts(&model, open, ceiling),
+        used: || model.table.used(),
+        bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
+    };
+    let mut known = value;
+    Ok(search.explore(all, monitor, |regions| {
+        let met = worse(problem, known, regions, monitor)?;
+        known = met.0;
+        Some(met)
+    }))
+}
+
+/// Values closer than this (relative) are the same.
+const SAME: f64 = 1e-6;
+
+/// The worst of placements in the middle of some boxes, if it is worse than `known` (m) by more than rounding.
+fn worse(problem: &Problem, known: f64, regions: &[Region], monitor: &Monitor) -> Option<(f64, Placement)> {
+    let of = |region: &Region| {
+        let placement = placement_in(problem, region);
+        let value = if monitor.should_stop() { None } else { relaxed_value(problem, &placement) };
+        Some((value?, placement))
+    };
+    let met = regions.iter().filter_map(of).max_by(|a, b| a.0.total_cmp(&b.0));
+    met.filter(|(value, _)| *value > known * (1.0 + SAME))
 }
 
 /// What is bounded from above: without the rate of beta, and with tables of one level more.

@@ -62,6 +62,13 @@ pub enum Measured {
         /// Its limit. rad
         limit: f64,
     },
+    /// The angle between the tool frames at one path point and the next.
+    SpindleTurn {
+        /// What it is. rad
+        turn: f64,
+        /// What it may be. rad
+        limit: f64,
+    },
 }
 
 impl Measured {
@@ -75,6 +82,7 @@ impl Measured {
             Self::MaxDeflection { .. } => ConstraintKind::MaxDeflection,
             Self::JointStep { .. } => ConstraintKind::JointStep,
             Self::BetaRate { .. } => ConstraintKind::BetaRate,
+            Self::SpindleTurn { .. } => ConstraintKind::SpindleTurn,
         }
     }
 
@@ -86,6 +94,7 @@ impl Measured {
             Self::Conditioning { value, limit } | Self::BaseDistance { value, limit } => value - limit,
             Self::MaxDeflection { value, limit } => limit - value,
             Self::JointStep { step, limit, .. } | Self::BetaRate { step, limit } => limit - step,
+            Self::SpindleTurn { turn, limit } => limit - turn,
         }
     }
 
@@ -93,7 +102,7 @@ impl Measured {
     pub fn holds(&self) -> bool {
         let rounding = match self {
             Self::JointLimit { .. } => ANGLE_ROUNDING,
-            Self::JointStep { .. } | Self::BetaRate { .. } => STEP_ROUNDING,
+            Self::JointStep { .. } | Self::BetaRate { .. } | Self::SpindleTurn { .. } => STEP_ROUNDING,
             Self::Reach(_) | Self::Conditioning { .. } | Self::BaseDistance { .. } | Self::MaxDeflection { .. } => 0.0,
         };
         self.margin() >= -rounding
@@ -105,9 +114,11 @@ impl Measured {
         match *self {
             // A point out of reach has no joint angles, so it counts as farther off than any state that has them.
             Self::Reach(_) => 100.0 - self.margin() * 10.0,
-            Self::JointLimit { .. } | Self::JointStep { .. } | Self::BetaRate { .. } | Self::BaseDistance { .. } => {
-                -self.margin() * 10.0
-            }
+            Self::JointLimit { .. }
+            | Self::JointStep { .. }
+            | Self::BetaRate { .. }
+            | Self::SpindleTurn { .. }
+            | Self::BaseDistance { .. } => -self.margin() * 10.0,
             Self::Conditioning { value, limit } => 1.0 - value / limit,
             Self::MaxDeflection { value, limit } => value / limit - 1.0,
         }
@@ -150,6 +161,9 @@ impl fmt::Display for Measured {
             }
             Self::BetaRate { step, limit } => {
                 write!(f, "beta steps {:.3} deg, limit {:.3} deg", step.to_degrees(), limit.to_degrees())
+            }
+            Self::SpindleTurn { turn, limit } => {
+                write!(f, "the spindle turns {:.3} deg, limit {:.3} deg", turn.to_degrees(), limit.to_degrees())
             }
         }
     }

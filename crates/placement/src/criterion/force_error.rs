@@ -102,7 +102,7 @@ impl Scaled {
             let size = libm::sqrt(size2);
             let step = (size - 1.0) * size2 / slope;
             // At the floor the error can be too short at once.
-            if !(step > 1e-14 * multiplier) {
+            if step.is_nan() || step <= 1e-14 * multiplier {
                 break;
             }
             multiplier += step;

@@ -65,7 +65,7 @@ impl LookupTable<'_> {
             [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width()).into();
         let point = random.random_range(0..problem.task.points().len());
         let redundancy = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
-        let grid = BetaGrid { count: redundancy.beta_count, reaches: Vec::new() };
+        let grid = BetaGrid { count: redundancy.beta_count, changes: Vec::new() };
         let mut workspace = self.workspace(&grid);
         let interpolated: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
             let polar = self.polar_point(&self.place(&placement), point)?;

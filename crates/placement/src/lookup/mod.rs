@@ -30,7 +30,7 @@ pub use shape::{Axis, Shape};
 
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
-use super::redundancy::{Planner, beta_steps};
+use super::redundancy::{BetaChange, Planner, beta_changes};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
@@ -57,13 +57,13 @@ pub struct LookupTable<'a> {
     first_compliance: f64,
 }
 
-/// A grid of beta, with the steps that the rate of beta allows between neighbouring points.
+/// A grid of beta, with the changes of beta allowed between neighbouring points.
 #[derive(Debug, Clone)]
 pub struct BetaGrid {
     /// Number of grid values.
     pub(crate) count: usize,
-    /// For each path point the largest change of the beta number from the one before.
-    pub(crate) reaches: Vec<usize>,
+    /// For each path point the allowed changes of the beta number from the one before.
+    pub(crate) changes: Vec<BetaChange>,
 }
 
 impl BetaGrid {
@@ -72,11 +72,11 @@ impl BetaGrid {
         Self::new(planner.problem(), planner.grid().beta_count)
     }
 
-    /// A grid of `count` values over a full turn, with the steps that the rate of beta allows on it.
+    /// A grid of `count` values over a full turn, with the changes of beta that are allowed on it.
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
-        let reaches = beta_steps(problem, &grid);
-        Self { count, reaches }
+        let changes = beta_changes(problem, &grid);
+        Self { count, changes }
     }
 }
 
@@ -136,9 +136,10 @@ impl<'a> LookupTable<'a> {
     /// The constraints that an objective by the table leaves out: only the planner evaluates them.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
         use ConstraintKind::{
-            BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach,
+            BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Reach, SpindleTurn,
         };
-        let mut evaluated = vec![Reach, BaseDistance, Conditioning, BetaRate, MaxDeflection, CellPosition, CellYaw];
+        let mut evaluated = vec![Reach, BaseDistance, Conditioning, BetaRate, SpindleTurn];
+        evaluated.extend([MaxDeflection, CellPosition, CellYaw]);
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
     }

@@ -1,12 +1,13 @@
 //! The objective of a placement by the lookup table: dynamic programming over interpolated scores.
 //!
-//! The rules are those of [`crate::redundancy::band`], but for the steps and turns of the joints.
+//! The rules are those of [`crate::redundancy::transition`], but for the steps and turns of the joints.
 
 use super::interpolate::Scratch;
 use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
 use crate::candidate::Objective;
 use crate::problem::Placement;
+use crate::redundancy::BetaChange;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 
@@ -108,7 +109,7 @@ impl LookupTable<'_> {
                 if !costs.iter().any(|cost| cost.is_finite()) {
                     return None;
                 }
-            } else if !advance(costs, scores, grid.reaches[point], (bound - base) as f32, windows) {
+            } else if !advance(costs, scores, grid.changes[point], (bound - base) as f32, windows) {
                 return None;
             }
             if place % RENEWAL == RENEWAL - 1 {
@@ -125,12 +126,17 @@ impl LookupTable<'_> {
 /// After so many points costs are made relative to the smallest.
 const RENEWAL: usize = 64;
 
-/// Adds to each score the smallest cost within `reach`, cyclically: the new costs. False when none is below `bound`.
-fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
+/// Adds to each score the smallest cost from which an allowed change leads to it, cyclically: the new costs. False when none is
+/// below `bound`.
+fn advance(costs: &mut [f32], scores: &[f32], change: BetaChange, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
     let count = costs.len();
     let min = |a: f32, b: f32| if b < a { b } else { a };
     let mut any = false;
-    if 2 * reach + 1 >= count {
+    let band = change.count();
+    if band == 0 {
+        return false;
+    }
+    if band >= count {
         let best = costs.iter().copied().fold(f32::INFINITY, f32::min);
         for (cost, score) in costs.iter_mut().zip(scores) {
             *cost = best + score;
@@ -139,12 +145,14 @@ fn advance(costs: &mut [f32], scores: &[f32], reach: usize, bound: f32, windows:
         return any;
     }
     // Minima over windows of 1, 2, 4, ... values, then two of the widest that make up the band.
-    let length = count + 2 * reach;
+    let length = count + band - 1;
     let [now, next] = windows;
-    now[..reach].copy_from_slice(&costs[count - reach..]);
-    now[reach..reach + count].copy_from_slice(costs);
-    now[reach + count..length].copy_from_slice(&costs[..reach]);
-    let band = 2 * reach + 1;
+    // Costs from the predecessor by the largest change of the first state on, continued cyclically.
+    let first = (-change.max).rem_euclid(count as i32) as usize;
+    now[..count - first].copy_from_slice(&costs[first..]);
+    let again = (length - (count - first)).min(count);
+    now[count - first..count - first + again].copy_from_slice(&costs[..again]);
+    now[count - first + again..length].copy_from_slice(&costs[..length - (count - first) - again]);
     let mut width = 1;
     while 2 * width <= band {
         let kept = length + 1 - 2 * width;
@@ -171,17 +179,23 @@ mod tests {
     proptest! {
         #[test]
         fn advance_agrees_with_plain_loops(
-            pairs in prop::collection::vec((0.0..1.0_f32, 0.0..1.0_f32, 0..10_u8), 3..60), reach in 0..40_usize, bound in 0.5..3.0_f32
+            pairs in prop::collection::vec((0.0..1.0_f32, 0.0..1.0_f32, 0..10_u8), 3..60), middle in -70..70_i32, band in 0..40_i32, bound in 0.5..3.0_f32
         ) {
             let count = pairs.len();
-            let reach = reach.min(count / 2);
+            let band = band.min(count as i32);
+            let change = BetaChange { min: middle, max: middle + band - 1 };
             let before: Vec<f32> = pairs.iter().map(|p| if p.2 < 3 { f32::INFINITY } else { p.0 }).collect();
             let scores: Vec<f32> = pairs.iter().map(|p| if p.2 > 7 { f32::INFINITY } else { p.1 }).collect();
             let mut costs = before.clone();
             let mut windows = [vec![0.0; 2 * count], vec![0.0; 2 * count]];
-            let any = advance(&mut costs, &scores, reach, bound, &mut windows);
+            let any = advance(&mut costs, &scores, change, bound, &mut windows);
+            if band == 0 {
+                prop_assert!(!any);
+                return Ok(());
+            }
             for k in 0..count {
-                let near = (0..=2 * reach).map(|shift| before[(k + count + shift - reach) % count]);
+                let at = |change: i32| before[(k as i32 - change).rem_euclid(count as i32) as usize];
+                let near = (change.min..=change.max).map(at);
                 prop_assert_eq!(costs[k], near.fold(f32::INFINITY, f32::min) + scores[k]);
             }
             prop_assert_eq!(any, costs.iter().any(|cost| *cost < bound));

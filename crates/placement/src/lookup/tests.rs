@@ -223,7 +223,7 @@ fn a_long_path_keeps_its_digits() {
     let wrenches = vec![problem.task.wrenches()[0]; count as usize];
     problem.task = Task::new(path, wrenches).unwrap();
     // Beta stays: between points this close the planner saves its steps up, which the table does not.
-    problem.redundancy.max_beta_rate = 0.0;
+    problem.redundancy.max_beta_rate = Some(0.0);
     let planner = Planner::new(&problem);
     let table = LookupTable::new(&problem).unwrap();
     let grid = BetaGrid::of(&planner);
@@ -238,8 +238,8 @@ fn steps_of_beta_are_the_planners() {
     let problem = five_segments();
     for planner in [Planner::new(&problem), Planner::finer(&problem)] {
         let grid = BetaGrid::of(&planner);
-        for (point, reach) in grid.reaches.iter().enumerate() {
-            assert_eq!(*reach, planner.step(point, Sense::Min).reach);
+        for (point, change) in grid.changes.iter().enumerate() {
+            assert_eq!(*change, planner.step(point, Sense::Min).change);
         }
     }
 }
@@ -323,5 +323,5 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     huge.cell.position = [Interval { min: -1e3, max: 1e3 }; 3];
     let Unsupported::TooLarge { bytes, max } = refused(&huge) else { panic!("a crane's table does not fit") };
     assert!(bytes > max && max == MAX_BYTES);
-    assert!(refused(&huge).to_string().contains(" GB, and at most 1.1 GB are allowed"), "{}", refused(&huge));
+    assert!(refused(&huge).to_string().contains(" GB, and at most 1.074 GB are allowed"), "{}", refused(&huge));
 }

@@ -36,6 +36,10 @@ pub(super) fn refine_basins(
 ) -> Option<([Refined; 2], Vec<Refinement>)> {
     let (chosen, refinements) = refine_side(evaluator, found, monitor);
     match chosen {
+        // Of two searches that were stopped early either may have met the better placement.
+        [Some(best), Some(worst)] if best.solution.objective > worst.solution.objective => {
+            Some(([worst, best], refinements))
+        }
         [Some(best), Some(worst)] => Some(([best, worst], refinements)),
         // A search whose basins have no plan on the finer grid takes the other's.
         [Some(only), None] | [None, Some(only)] => Some(([only.clone(), only], refinements)),

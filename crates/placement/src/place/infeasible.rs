@@ -59,6 +59,7 @@ pub(super) fn infeasible(
     let interrupted = monitor.should_stop();
     if let (true, Some(none)) = (interrupted, &mut none) {
         none.blocked_points.truncate(AFTER_STOP / planner.problem().redundancy.beta_count);
+        none.broken_segments.truncate(1);
     }
     let findings = none.map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
     Infeasible { placement: *placement, searched, findings, interrupted }

@@ -61,10 +61,8 @@ pub fn score(
     monitor.report(Progress::Steps { stage: "planning", done: 0, total: 1 });
     let planner = Planner::finer(problem);
     let spacing = off_grid::Spacing::full(planner.grid());
-    let (Some(best), Ok(worst)) = rayon::join(
-        || planned(&planner, placement, None, spacing, &mut planner.workspace()),
-        || worst_plan(&planner, placement, None),
-    ) else {
+    let best = planned(&planner, placement, None, spacing, &mut planner.workspace());
+    let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
     let warnings = cancellation(problem, best.objective).into_iter().collect();

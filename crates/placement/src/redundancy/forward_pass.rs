@@ -6,6 +6,7 @@
 //! number of points, and time with their number.
 
 use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
+use super::rate_limit::SavedChange;
 use super::transition::{JointStep, Step, advance, begin};
 use super::{Planner, Sense, Workspace};
 use crate::problem::{MAX_JOINT_STEP, Placement};
@@ -109,14 +110,21 @@ impl Planner<'_> {
     }
 
     fn accumulated_step(&self, point: usize, sense: Sense, is_accumulated: bool) -> Step {
-        let (reach, stride) =
-            if is_accumulated { self.rate_limit.step(point) } else { (self.rate_limit.reach(point), 1) };
+        let SavedChange { change, points, is_moving } = match is_accumulated {
+            true => self.rate_limit.saved(point),
+            false => SavedChange { change: self.rate_limit.direct(point), points: 1, is_moving: false },
+        };
         let mut limits = self.steps[point];
-        for other in point + 1 - stride..point {
+        for other in point + 1 - points..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
         }
+        if is_moving {
+            // Joint steps are checked when the changes are spread; here states are beside those of the plan.
+            let rounding = 2.0 * self.grid.beta_step();
+            limits.iter_mut().for_each(|limit| *limit = MAX_JOINT_STEP.min(*limit + rounding));
+        }
         Step {
-            reach,
+            change,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
             sense,
             aggregate: self.problem.criterion.aggregate,

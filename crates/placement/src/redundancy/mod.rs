@@ -1,7 +1,7 @@
 //! Redundancy planning: the free angle beta about the tool axis at every path point, by dynamic programming.
 //!
 //! Continuity binds only inside a segment, so every segment is planned by itself, in each posture, and the best posture of
-//! each segment is found exactly. Within a segment, from one point to the next, beta may change by the rate allowed, each
+//! each segment is found exactly. Within a segment, from one point to the next, beta may change by its rate and the turn of the spindle, each
 //! joint by its speed, and the posture not at all.
 //!
 //! The plan is made in steps:
@@ -15,11 +15,15 @@
 
 mod forward_pass;
 mod joint_turns;
+mod obstruction;
 pub mod off_grid;
 mod rate_limit;
 mod reference_dp;
 mod segment;
 pub mod transition;
+
+pub use obstruction::Obstruction;
+pub use rate_limit::BetaChange;
 
 use super::candidate::Objective;
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
@@ -67,11 +71,11 @@ pub struct Planner<'a> {
     instructions: Instructions,
 }
 
-/// Largest change of the beta number at every path point from the one before, on a grid: where points are so close that the
-/// rate of beta allows less than a step between neighbours, a step after every few of them.
-pub fn beta_steps(problem: &Problem, grid: &Redundancy) -> Vec<usize> {
+/// Allowed changes of the beta number at every path point from the one before, on a grid: where points are so close that
+/// less than a step is allowed between neighbours, a step after every few of them.
+pub fn beta_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
     let rate_limit = rate_limit::RateLimit::new(problem, grid);
-    (0..problem.task.points().len()).map(|point| rate_limit.step(point).0).collect()
+    (0..problem.task.points().len()).map(|point| rate_limit.saved(point).change).collect()
 }
 
 /// Space of one thread to plan in.
@@ -89,13 +93,10 @@ impl<'a> Planner<'a> {
     }
 
     /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
-    /// degree and at most what the rate of beta allows between any two points, those apart where that is less than an eighth
-    /// of a degree.
+    /// degree and at most half the width of what is allowed to beta between any two points, those apart where that is less than
+    /// an eighth of a degree.
     pub fn finer(problem: &'a Problem) -> Self {
-        let segments = problem.task.segments().iter();
-        let steps = segments.flat_map(|span| span.clone().skip(1)).map(|point| problem.beta_step_limit(point));
-        let narrowest = steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min);
-        Self::on_grid(problem, problem.redundancy.divided(narrowest))
+        Self::on_grid(problem, finer(problem, problem.redundancy))
     }
 
     fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
@@ -106,10 +107,7 @@ impl<'a> Planner<'a> {
         Self {
             problem,
             grid,
-            evaluators: Flips::of(&problem.robot)
-                .iter()
-                .map(|flips| BatchEvaluator::new(problem, &grid, *flips))
-                .collect(),
+            evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
             rate_limit: rate_limit::RateLimit::new(problem, &grid),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
@@ -268,9 +266,16 @@ impl<'a> Planner<'a> {
     }
 }
 
+/// The grid of [`Planner::finer`], for limits on beta that may not be those of the problem.
+fn finer(problem: &Problem, grid: Redundancy) -> Redundancy {
+    let inner = problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let steps = inner.map(|point| problem.beta_step_within(point, &grid).half);
+    grid.divided(steps.filter(|step| *step >= NARROWEST_STEP).fold(WIDEST_STEP, f64::min))
+}
+
 /// Widest step of the grid that final plans are made on. rad
 const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
-/// Narrowest step that the rate of beta may ask for. rad
+/// Narrowest step that the limits on beta may ask for. rad
 const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
 
 /// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.

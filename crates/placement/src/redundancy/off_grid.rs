@@ -1,14 +1,14 @@
 //! Beta off the grid: dynamic programming on ever narrower grids around a plan.
 //!
 //! Each level lays five values of beta around the present plan at every point, finds the best way through them under the
-//! same constraints as on the grid (real joint angles, exact rate), and repeats until nothing moves; then the spacing is
+//! same constraints as on the grid (real joint angles, exact limits on beta), and repeats until nothing moves; then the spacing is
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
 use super::super::evaluate::reference;
 use super::super::problem::{Placement, Problem, Redundancy};
 use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
-use crate::constraints::{STEP_ROUNDING, joint_steps_hold};
+use crate::constraints::joint_steps_hold;
 use rayon::prelude::*;
 
 /// Values of beta at each point of a level.
@@ -88,9 +88,8 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
         replayed.joints[place] = node.joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
         if place > 0 {
-            let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
             let steps = joint_steps_hold(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
-            if turned > problem.beta_step_limit(point) + STEP_ROUNDING || !steps {
+            if !problem.beta_step(point).allows(plan.betas[place] - plan.betas[place - 1]) || !steps {
                 return None;
             }
         }
@@ -141,7 +140,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
         let (done, open) = layers.split_at_mut(place);
         let before = done.last().map(|layer| &layer.states);
         let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
-        let beta_limit = if place > 0 { problem.beta_step_limit(point) + STEP_ROUNDING } else { f64::INFINITY };
+        let beta_step = (place > 0).then(|| problem.beta_step(point));
         for node in open[0].states.iter_mut().flatten() {
             let best = match before {
                 None => Some((0.0, 0)),
@@ -151,7 +150,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
                     .filter_map(|(index, old)| old.as_ref().map(|old| (index, old)))
                     .filter(|(_, old)| {
                         old.cost.is_finite()
-                            && (node.beta - old.beta).abs() <= beta_limit
+                            && beta_step.is_none_or(|step| step.allows(node.beta - old.beta))
                             && joint_steps_hold(&old.joints, &node.joints, &joint_limits)
                     })
                     .map(|(index, old)| (old.cost, index))

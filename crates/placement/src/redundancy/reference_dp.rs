@@ -1,12 +1,12 @@
 //! Dynamic programming over (beta, turns) in one posture: where a flip or the turns of joints 1, 4 and 6 decide.
 //!
 //! Slower than [`super::transition`] and rarely needed, so it is written to be plainly right: every real configuration of every
-//! grid state is a node, and an edge is a change of beta within its rate with every real joint angle within its step. The
+//! grid state is a node, and an edge is a change of beta within its limits with every real joint angle within its step. The
 //! tests use it as the judge of the fast planner.
 
 use super::super::evaluate::reference;
 use super::joint_turns::{JointPath, SegmentChoice, is_allowed};
-use super::{Planner, Sense, Workspace};
+use super::{BetaChange, Planner, Sense, Workspace};
 use crate::constraints::joint_steps_hold;
 use crate::problem::Placement;
 use std::ops::Range as Span;
@@ -127,7 +127,7 @@ impl Search<'_> {
         let point = self.span.start + place;
         let planner = self.planner;
         let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
-        connect(before, &mut layer, planner.rate_limit.reach(point), planner.grid.beta_count, &planner.steps[point]);
+        connect(before, &mut layer, planner.rate_limit.direct(point), planner.grid.beta_count, &planner.steps[point]);
         layer.retain(|node| node.cost.is_finite());
         let join = |node: &Node| {
             let own = node.score * self.sense.sign();
@@ -189,7 +189,7 @@ fn nodes(
 }
 
 /// Gives each node its cheapest predecessor.
-fn connect(before: &[Node], layer: &mut [Node], reach: usize, count: usize, limits: &[f64; 6]) {
+fn connect(before: &[Node], layer: &mut [Node], change: BetaChange, count: usize, limits: &[f64; 6]) {
     let mut starts = vec![before.len(); count + 1];
     for (index, node) in before.iter().enumerate().rev() {
         starts[node.beta] = index;
@@ -198,9 +198,7 @@ fn connect(before: &[Node], layer: &mut [Node], reach: usize, count: usize, limi
         starts[beta] = starts[beta].min(starts[beta + 1]);
     }
     for node in layer {
-        let reach = reach as isize;
-        for k in 0..=2 * reach {
-            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+        for shift in change.shifts() {
             let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
             for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
                 if old.cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {

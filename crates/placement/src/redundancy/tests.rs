@@ -4,10 +4,12 @@ use super::forward_pass::Pass;
 use super::*;
 use crate::criterion::{Aggregate, Weights};
 use crate::evaluate::reference::state;
-use crate::testing::{compensated, five_segments, with_laws};
-use stead_model::robot::angles::yaw_from_q4;
+use crate::testing::{compensated, five_segments, with_beta_rate, with_laws};
+use stead_model::robot::angles::{wrap, yaw_from_q4};
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
+
+mod spindle_turn;
 
 fn published_optimum() -> Placement {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
@@ -37,6 +39,21 @@ fn agrees_with_the_prototype_at_the_published_optimum() {
     assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
 }
 
+/// Holds a change of beta against its limits: the turn of the spindle by the rotation matrices of the tool.
+fn assert_steps_of_beta(problem: &Problem, point: usize, from: f64, to: f64) {
+    if let Some(rate) = problem.redundancy.max_beta_rate {
+        let turned = wrap(to - from).abs();
+        assert!(turned <= rate * problem.step_length(point) + 1e-8, "beta steps {turned}");
+    }
+    if let Some(limit) = problem.spindle_turn_limit(point) {
+        let still = Placement::from([0.0; 4]);
+        let [a, b] =
+            [(point - 1, from), (point, to)].map(|(k, beta)| problem.base_from_flange(k, &still, beta).rotation);
+        let turned = stead_numerics::rotation::rotation_vector(&(a.transpose() * b)).norm();
+        assert!(turned <= limit + 1e-7, "the spindle turns {turned} at {point}, limit {limit}");
+    }
+}
+
 /// Holds a plan against every rule, through the reference evaluator.
 fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) {
     assert_eq!(plans.len(), problem.task.segments().len());
@@ -49,7 +66,7 @@ fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPlan])
             for (j, joint) in problem.robot.joints().iter().enumerate() {
                 let real = plan.joints[place][j];
                 assert!(real >= joint.min - 1e-8 && real <= joint.max + 1e-8, "joint {}", j + 1);
-                assert!(stead_model::robot::angles::wrap(real - found.joints[j]).abs() < 1e-9);
+                assert!(wrap(real - found.joints[j]).abs() < 1e-9);
                 if place > 0 {
                     let step = (real - plan.joints[place - 1][j]).abs();
                     assert!(step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
@@ -57,8 +74,7 @@ fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPlan])
                 }
             }
             if place > 0 {
-                let turned = (plan.betas[place] - plan.betas[place - 1]).abs();
-                assert!(turned <= problem.beta_step_limit(point) + 1e-8, "beta steps {turned}");
+                assert_steps_of_beta(problem, point, plan.betas[place - 1], plan.betas[place]);
             }
         }
         assert!((sum - plan.cost).abs() < 1e-12 * sum, "{sum} {}", plan.cost);
@@ -110,7 +126,7 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         }
         problem.redundancy.beta_count = 40;
         // So fast that plans swing around and meet the limits of the turns.
-        problem.redundancy.max_beta_rate *= 4.0;
+        problem = with_beta_rate(problem, 4.0);
         let planner = Planner::new(&problem);
         let mut workspace = planner.workspace();
         for k in 0..8 {
@@ -163,7 +179,7 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
     for share in [1.0, 0.3] {
         let mut problem = with_wrist(with_prototype_steps(five_segments()), wide);
         problem.redundancy.beta_count = 60;
-        problem.redundancy.max_beta_rate *= 3.0;
+        problem = with_beta_rate(problem, 3.0);
         problem.redundancy.feed /= share;
         let planner = Planner::new(&problem);
         let mut workspace = planner.workspace();
@@ -239,7 +255,7 @@ fn says_which_points_and_segments_have_no_plan() {
 fn plans_of_blocks_are_those_of_whole_segments() {
     let mut problem = with_prototype_steps(five_segments());
     problem.redundancy.beta_count = 60;
-    problem.redundancy.max_beta_rate *= 3.0;
+    problem = with_beta_rate(problem, 3.0);
     let planner = Planner::new(&problem);
     let (placement, sense) = (published_optimum(), Sense::Max);
     let mut compared = 0;
@@ -308,9 +324,9 @@ fn beta_keeps_its_pace_where_points_are_close() {
     assert!((found - worth).abs() < 1e-12 * found, "{found} {worth}");
     // A grid so fine that nothing is saved up, and beta held still.
     let mean = |beta_count: usize, share: f64| {
-        let Redundancy { feed, max_beta_rate, .. } = dense.redundancy;
-        let redundancy = Redundancy { beta_count, feed, max_beta_rate: max_beta_rate * share };
-        super::tests::objective(&Problem { redundancy, ..dense.clone() }, &placement, sense).mean().unwrap()
+        let redundancy = Redundancy { beta_count, ..dense.redundancy };
+        let slower = with_beta_rate(Problem { redundancy, ..dense.clone() }, share);
+        super::tests::objective(&slower, &placement, sense).mean().unwrap()
     };
     let (fine, still) = (mean(1200, 1.0), mean(120, 0.0));
     // Spread steps leave the grid, so that they may come out a little below the finest.

@@ -1,10 +1,11 @@
 //! One step of the dynamic programming over the grid of beta, within one posture class: each state of a path point takes the
-//! cheapest predecessor within the band that the rate of beta allows and from which no joint has to step too far.
+//! cheapest predecessor within the band that the limits on beta allow and from which no joint has to step too far.
 //!
 //! Joint steps are compared by sines and cosines, and first for the cheapest predecessor of each state only: mostly it is
 //! within every step, and then it is the cheapest of those that are.
 
 use super::super::evaluate::batch::StateGrid;
+use super::rate_limit::BetaChange;
 use crate::constraints::STEP_ROUNDING;
 use crate::criterion::Aggregate;
 use crate::sense::Sense;
@@ -17,8 +18,8 @@ use stead_numerics::simd::{Instructions, Lanes, MAX_LANES, Mask};
 /// What bounds a step from one point to the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
-    /// Largest change of the beta number.
-    pub reach: usize,
+    /// Which changes of the beta number.
+    pub change: BetaChange,
     /// Whether each joint can make the step.
     pub joints: [JointStep; 6],
     /// Whether costs are minimised or maximised.
@@ -108,7 +109,7 @@ pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
 /// Turns the scores of a point into the smallest sums of costs up to it, from those of the point before; `way` takes for
 /// each beta number the step back to the predecessor. False when no state was reached.
 ///
-/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least `step.reach`.
+/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`].
 pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
     advance_by::<Right>(before, now, class, step, way)
 }
@@ -126,8 +127,8 @@ fn advance_by<R: Rules>(
 
 /// The rules of a step; the tests break them one by one, to see that each breach is noticed.
 trait Rules {
-    /// Shifts beyond the reach that are tried.
-    const WIDER: usize = 0;
+    /// Changes beyond the allowed ones that are tried, at either end.
+    const WIDER: i32 = 0;
     /// How far the predecessor told is beside the one taken.
     const BESIDE: i16 = 0;
     /// How far the limit of a joint's step belongs to a joint further on.
@@ -165,7 +166,13 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let numbers = Lanes::load(simd, &NUMBERS, 0);
         let sign = if R::SIGNED { step.sense.sign() } else { 1.0 };
-        let band = Band::<R> { costs: before.scores(class), reach: step.reach + R::WIDER, rules: PhantomData };
+        let BetaChange { min, max } = step.change;
+        let change = BetaChange { min: min - R::WIDER, max: max + R::WIDER };
+        if change.is_none() {
+            now.scores_mut(class).fill(f64::INFINITY);
+            return false;
+        }
+        let band = Band::<R> { costs: before.scores(class), change, rules: PhantomData };
         let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
         let joints = Joints::<R>::new(before.all_directions(class), directions, stride, &step.joints);
@@ -211,7 +218,7 @@ const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 /// The costs of the point before, and how far to look.
 struct Band<'s, R> {
     costs: &'s [f64],
-    reach: usize,
+    change: BetaChange,
     rules: PhantomData<R>,
 }
 
@@ -220,18 +227,26 @@ impl<R: Rules> Band<'_, R> {
     /// it. Small shifts come first, so that of equal predecessors the nearest is taken.
     #[inline(always)]
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
+        let (middle, count) = (self.change.middle_shift(), self.change.count());
+        let here = here.wrapping_add_signed(middle);
         let mut best = Lanes::load(simd, self.costs, here);
-        let mut from = Lanes::splat(simd, 0.0);
-        let mut shift = from;
-        for far in 1..=self.reach {
-            shift = shift + 1.0;
+        let mut from = Lanes::splat(simd, middle as f64);
+        let (mut down, mut up) = (from, from);
+        for far in 1..=(count - 1) / 2 {
+            (down, up) = (down - 1.0, up + 1.0);
             let (left, right) = (Lanes::load(simd, self.costs, here - far), Lanes::load(simd, self.costs, here + far));
             let better = left.less(best);
             best = better.select(left, best);
-            from = better.select(-shift, from);
+            from = better.select(down, from);
             let better = right.less(best);
             best = better.select(right, best);
-            from = better.select(shift, from);
+            from = better.select(up, from);
+        }
+        if count.is_multiple_of(2) {
+            let left = Lanes::load(simd, self.costs, here - count / 2);
+            let better = left.less(best);
+            best = better.select(left, best);
+            from = better.select(down - 1.0, from);
         }
         (best, from)
     }
@@ -241,8 +256,7 @@ impl<R: Rules> Band<'_, R> {
     fn cheapest_within<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
-        for k in 0..=2 * self.reach as isize {
-            let shift = if k % 2 == 1 { -(k + 1) / 2 } else { k / 2 };
+        for shift in self.change.shifts() {
             let there = here.wrapping_add_signed(shift);
             let cost = Lanes::load(simd, self.costs, there);
             let mut better = cost.less(best);

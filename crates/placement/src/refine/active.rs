@@ -5,7 +5,8 @@
 //! objective across it, since the objective is a minimum over plans.
 
 use super::linearise::{Curvature, UNITS, linearise};
-use super::subproblem::{Answer, Question, pose_bounds, solve};
+use super::programme::pose_bounds;
+use super::subproblem::{Answer, Question, solve};
 use super::{LENGTH_UNIT, Solution, planned};
 use crate::problem::Problem;
 use crate::redundancy::{Planner, off_grid};
@@ -32,6 +33,8 @@ pub enum Limit {
     Conditioning,
     /// The rate of beta along the path.
     BetaRate,
+    /// The turn of the spindle in space along the path.
+    SpindleTurn,
     /// The largest score of a point.
     MaxDeflection,
     /// The smallest distance of the path from axis 1.
@@ -58,7 +61,7 @@ pub struct ActiveBound {
     /// Which.
     pub side: Side,
     /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
-    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and rates (rad per step),
+    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),
     /// m per unit of 1/kappa_F.
     pub gain: f64,
 }

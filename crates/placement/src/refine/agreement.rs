@@ -21,7 +21,7 @@ const MAX_ROUNDS: usize = 24;
 const GAIN: f64 = 1e-6;
 
 /// The refined solution of a best placement, if the planner finds one that reads the same there; else the best that it finds in
-/// the neighbourhood, as far as it got when `monitor` asks to stop.
+/// the neighbourhood, as far as it got when `monitor` asks to stop, after which nothing is planned any more.
 pub fn found_again(
     planner: &Planner<'_>,
     refined: Solution,
@@ -29,7 +29,9 @@ pub fn found_again(
     monitor: &Monitor,
 ) -> Solution {
     let plan = |placement: &Placement| {
-        planned(planner, placement, scheme, off_grid::Spacing::full(planner.grid()), &mut planner.workspace())
+        let spacing = off_grid::Spacing::full(planner.grid());
+        let plan = || planned(planner, placement, scheme, spacing, &mut planner.workspace());
+        if monitor.should_stop() { None } else { plan() }
     };
     let printed = |solution: &Solution| (solution.objective / PRINTED).round();
     let again = plan(&refined.placement);

@@ -7,15 +7,19 @@ use stead_format::input::InputFile;
 use stead_placement::certify::{Certificate, NoProof, Proof};
 
 /// The content of `certificate.json`, and what `stead place --json` prints under `certificate`. `best` and `worst` are null
-/// where nothing is known, `best_reason` and `worst_reason` say why. Only `wall_s` differs from run to run, unless a time
+/// where nothing is known; `best_reason` and `worst_reason` say why, or why a bound is farther off than was asked for. Only `wall_s` differs from run to run, unless a time
 /// limit or the user ended it.
 pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Value {
     let [best, worst] = [&certificate.best, &certificate.worst];
     let nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum();
-    let reason = |side: &Result<Proof, NoProof>| side.as_ref().err().map(NoProof::to_string);
+    let reason = |side: &Result<Proof, NoProof>| match side {
+        Ok(proof) => proof.shortfall(&certificate.settings),
+        Err(reason) => Some(reason.to_string()),
+    };
     Document::new(inputs).warnings(&certificate.warnings).with(json!({
         "gap_percent_asked": Unit::PLAIN.number(certificate.settings.gap * 100.0),
         "time_limit_s": certificate.settings.time_limit,
+        "memory_gb": certificate.settings.memory as f64 / 1e9,
         "best": best.as_ref().map_or(Value::Null, side),
         "best_reason": reason(best),
         "worst": worst.as_ref().map_or(Value::Null, side),
@@ -28,6 +32,7 @@ pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Valu
 fn side(proof: &Proof) -> Value {
     json!({
         "placement": placement(&proof.placement),
+        "found_mm": Unit::DEFLECTION_MM.number(proof.found),
         "value_mm": Unit::DEFLECTION_MM.number(proof.bound.value),
         "bound_mm": proof.bound_mm(),
         "gap_percent": proof.gap_percent(),

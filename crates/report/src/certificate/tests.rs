@@ -10,13 +10,13 @@ use stead_placement::settings::CertificateSettings;
 fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
     let (value, bound) = (value_mm / 1e3, bound_mm / 1e3);
     let status = if open.is_empty() { Status::Reached } else { Status::TimeLimit };
-    let bound = Bound { value, bound, with_rate: sense == Sense::Min, nodes: 7, status, open };
+    let bound = Bound { value, met: None, bound, with_rate: sense == Sense::Min, nodes: 7, status, open };
     Proof::new(problem(), sense, outcome().cases.best.placement, bound)
 }
 
 fn certificate(best: Proof) -> Certificate {
     Certificate {
-        settings: CertificateSettings { gap: 0.005, time_limit: Some(20.0) },
+        settings: CertificateSettings { time_limit: Some(20.0), ..CertificateSettings::new(0.005) },
         best: Ok(best),
         worst: Err(NoProof::TimeLimit),
         warnings: Vec::new(),

@@ -35,11 +35,25 @@ fn stated(proof: &Proof) -> String {
             "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
              normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
         ),
-        Sense::Max => format!(
-            "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has under its \
-             best redundancy plan a mean normal deflection above {bound} mm; yours has {value} mm so: none is worse by more than \
-             {gap} %. With these limits kept this is no bound: worse ones are possible then."
-        ),
+        Sense::Max => {
+            let found = Unit::DEFLECTION_MM.text(proof.found);
+            let compared = match proof.bound.met {
+                None => format!("yours has {value} mm so: none is worse by more than {gap} %"),
+                Some(place) => format!(
+                    "yours has {found} mm so, and one at x = {}, y = {}, z = {} mm, yaw = {} deg, met on the way, {value} mm: \
+                     none is worse than that by more than {gap} %",
+                    fixed(place.x * 1e3, 1),
+                    fixed(place.y * 1e3, 1),
+                    fixed(place.z * 1e3, 1),
+                    fixed(place.yaw.to_degrees(), 1)
+                ),
+            };
+            format!(
+                "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has \
+                 under its best redundancy plan a mean normal deflection above {bound} mm; {compared}. With these limits kept \
+                 this is no bound: worse ones are possible then."
+            )
+        }
     };
     format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed_words().join("; "))
 }

@@ -23,7 +23,7 @@ fn a_plan_has_one_row_per_path_point() {
     assert_eq!(rows.len(), 1 + 105);
     assert_eq!(
         rows[0].join(","),
-        "point,segment,x_mm,y_mm,z_mm,beta_deg,posture,turn_1,turn_4,turn_6,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,theta6_deg,inverse_condition,force_x_n,force_y_n,force_z_n,deflection_x_mm,deflection_y_mm,deflection_z_mm,normal_mm,feed_mm,axial_mm,score_mm"
+        "point,segment,x_mm,y_mm,z_mm,beta_deg,posture,turn_1,turn_4,turn_6,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,theta6_deg,inverse_condition,force_x_n,force_y_n,force_z_n,deflection_x_mm,deflection_y_mm,deflection_z_mm,normal_mm,feed_mm,axial_mm,score_mm,total_mm"
     );
     assert_eq!(column(&rows, "segment")[104], "5");
 }
@@ -49,7 +49,7 @@ fn placements_state_ratios_references_and_times() {
     let table = rows(&tables::placements(&outcome().cases, context().reference.as_ref()).unwrap());
     assert_eq!(
         table[0].join(","),
-        "case,x_mm,y_mm,z_mm,q4,yaw_deg,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s"
+        "case,x_mm,y_mm,z_mm,q4,yaw_deg,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm"
     );
     assert_eq!(column(&table, "reference_mm"), ["0.083", "0.35", "0.82", "1.2"]);
     assert_eq!(column(&table, "ratio_to_case_1")[0], "1.000000");
@@ -57,6 +57,9 @@ fn placements_state_ratios_references_and_times() {
     assert_eq!(column(&table, "postures")[0].split(' ').count(), 5);
     assert_eq!(column(&table, "transfer_s"), ["4.0000", "4.0000", "4.0000", ""]);
     assert_eq!(column(&table, "cycle_s")[3], "");
+    assert_eq!(column(&table, "objective_mm"), column(&table, "mean_mm"));
+    let total = outcome().cases.best.plan.points.iter().map(|point| point.deflection.norm()).sum::<f64>() / 105.0;
+    assert_eq!(column(&table, "mean_total_mm")[0], format!("{:.7}", total * 1e3));
     let without = rows(&tables::placements(&outcome().cases, None).unwrap());
     assert_eq!(column(&without, "reference_mm"), ["", "", "", ""]);
 }

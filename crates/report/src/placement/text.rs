@@ -7,7 +7,6 @@ use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::outcome::{CANCELLATION, Case, Outcome, Plan};
 use stead_placement::problem::Problem;
-use stead_placement::refine::active::ActiveBound;
 use stead_placement::sensitivity::ForceSensitivity;
 use stead_placement::symmetry::Unsupported;
 
@@ -30,11 +29,15 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     text.push('\n');
     for case in [&outcome.cases.best, &outcome.cases.worst] {
-        line(&mut text, &held_by(case));
+        held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));
+    if let [_, ..] = &outcome.sets[..] {
+        text.push('\n');
+        text.push_str(&aligned(&set_rows(outcome, context), &[0]));
+    }
     if let Some(found) = &outcome.sensitivity {
-        line(&mut text, &sensitivity(found));
+        sensitivity(found).iter().for_each(|row| line(&mut text, row));
     }
     if let Some(stability) = &context.stability {
         text.push('\n');
@@ -68,21 +71,21 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
 /// Bounds that are named; the others are counted.
 const NAMED: usize = 3;
 
-/// Which bounds hold a best or worst placement, and what moving them would gain.
-fn held_by(case: &Case) -> String {
+/// Which bounds hold a best or worst placement, and what moving them would gain: a line each.
+fn held_by(case: &Case) -> Vec<String> {
     let word = names::sense(case.placement_sense);
     if case.active_bounds.is_empty() {
-        return format!("no bound holds the {word} placement: the robot and the path decide");
+        return vec![format!("no bound holds the {word} placement: the robot and the path decide")];
     }
-    let name = |bound: &ActiveBound| {
+    let mut lines = vec![format!("the {word} placement is held by")];
+    lines.extend(case.active_bounds.iter().take(NAMED).map(|bound| {
         let (gain, unit) = names::gain(bound);
         let side = if bound.side.is_upper { "upper" } else { "lower" };
-        format!("{} ({side}: {} {unit})", names::limit(bound.side.limit), figures(gain))
-    };
-    let named: Vec<String> = case.active_bounds.iter().take(NAMED).map(name).collect();
+        format!("  {} ({side}): {} {unit}", names::limit(bound.side.limit), figures(gain))
+    }));
     let others = case.active_bounds.len().saturating_sub(NAMED);
-    let others = if others > 0 { format!(" and {others} more") } else { String::new() };
-    format!("the {word} placement is held by {}{others}", named.join(", "))
+    lines.extend((others > 0).then(|| format!("  and {others} more")));
+    lines
 }
 
 /// The joint whose stiffness matters most to the best placement.
@@ -96,17 +99,29 @@ fn stiffest(plan: &Plan) -> String {
     )
 }
 
+/// What each stiffness set makes of the best placement.
+fn set_rows(outcome: &Outcome, context: &Context) -> Vec<Vec<String>> {
+    let mut rows = vec![["stiffness set", "mean mm", "best alone mm", "regret %"].map(str::to_owned).to_vec()];
+    let files = context.inputs.iter().filter(|input| input.role == "stiffness");
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    rows.extend(outcome.sets.iter().zip(files).map(|(set, file)| {
+        let regret = set.regret().map(|regret| fixed(regret * 100.0, 1));
+        let alone = set.alone.map(|alone| fixed(alone * 1e3, 4));
+        vec![file.name.clone(), fixed(set.mean * 1e3, 4), or_dash(alone), or_dash(regret)]
+    }));
+    rows
+}
+
 /// What force errors do to the best placement.
-fn sensitivity(found: &ForceSensitivity) -> String {
+fn sensitivity(found: &ForceSensitivity) -> Vec<String> {
     let [[plain, with], [robust, robust_with]] =
         [found.nominal, found.robust].map(|pair| pair.map(|value| fixed(value * 1e3, 4)));
-    format!(
-        "force errors of {} %: {plain} mm becomes {with} mm at the best placement; the best for these errors has {robust} mm and \
-         {robust_with} mm, {} mm and {} deg away",
-        figures(found.force_uncertainty * 100.0),
-        fixed(found.distance * 1e3, 1),
-        fixed(found.turn.to_degrees(), 1)
-    )
+    vec![
+        format!("force errors of {} % in the worst direction:", figures(found.force_uncertainty * 100.0)),
+        format!("  the best placement has {plain} mm, and {with} mm with them"),
+        format!("  the best placement for them has {robust} mm, and {robust_with} mm with them"),
+        format!("  it is {} mm and {} deg away", fixed(found.distance * 1e3, 1), fixed(found.turn.to_degrees(), 1)),
+    ]
 }
 
 fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {

@@ -46,7 +46,7 @@ fn problem(random: &mut ChaCha8Rng) -> Setting {
         problem.constraints.characteristic_length = from(0.4, 1.0);
         let middle = [from(-0.3, 0.3), from(-1.8, -0.6), from(-1.5, 1.5)];
         problem.cell.position = middle.map(|m| Interval { min: m - 0.2, max: m + 0.2 });
-        if certifiable(&problem).is_err() {
+        if certifiable(&problem, 400_000_000).is_err() {
             continue;
         }
         let setting = Setting::new(problem);

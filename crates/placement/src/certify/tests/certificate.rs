@@ -13,7 +13,8 @@ use stead_numerics::monitor::Monitor;
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
 fn proof(problem: &Problem, with_rate: bool) -> Proof {
-    let bound = Bound { value: 1.0, bound: 1.0, with_rate, nodes: 1, status: Status::Reached, open: Vec::new() };
+    let bound =
+        Bound { value: 1.0, met: None, bound: 1.0, with_rate, nodes: 1, status: Status::Reached, open: Vec::new() };
     Proof::new(problem, Sense::Min, PLACEMENT, bound)
 }
 
@@ -36,7 +37,7 @@ fn every_constraint_that_a_bound_does_not_evaluate_is_listed() {
 #[test]
 fn why_there_is_no_bound_is_told() {
     let problem = five_segments();
-    let settings = CertificateSettings { gap: 1e-3, time_limit: None };
+    let settings = CertificateSettings::new(1e-3);
     let run = |problem: &Problem, mean: f64, settings: CertificateSettings, monitor: &Monitor| {
         let certificate = certify(problem, (&PLACEMENT, mean), &PLACEMENT, settings, monitor);
         let kinds: Vec<_> = certificate.warnings.iter().map(|warning| warning.kind).collect();

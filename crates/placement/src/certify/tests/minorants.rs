@@ -217,7 +217,7 @@ fn coarser_levels_are_below_finer_ones_and_broken_ones_are_seen() {
 #[test]
 fn sums_over_boxes_are_below_what_the_planner_finds() {
     let mut problem = five_segments();
-    problem.redundancy.max_beta_rate = 1e3;
+    problem.redundancy.max_beta_rate = Some(1e3);
     let setting = Setting::new(problem);
     let placement = [1.64, -0.5564, 2.2];
     let places: Vec<[f64; 3]> = (0..105).map(|point| setting.place(placement, point)).collect();

@@ -67,7 +67,7 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
             let (before, here) = (setting.place(placement, point - 1)[2], setting.place(placement, point)[2]);
             let from = random.random_range(0..count);
             let heading = width * (from as f64 + 0.5 + share(&mut random) * 0.499_999);
-            let step = share(&mut random) * setting.problem.beta_step_limit(point);
+            let step = share(&mut random) * setting.problem.beta_step(point).half;
             let heading = heading - before + here + step;
             let to = (heading / width).floor() as isize;
             let steps = to - from as isize;

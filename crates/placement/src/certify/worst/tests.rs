@@ -8,6 +8,7 @@ use crate::certify::relaxed::{relaxed_value, score};
 use crate::problem::{Interval, Placement};
 use crate::redundancy::Planner;
 use crate::sense::Sense;
+use crate::settings::CertificateSettings;
 use crate::testing::five_segments;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -116,7 +117,7 @@ fn boxes_are_worth_no_more_than_is_said() {
 #[test]
 fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     let mut problem = five_segments();
-    problem.redundancy.max_beta_rate = 1e9;
+    problem.redundancy.max_beta_rate = Some(1e9);
     let planner = Planner::new(&problem);
     for yaw in [-2.6, 1.4] {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
@@ -156,7 +157,7 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
     let value = relaxed_value(&problem, &placement).unwrap();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| worst(&problem, value, 5e-3, &Monitor::silent()).unwrap())
+        pool.install(|| worst(&problem, value, &CertificateSettings::new(5e-3), &Monitor::silent()).unwrap())
     };
     let one = run(1);
     assert_eq!(one.status, Status::Reached, "{} {}", one.bound, one.nodes);
@@ -164,11 +165,26 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
     assert_eq!(one, run(3));
 }
 
+/// A value that others get past is no reason to blame the tables: the search goes on with the worst placement that it meets.
+#[test]
+fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
+    let (problem, placement) = corner_of_the_cell();
+    let value = relaxed_value(&problem, &placement).unwrap();
+    let found = worst(&problem, 0.98 * value, &CertificateSettings::new(1e-3), &Monitor::silent()).unwrap();
+    assert_eq!(found.status, Status::Reached, "{} {}", found.bound, found.value);
+    assert!(
+        found.value >= value * (1.0 - 1e-3) && found.bound >= value && found.gap() <= 1e-3 && found.open.is_empty()
+    );
+    let met = found.met.unwrap();
+    assert!(problem.cell.contains(&met));
+    assert_eq!(relaxed_value(&problem, &met), Some(found.value));
+}
+
 #[test]
 fn what_is_ended_early_is_a_bound_all_the_same() {
     let (problem, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
-    let found = worst(&problem, 0.5 * value, 1e-3, &stopped_at(12)).unwrap();
+    let found = worst(&problem, 0.5 * value, &CertificateSettings::new(1e-3), &stopped_at(12)).unwrap();
     assert_eq!(found.status, Status::Interrupted);
     assert!(found.bound >= value && !found.open.is_empty());
 }
@@ -179,7 +195,7 @@ fn the_worst_of_the_papers_cell_is_certified() {
     let problem = five_segments();
     let (_, placement) = corner_of_the_cell();
     let value = relaxed_value(&problem, &placement).unwrap();
-    let found = worst(&problem, value, 1e-3, &Monitor::silent()).unwrap();
+    let found = worst(&problem, value, &CertificateSettings::new(1e-3), &Monitor::silent()).unwrap();
     assert_eq!(found.status, Status::Reached);
     assert!(found.bound >= value && found.gap() <= 1e-3);
 }

@@ -13,7 +13,7 @@ type State = (f64, [f64; 6]);
 /// Random scores and real joint angles of two points, random limits.
 struct Case {
     count: usize,
-    reach: usize,
+    change: BetaChange,
     sense: Sense,
     aggregate: Aggregate,
     /// Of joints not treated modulo a turn.
@@ -50,10 +50,17 @@ impl Case {
             (0..count).map(|_| if random.random::<f64>() < 0.85 { Some(state(&mut random)) } else { None }).collect()
         };
         let points = [point(), point()];
+        // About zero in half of the cases, anywhere in the others.
+        let (reach, middle) = (random.random_range(0..4), random.random_range(-1..2));
+        let change = if random.random() {
+            BetaChange { min: -reach, max: reach }
+        } else {
+            BetaChange { min: middle - reach, max: middle + reach + random.random_range(0..2) }
+        };
         let ranges = std::array::from_fn(|j| Some(ranges[j]).filter(|_| !is_modulo[j]));
         Self {
             count,
-            reach: random.random_range(0..4),
+            change,
             sense: if random.random() { Sense::Max } else { Sense::Min },
             aggregate: if random.random_range(0..3) == 0 { Aggregate::Max } else { Aggregate::Mean },
             ranges,
@@ -63,7 +70,7 @@ impl Case {
     }
 
     fn states(&self, point: usize, wrap_around: fn(&mut StateGrid)) -> StateGrid {
-        let mut states = StateGrid::new(self.count, 5);
+        let mut states = StateGrid::new(self.count, 6);
         for (beta, state) in self.points[point].iter().enumerate() {
             if let Some((score, joints)) = state {
                 states.set(CLASS, beta, *score, *joints);
@@ -84,8 +91,8 @@ impl Case {
     /// What plain loops say of the step to `here`: the smallest cost of a predecessor.
     fn expected(&self, here: usize) -> f64 {
         let Some((score, joints)) = self.points[1][here] else { return f64::INFINITY };
-        let reach = self.reach as isize;
-        let before = (-reach..=reach).filter_map(|shift| self.points[0][self.turned(here, shift)]);
+        let changes = self.change.min..=self.change.max;
+        let before = changes.filter_map(|change| self.points[0][self.turned(here, -change as isize)]);
         let costs = before.filter(|(_, old)| self.is_within(old, &joints)).map(|(cost, _)| cost);
         let cost = costs.fold(f64::INFINITY, f64::min);
         if cost.is_finite() { self.aggregate.join_signed(self.sense, cost, self.sense.sign() * score) } else { cost }
@@ -98,7 +105,7 @@ impl Case {
     /// What is wrong with a step under the given rules, if anything is.
     fn fault<R: Rules>(&self, instructions: Instructions, wrap_around: fn(&mut StateGrid)) -> Option<String> {
         let joints = std::array::from_fn(|j| JointStep::new(self.limits[j], self.ranges[j]));
-        let step = Step { reach: self.reach, joints, sense: self.sense, aggregate: self.aggregate, instructions };
+        let step = Step { change: self.change, joints, sense: self.sense, aggregate: self.aggregate, instructions };
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
@@ -168,7 +175,7 @@ macro_rules! breach {
     };
 }
 
-breach!(BandOneTooWide: WIDER, usize, 1);
+breach!(BandOneTooWide: WIDER, i32, 1);
 breach!(PredecessorBeside: BESIDE, i16, 1);
 breach!(LimitOfTheNextJoint: OTHER_JOINT, usize, 1);
 breach!(NeverLooksAgain: LOOKS_AGAIN, bool, false);

@@ -1,0 +1,160 @@
+//! How far beta may change between neighbouring path points: by its own rate, and by how fast the spindle may turn in space.
+//!
+//! The tool frames at neighbouring points are `R_1 Rz(beta_1) D` and `R_2 Rz(beta_2) D`, R being the axes of the points and D half
+//! a turn about the feed. With `P = R_1^T R_2` the angle theta between them depends on `d = beta_2 - beta_1` alone:
+//!
+//! ```text
+//! 1 + 2 cos(theta) = P_33 + (P_11 + P_22) cos(d) + (P_12 - P_21) sin(d)
+//! cos(theta / 2) = cos(tau / 2) cos((d - m) / 2)      m = atan2(P_12 - P_21, P_11 + P_22)
+//! ```
+//!
+//! where tau is the angle between the two tool axes. So a limit on theta is an interval of d about m, the change with which the
+//! spindle turns no more than its axis has to: for a tool with a constant axis, the turn of the feed in the opposite sense.
+
+use crate::constraints::{Measured, STEP_ROUNDING};
+use crate::problem::{Problem, Redundancy};
+use crate::refine::active::Limit;
+use nalgebra::Matrix3;
+use std::f64::consts::PI;
+use stead_model::robot::angles::wrap;
+
+/// The changes of beta that are allowed from one path point to the next, modulo a turn: those within `half` of `middle`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BetaStep {
+    /// The middle, zero where the rate of beta alone decides. rad
+    pub middle: f64,
+    /// Half the width; infinite where every change is allowed, below zero where none is. rad
+    pub half: f64,
+}
+
+impl BetaStep {
+    /// By how much a change is off the middle, within half a turn. rad
+    pub fn off_middle(&self, change: f64) -> f64 {
+        wrap(change - self.middle)
+    }
+
+    /// Whether a change (rad) is allowed, up to rounding.
+    #[inline]
+    pub fn allows(&self, change: f64) -> bool {
+        let half = self.half + STEP_ROUNDING;
+        (change - self.middle).abs() <= half || self.off_middle(change).abs() <= half
+    }
+}
+
+/// How the point's axes and beta turn the tool from one path point to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Turn {
+    /// Angle tau between the tool axes. rad
+    tilt: f64,
+    /// The change of beta with which the tool turns by tau only. rad
+    middle: f64,
+}
+
+impl Turn {
+    /// Between points with these axes (feed, left of the feed, tool axis) as columns.
+    fn between(from: &Matrix3<f64>, to: &Matrix3<f64>) -> Self {
+        let p = from.tr_mul(to);
+        let (a, b) = (from.column(2), to.column(2));
+        Self {
+            tilt: libm::atan2(a.cross(&b).norm(), a.dot(&b)),
+            middle: libm::atan2(p[(0, 1)] - p[(1, 0)], p[(0, 0)] + p[(1, 1)]),
+        }
+    }
+
+    /// Half the width of the changes of beta for which the tool turns by at most `limit` (rad): below zero where there are none.
+    fn half(&self, limit: f64) -> f64 {
+        if limit >= PI {
+            return f64::INFINITY;
+        }
+        let (sine, cosine) = libm::sincos(self.tilt / 2.0);
+        let room = libm::sin(limit / 2.0);
+        if self.tilt > limit + STEP_ROUNDING {
+            return -1.0;
+        }
+        let square = ((room - sine) * (room + sine)).max(0.0);
+        2.0 * libm::asin((square.sqrt() / cosine).min(1.0))
+    }
+}
+
+impl Problem {
+    fn turn(&self, point: usize) -> Turn {
+        let points = self.task.points();
+        Turn::between(&points[point - 1].workpiece_from_point(), &points[point].workpiece_from_point())
+    }
+
+    /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set. rad
+    pub fn spindle_turn_limit(&self, point: usize) -> Option<f64> {
+        self.turn_limit(point, &self.redundancy)
+    }
+
+    fn turn_limit(&self, point: usize, limits: &Redundancy) -> Option<f64> {
+        let by_length = limits.max_spindle_turn.map(|limit| limit * self.step_length(point));
+        let by_time = limits.max_spindle_speed.map(|limit| limit * self.step_time(point));
+        by_length.into_iter().chain(by_time).reduce(f64::min)
+    }
+
+    /// The angle between the tool frames at path points `point - 1` and `point` when beta changes by `change` (rad). rad
+    pub fn spindle_turn(&self, point: usize, change: f64) -> f64 {
+        let turn = self.turn(point);
+        let (sine, cosine) = libm::sincos((change - turn.middle) / 2.0);
+        let (tilt_sine, tilt_cosine) = libm::sincos(turn.tilt / 2.0);
+        2.0 * libm::atan2(libm::hypot(tilt_sine, tilt_cosine * sine), (tilt_cosine * cosine).abs())
+    }
+
+    /// The angle between the tool axes at path points `point - 1` and `point`: no beta turns the spindle by less. rad
+    pub fn axis_turn(&self, point: usize) -> f64 {
+        self.turn(point).tilt
+    }
+
+    /// The allowed changes of beta from path point `point - 1` to `point`: within the rate of beta and the turn of the spindle.
+    ///
+    /// Where both together leave two intervals, as they can where the feed all but reverses, the wider one is taken.
+    pub fn beta_step(&self, point: usize) -> BetaStep {
+        self.beta_step_within(point, &self.redundancy)
+    }
+
+    /// The same with the limits of another planning.
+    pub(crate) fn beta_step_within(&self, point: usize, limits: &Redundancy) -> BetaStep {
+        let rate = limits.max_beta_rate.map_or(f64::INFINITY, |rate| rate * self.step_length(point));
+        let by_rate = BetaStep { middle: 0.0, half: rate };
+        let Some(limit) = self.turn_limit(point, limits) else { return by_rate };
+        let turn = self.turn(point);
+        let half = turn.half(limit);
+        if half >= PI {
+            return by_rate;
+        }
+        if rate >= PI || half < 0.0 {
+            return BetaStep { middle: turn.middle, half };
+        }
+        let common = |middle: f64| {
+            let (min, max) = (f64::max(-rate, middle - half), f64::min(rate, middle + half));
+            BetaStep { middle: (min + max) / 2.0, half: (max - min) / 2.0 }
+        };
+        let wider = |a: BetaStep, b: BetaStep| if b.half > a.half { b } else { a };
+        [-2.0 * PI, 2.0 * PI].map(|turned| common(turn.middle + turned)).into_iter().fold(common(turn.middle), wider)
+    }
+
+    /// Which limit is behind the lower and the upper end of the allowed changes at a path point.
+    pub(crate) fn beta_step_ends(&self, point: usize, step: &BetaStep) -> [Limit; 2] {
+        let rate = self.redundancy.max_beta_rate.map(|rate| rate * self.step_length(point));
+        let is_by_rate = |end: f64| rate.is_some_and(|rate| (end.abs() - rate).abs() <= STEP_ROUNDING);
+        [step.middle - step.half, step.middle + step.half].map(|end| match self.spindle_turn_limit(point) {
+            Some(_) if !is_by_rate(end) => Limit::SpindleTurn,
+            _ => Limit::BetaRate,
+        })
+    }
+
+    /// The constraints on the change of beta (rad) from path point `point - 1` to `point` that are in force.
+    pub fn on_beta_step(&self, point: usize, change: f64) -> impl Iterator<Item = Measured> + use<> {
+        let rate = self
+            .redundancy
+            .max_beta_rate
+            .map(|rate| Measured::BetaRate { step: wrap(change).abs(), limit: rate * self.step_length(point) });
+        let limit = self.spindle_turn_limit(point);
+        let turn = limit.map(|limit| Measured::SpindleTurn { turn: self.spindle_turn(point, change), limit });
+        [rate, turn].into_iter().flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests;

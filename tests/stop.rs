@@ -1,0 +1,193 @@
+//! Ctrl-C on long paths, what is left out then, results without maps, and `stead score` on the placement of a result.
+
+use crate::common::{Bench, Ended, RUN};
+use serde_json::Value;
+use std::fmt::Write;
+
+/// What a placement leaves, maps apart.
+const FILES: [&str; 11] = [
+    "best-worst-plan.csv",
+    "best.csv",
+    "cell.svg",
+    "convergence.csv",
+    "convergence.svg",
+    "placements.csv",
+    "refinements.csv",
+    "summary.json",
+    "transfers.csv",
+    "worst-worst-plan.csv",
+    "worst.csv",
+];
+const MAPS: [&str; 4] =
+    ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
+
+fn names(bench: &Bench, folder: &str) -> Vec<String> {
+    bench.tree(folder).into_keys().collect()
+}
+
+fn json_in(bench: &Bench, file: &str) -> Value {
+    serde_json::from_str(&bench.read(file)).unwrap()
+}
+
+/// A small cell that every candidate is feasible in, and a search so small that it takes a second.
+fn small() -> Bench {
+    let bench = Bench::new();
+    bench.replace(RUN, "x_mm = [-300.0, 300.0]", "x_mm = [0.0, 10.0]");
+    bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-1645.0, -1640.0]");
+    bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [-220.0, -214.0]");
+    bench.replace(RUN, "q4 = [-1.0, 1.0]", "q4 = [0.62, 0.65]");
+    bench.replace(RUN, "generations = 3\nbasins = 2", "generations = 1\nbasins = 1");
+    bench
+}
+
+/// Rows of a raster, one segment each, as a task.
+fn raster(rows: usize, points: usize) -> String {
+    let mut text =
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n".to_owned();
+    for row in 0..rows {
+        for point in 0..points {
+            let (x, y) = (point as f64 * 2.0, row as f64 * 4.0);
+            writeln!(text, "{},{x},{y},0,1,0,0,0,0,1,-150,280,50", row + 1).unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
+    let bench = small();
+    assert_eq!(bench.stead(&["place", RUN, "--out", "out"]).code, Some(0));
+    let before = bench.tree("out");
+    let text = bench.read(RUN);
+    bench.write(RUN, &format!("{text}\n[output]\nmaps = false\n"));
+    let ended = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!(names(&bench, "out"), FILES);
+    for (name, bytes) in bench.tree("out") {
+        // The summary names the run file's digest.
+        assert!(name == "summary.json" || bytes == before[&name], "{name}");
+    }
+    assert!(MAPS.iter().all(|map| before.contains_key(*map)));
+
+    let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!(names(&bench, "scored"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+}
+
+#[test]
+fn the_exact_placement_of_a_result_is_scored_and_written() {
+    let bench = small();
+    let placed = bench.stead(&["place", RUN, "--out", "out", "--json"]);
+    assert_eq!(placed.code, Some(0), "{}", placed.stderr);
+    let with = |more: &[&str]| bench.stead(&[&["score", RUN, "--placement-of", "out", "--json"], more].concat());
+    for (case, more) in [(0, &[][..]), (0, &["--case", "1"]), (2, &["--case", "3"])] {
+        let scored = with(more);
+        assert_eq!((scored.code, scored.stderr.as_str()), (Some(0), ""));
+        let (scored, case) = (scored.json(), &placed.json()["cases"][case]);
+        assert_eq!((&scored["placement_exact"], &scored["interrupted"]), (&case["placement_exact"], &false.into()));
+    }
+    let scored = with(&["--out", "scored"]);
+    let files =
+        ["best-plan.csv", "deflection-map.csv", "deflection-map.svg", "placement.svg", "score.json", "worst-plan.csv"];
+    assert_eq!(names(&bench, "scored"), files);
+    assert_eq!(json_in(&bench, "scored/score.json"), scored.json());
+    let header = |file: &str| bench.read(file).lines().next().unwrap().to_owned();
+    assert_eq!(header("scored/best-plan.csv"), header("out/best.csv"));
+    assert_eq!(header("scored/deflection-map.csv"), header("out/deflection-map-best.csv"));
+    assert!(bench.read("scored/placement.svg").contains("This placement: mean "));
+    assert!(bench.read("scored/deflection-map.svg").contains("Deflection at this placement"));
+}
+
+#[test]
+fn a_folder_that_is_no_result_of_this_problem_is_refused() {
+    let bench = small();
+    assert_eq!(bench.stead(&["place", RUN, "--out", "out"]).code, Some(0));
+    let refused = |arguments: &[&str], parts: &[&str]| {
+        let ended = bench.stead(&[&["score", RUN, "--out", "scored"], arguments].concat());
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+        ended.assert_says(parts);
+        assert!(!bench.path("scored").exists());
+    };
+    refused(&["--placement-of", "nowhere"], &["nowhere/summary.json: cannot be read", "; allowed: a folder that"]);
+    bench.write("other/summary.json", "{\"robots\": []}");
+    refused(&["--placement-of", "other"], &["other/summary.json: cases: is missing"]);
+    refused(&["--placement-of", "out", "--case", "2"], &["--case", "allowed: 1 or 3"]);
+    refused(&["--placement-of", "out", "--x-mm", "0"], &["--placement-of", "--x-mm"]);
+    refused(&["--case", "1", "--x-mm", "0"], &["--placement-of"]);
+    refused(&["--x-mm", "0", "--y-mm", "0", "--z-mm", "0"], &["--q4"]);
+    let task = bench.read("tasks/five-segments.csv");
+    bench.write("tasks/five-segments.csv", &task.replacen("1,", "1, ", 1));
+    refused(
+        &["--placement-of", "out"],
+        &["out/summary.json: inputs: comes from another task file than ", "found sha256"],
+    );
+}
+
+#[cfg(unix)]
+mod interrupt {
+    use super::*;
+    use std::process::{Child, Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    /// Starts a command, waits until its folder is made and for some time more, and interrupts it.
+    fn interrupted(bench: &Bench, arguments: &[&str], after: Duration) -> Ended {
+        let mut command = bench.command(arguments);
+        let child: Child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = Instant::now();
+        while !bench.path("out").is_dir() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "it does not begin");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        std::thread::sleep(after);
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        Ended::from(child.wait_with_output().unwrap())
+    }
+
+    const STOPPED: &str = "interrupted: ending with what there is; Ctrl-C again ends at once\n";
+
+    #[test]
+    fn a_long_path_is_placed_with_what_there_is_and_without_maps() {
+        for tables in ["auto", "never"] {
+            let bench = Bench::new();
+            bench.write("tasks/five-segments.csv", &raster(30, 100));
+            bench.replace(RUN, "generations = 3", "generations = 2000");
+            bench.replace(RUN, "seed = 1", &format!("tables = \"{tables}\"\nseed = 1"));
+            let arguments = ["place", RUN, "--out", "out", "--json", "--certify", "1"];
+            let ended = interrupted(&bench, &arguments, Duration::from_millis(4000));
+            assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+            assert!(ended.stderr.contains(STOPPED), "{}", ended.stderr);
+            ended.assert_says(&["the best found so far", "warning: interrupted: the deflection maps are left out\n"]);
+            assert_eq!(
+                (&ended.json()["interrupted"], &json_in(&bench, "out/summary.json")["interrupted"]),
+                (&true.into(), &true.into())
+            );
+            assert!(FILES.iter().all(|file| bench.path(&format!("out/{file}")).exists()));
+            assert!(!MAPS.iter().any(|file| bench.path(&format!("out/{file}")).exists()));
+            for case in ended.json()["cases"].as_array().unwrap() {
+                assert_eq!(case["plan"].as_array().unwrap().len(), 3000);
+            }
+            // Nor is there time for a certificate, which its file says.
+            let certificate = json_in(&bench, "out/certificate.json");
+            assert_eq!(
+                (&certificate["best"], &certificate["best_reason"]),
+                (&Value::Null, &"interrupted before it began".into())
+            );
+        }
+    }
+
+    #[test]
+    fn a_score_has_both_plans_and_leaves_out_the_map() {
+        let bench = Bench::new();
+        bench.write("tasks/five-segments.csv", &raster(30, 100));
+        bench.replace(RUN, "beta_step_deg = 7.2", "beta_step_deg = 0.25");
+        let place = ["--x-mm", "0", "--y-mm", "-1800", "--z-mm", "-400", "--yaw-deg", "0"];
+        let arguments = [&["score", RUN, "--out", "out", "--json"], &place[..]].concat();
+        let ended = interrupted(&bench, &arguments, Duration::from_millis(400));
+        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+        assert_eq!(ended.stderr, format!("{STOPPED}warning: interrupted: the deflection map is left out\n"));
+        let document = ended.json();
+        assert_eq!(document["interrupted"], true);
+        assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
+        assert_eq!(names(&bench, "out"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+    }
+}
