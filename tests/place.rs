@@ -138,7 +138,7 @@ fn summary_says_what_it_comes_from_and_nothing_of_time() {
         assert_eq!(input["sha256"], digest.as_str());
     }
     // The wall of the deflection is that of the part.
-    let timeless = text.replace("\"wall\": {", "").replace("\"wall\": 1.0", "");
+    let timeless = text.replace("\"wall\":", "").replace("\"wall\",", "");
     for key in ["wall", "per_second", "threads", "date", "host"] {
         assert!(!timeless.contains(&format!("{key}_")) && !timeless.contains(&format!("\"{key}")), "{key}");
     }

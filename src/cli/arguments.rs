@@ -1,17 +1,14 @@
 //! The arguments of the command line: subcommands and options.
 
+use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
-use super::values::{
-    case, damping_scale, finite, gap, point, positive, quaternion, rpm, sector, seed, threads, variant,
-};
+use super::values::{damping_scale, finite, gap, point, positive, rpm, sector, seed, threads, variant};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
-use stead_model::robot::angles::yaw_from_q4;
-use stead_placement::problem::Placement;
 use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
@@ -305,85 +302,5 @@ impl From<&ModelArguments> for Overrides {
     fn from(model: &ModelArguments) -> Self {
         let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
         Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
-    }
-}
-
-/// A placement: the workpiece origin in the robot base frame, and its yaw.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub(super) struct PlaceArguments {
-    /// x of the workpiece origin in mm
-    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true)]
-    x_mm: f64,
-    /// y of the workpiece origin in mm
-    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true)]
-    y_mm: f64,
-    /// z of the workpiece origin in mm
-    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
-    z_mm: f64,
-    #[command(flatten)]
-    turn: Turn,
-}
-
-/// The yaw, in one of two ways.
-#[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
-struct Turn {
-    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
-    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true)]
-    q4: Option<f64>,
-    /// Yaw of the workpiece in degrees
-    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
-    yaw_deg: Option<f64>,
-}
-
-impl PlaceArguments {
-    pub fn placement(&self) -> Placement {
-        placement([self.x_mm, self.y_mm, self.z_mm], self.turn.q4, self.turn.yaw_deg)
-    }
-}
-
-/// A placement from mm, and from Q4 or else degrees.
-fn placement(xyz_mm: [f64; 3], q4: Option<f64>, yaw_deg: Option<f64>) -> Placement {
-    let [x, y, z] = xyz_mm.map(|mm| mm / 1e3);
-    let yaw = match q4 {
-        Some(q4) => yaw_from_q4(q4),
-        None => stead_model::robot::angles::wrap(yaw_deg.unwrap_or(0.0).to_radians()),
-    };
-    Placement { x, y, z, yaw }
-}
-
-/// A placement in numbers, or that of a result.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub(super) struct GivenPlacement {
-    /// x of the workpiece origin in mm
-    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
-    x_mm: Option<f64>,
-    /// y of the workpiece origin in mm
-    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
-    y_mm: Option<f64>,
-    /// z of the workpiece origin in mm
-    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true, required_unless_present = "placement_of")]
-    z_mm: Option<f64>,
-    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
-    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true, conflicts_with = "yaw_deg",
-          required_unless_present_any = ["yaw_deg", "placement_of"])]
-    q4: Option<f64>,
-    /// Yaw of the workpiece in degrees
-    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
-    yaw_deg: Option<f64>,
-    /// Results folder of `stead place` from the same run file: its exact placement is taken
-    #[arg(long, value_name = "RESULTS", conflicts_with_all = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"])]
-    pub placement_of: Option<PathBuf>,
-    /// Case of the results: 1, the best placement, or 3, the worst [default: 1]
-    #[arg(long, value_name = "N", value_parser = case, allow_hyphen_values = true, requires = "placement_of")]
-    pub case: Option<u8>,
-}
-
-impl GivenPlacement {
-    /// The placement in numbers.
-    pub fn placement(&self) -> Placement {
-        placement([self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0)), self.q4, self.yaw_deg)
     }
 }

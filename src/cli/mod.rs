@@ -10,6 +10,7 @@ mod circularity;
 mod compensate;
 mod completions;
 mod explain;
+mod given;
 mod help;
 mod identify;
 mod init;

@@ -50,6 +50,8 @@ pub(crate) use inline_schema;
 pub trait Unit: Copy + Debug + PartialEq + 'static {
     /// The unit as it is written.
     const SYMBOL: &'static str;
+    /// No machine has more of it, to either side: infinity where that cannot be said.
+    const LARGEST: f64;
     /// A number in the unit, in SI units and radians.
     fn to_si(value: f64) -> f64;
 }
@@ -60,7 +62,7 @@ pub trait Range: Copy + Debug + PartialEq + 'static {
     const ENDS: (Bound<f64>, Bound<f64>);
 }
 
-/// A finite number of a file in a unit and a range.
+/// A finite number of a file in a unit and a range, and no larger than any machine has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity<U, R = Finite> {
     written: f64,
@@ -76,6 +78,14 @@ impl<U: Unit, R: Range> Quantity<U, R> {
     /// The number in the unit of the file.
     pub fn written(self) -> f64 {
         self.written
+    }
+
+    /// The ends of what is allowed: those of the range, and those of the unit where the range has none.
+    fn ends() -> (Bound<f64>, Bound<f64>) {
+        let limited =
+            |end: Bound<f64>, limit: f64| if end == Unbounded && limit.is_finite() { Included(limit) } else { end };
+        let (from, to) = R::ENDS;
+        (limited(from, -U::LARGEST), limited(to, U::LARGEST))
     }
 }
 
@@ -103,13 +113,27 @@ fn plain(value: f64) -> String {
     if (1e-4..1e6).contains(&value.abs()) || value == 0.0 { value.to_string() } else { format!("{value:e}") }
 }
 
+/// What a range allows of a unit of which no machine has more than a limit, in words, of one number or of several.
+fn in_words_up_to(ends: (Bound<f64>, Bound<f64>), limit: f64, is_one: bool) -> String {
+    let words = in_words(ends, is_one);
+    if !limit.is_finite() {
+        return words;
+    }
+    match ends {
+        (Unbounded, Unbounded) => format!("{words} from {} to {}", plain(-limit), plain(limit)),
+        (_, Unbounded) => format!("{words} and not above {}", plain(limit)),
+        (Unbounded, _) => format!("{words} and not below {}", plain(-limit)),
+        _ => words,
+    }
+}
+
 impl<U: Unit, R: Range> Expects for Quantity<U, R> {
     fn expected() -> String {
-        in_words(R::ENDS, true)
+        in_words_up_to(R::ENDS, U::LARGEST, true)
     }
 
     fn expected_of_each() -> String {
-        in_words(R::ENDS, false)
+        in_words_up_to(R::ENDS, U::LARGEST, false)
     }
 }
 
@@ -125,7 +149,7 @@ impl<U: Unit, R: Range> Visitor<'_> for Reading<Quantity<U, R>> {
     expecting!(Quantity<U, R>);
 
     fn visit_f64<E: Error>(self, written: f64) -> Result<Self::Value, E> {
-        if written.is_finite() && R::ENDS.contains(&written) {
+        if written.is_finite() && Quantity::<U, R>::ends().contains(&written) {
             Ok(Quantity { written, kind: PhantomData })
         } else {
             Err(E::invalid_value(Unexpected::Float(written), &self))
@@ -152,13 +176,14 @@ impl<U: Unit, R: Range> JsonSchema for Quantity<U, R> {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut schema = json_schema!({ "type": "number", "x-unit": U::SYMBOL });
-        let (key, value) = match R::ENDS.0 {
+        let (from, to) = Self::ends();
+        let (key, value) = match from {
             Included(from) => ("minimum", Some(from)),
             Excluded(from) => ("exclusiveMinimum", Some(from)),
             Unbounded => ("", None),
         };
         value.map(|value| schema.insert(key.to_owned(), value.into()));
-        let (key, value) = match R::ENDS.1 {
+        let (key, value) = match to {
             Included(to) => ("maximum", Some(to)),
             Excluded(to) => ("exclusiveMaximum", Some(to)),
             Unbounded => ("", None),
@@ -190,7 +215,7 @@ ranges! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::{Acute, NotNegative, Positive, Share};
+    use crate::units::{Acute, Mm, MnmPerRad, NotNegative, Positive, Share};
 
     #[test]
     fn ranges_are_said_in_words() {
@@ -205,5 +230,25 @@ mod tests {
         ] {
             assert_eq!((in_words(range, true).as_str(), in_words(range, false).as_str()), (one, several));
         }
+    }
+
+    #[test]
+    fn what_no_machine_has_is_out_of_range() {
+        let up_to = |range, is_one| in_words_up_to(range, 1e6, is_one);
+        assert_eq!(up_to(Finite::ENDS, true), "a finite number from -1e6 to 1e6");
+        assert_eq!(up_to(Positive::ENDS, true), "a finite number above 0 and not above 1e6");
+        assert_eq!(up_to(Positive::ENDS, false), "numbers above 0 and not above 1e6");
+        assert_eq!(up_to(NotNegative::ENDS, true), "a finite number not below 0 and not above 1e6");
+        assert_eq!(up_to(Share::ENDS, true), in_words(Share::ENDS, true));
+        assert_eq!(in_words_up_to(Finite::ENDS, f64::INFINITY, true), "a finite number");
+        let read =
+            |written: f64| Reading::<MnmPerRad<Positive>>(PhantomData).visit_f64::<serde::de::value::Error>(written);
+        assert_eq!(read(1e6).unwrap().si(), 1e12);
+        for refused in [2e6, 1e308, f64::INFINITY, 0.0, -1.0] {
+            let message = read(refused).unwrap_err().to_string();
+            assert!(message.contains("a finite number above 0 and not above 1e6"), "{message}");
+        }
+        let schema = Mm::<Finite>::json_schema(&mut SchemaGenerator::default());
+        assert_eq!((schema.get("minimum"), schema.get("maximum")), (Some(&(-1e6).into()), Some(&1e6.into())));
     }
 }

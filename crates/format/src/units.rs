@@ -4,15 +4,16 @@ use crate::quantity::{Quantity, Unit};
 use std::f64::consts::TAU;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
-/// Declares units: their marker types and the short names of their quantities.
+/// Declares units: their marker types, the short names of their quantities, and what no machine has more of.
 macro_rules! units {
-    ($($(#[$doc:meta])* $marker:ident $name:ident $symbol:literal = |$value:ident| $si:expr;)*) => {$(
+    ($($(#[$doc:meta])* $marker:ident $name:ident $symbol:literal up to $largest:expr, = |$value:ident| $si:expr;)*) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct $marker;
 
         impl Unit for $marker {
             const SYMBOL: &'static str = $symbol;
+            const LARGEST: f64 = $largest;
             fn to_si($value: f64) -> f64 {
                 $si
             }
@@ -25,59 +26,59 @@ macro_rules! units {
 
 units! {
     /// A number without a unit.
-    One Number "1" = |value| value;
+    One Number "1" up to f64::INFINITY, = |value| value;
     /// A length. mm
-    Millimetre Mm "mm" = |value| value / 1e3;
+    Millimetre Mm "mm" up to 1e6, = |value| value / 1e3;
     /// A length. um
-    Micrometre Um "um" = |value| value / 1e6;
+    Micrometre Um "um" up to 1e6, = |value| value / 1e6;
     /// An angle. deg
-    Degree Deg "deg" = |value| value.to_radians();
+    Degree Deg "deg" up to 1e6, = |value| value.to_radians();
     /// An angle. arc seconds
-    ArcSecond Arcsec "arcsec" = |value| (value / 3600.0).to_radians();
+    ArcSecond Arcsec "arcsec" up to 1e6, = |value| (value / 3600.0).to_radians();
     /// An angular speed. deg/s
-    DegreePerSecond DegPerS "deg/s" = |value| value.to_radians();
+    DegreePerSecond DegPerS "deg/s" up to 1e6, = |value| value.to_radians();
     /// An angular acceleration. deg/s^2
-    DegreePerSecond2 DegPerS2 "deg/s^2" = |value| value.to_radians();
+    DegreePerSecond2 DegPerS2 "deg/s^2" up to 1e9, = |value| value.to_radians();
     /// An angular jerk. deg/s^3
-    DegreePerSecond3 DegPerS3 "deg/s^3" = |value| value.to_radians();
+    DegreePerSecond3 DegPerS3 "deg/s^3" up to 1e12, = |value| value.to_radians();
     /// An angle per length. deg/mm
-    DegreePerMillimetre DegPerMm "deg/mm" = |value| value.to_radians() * 1e3;
+    DegreePerMillimetre DegPerMm "deg/mm" up to 1e12, = |value| value.to_radians() * 1e3;
     /// A speed. mm/s
-    MillimetrePerSecond MmPerS "mm/s" = |value| value / 1e3;
+    MillimetrePerSecond MmPerS "mm/s" up to 1e6, = |value| value / 1e3;
     /// A speed. mm/min
-    MillimetrePerMinute MmPerMin "mm/min" = |value| value / 6e4;
+    MillimetrePerMinute MmPerMin "mm/min" up to 1e8, = |value| value / 6e4;
     /// An acceleration. m/s^2
-    MetrePerSecond2 MPerS2 "m/s^2" = |value| value;
+    MetrePerSecond2 MPerS2 "m/s^2" up to 1e4, = |value| value;
     /// A rotational speed. 1/min
-    PerMinute Rpm "1/min" = |value| value / 60.0 * TAU;
+    PerMinute Rpm "1/min" up to 1e7, = |value| value / 60.0 * TAU;
     /// A frequency. Hz
-    Hertz Hz "Hz" = |value| value;
+    Hertz Hz "Hz" up to 1e9, = |value| value;
     /// A duration. s
-    Second S "s" = |value| value;
+    Second S "s" up to 1e9, = |value| value;
     /// A mass. kg
-    Kilogram Kg "kg" = |value| value;
+    Kilogram Kg "kg" up to 1e6, = |value| value;
     /// A moment of inertia. kg m^2
-    KilogramMetre2 KgM2 "kg m^2" = |value| value;
+    KilogramMetre2 KgM2 "kg m^2" up to 1e9, = |value| value;
     /// A force. N
-    Newton N "N" = |value| value;
+    Newton N "N" up to 1e9, = |value| value;
     /// A moment. N m
-    NewtonMetre Nm "N m" = |value| value;
+    NewtonMetre Nm "N m" up to 1e9, = |value| value;
     /// A force per length. N/mm
-    NewtonPerMillimetre NPerMm "N/mm" = |value| value * 1e3;
+    NewtonPerMillimetre NPerMm "N/mm" up to 1e9, = |value| value * 1e3;
     /// A pressure. MPa
-    Megapascal Mpa "MPa" = |value| value * 1e6;
+    Megapascal Mpa "MPa" up to 1e7, = |value| value * 1e6;
     /// A rotational stiffness. MN m/rad
-    MeganewtonMetrePerRadian MnmPerRad "MN m/rad" = |value| value * 1e6;
+    MeganewtonMetrePerRadian MnmPerRad "MN m/rad" up to 1e6, = |value| value * 1e6;
     /// A rotational compliance. urad/(N m)
-    MicroradianPerNewtonMetre UradPerNm "urad/(N m)" = |value| value / 1e6;
+    MicroradianPerNewtonMetre UradPerNm "urad/(N m)" up to 1e9, = |value| value / 1e6;
     /// A rotational damping. N m s/rad
-    NewtonMetreSecondPerRadian NmsPerRad "N m s/rad" = |value| value;
+    NewtonMetreSecondPerRadian NmsPerRad "N m s/rad" up to 1e9, = |value| value;
     /// An amount of money. EUR
-    Euro Eur "EUR" = |value| value;
+    Euro Eur "EUR" up to 1e12, = |value| value;
     /// An amount of memory. GB
-    Gigabyte Gb "GB" = |value| value * 1e9;
+    Gigabyte Gb "GB" up to 1e6, = |value| value * 1e9;
     /// A share in per cent.
-    Hundredth Percent "%" = |value| value / 100.0;
+    Hundredth Percent "%" up to 1e6, = |value| value / 100.0;
 }
 
 pub use crate::quantity::Finite;

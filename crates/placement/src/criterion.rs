@@ -12,6 +12,7 @@ pub(crate) use force_error::worst_gain;
 use super::problem::Problem;
 use super::sense::Sense;
 use nalgebra::{Matrix3, Vector3};
+use stead_model::robot::Robot;
 use stead_numerics::scalar::Scalar;
 
 /// How much the parts of a deflection count.
@@ -131,6 +132,34 @@ impl Aggregate {
     }
 }
 
+/// How the scores under several sets of joint stiffness make up that of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    /// Their mean.
+    Mean,
+    /// The largest.
+    Worst,
+}
+
+impl Over {
+    /// As files state it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Worst => "worst",
+        }
+    }
+}
+
+/// What the stiffness of the arm may be: several sets of one geometry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StiffnessSets {
+    /// The arm of the problem with the compliances of each set, and what is known of them; at least one.
+    pub robots: Vec<Robot>,
+    /// How their scores make up that of a point.
+    pub over: Over,
+}
+
 /// How a placement is scored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Criterion {
@@ -147,6 +176,8 @@ pub struct Criterion {
     /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
     /// uncertainty is not known.
     pub confidence: f64,
+    /// The stiffness sets that a score covers; none where it is that of the problem's robot.
+    pub stiffness: Option<StiffnessSets>,
 }
 
 impl Criterion {
@@ -165,6 +196,7 @@ impl Default for Criterion {
             segment_weights: Vec::new(),
             force_uncertainty: 0.0,
             confidence: 0.0,
+            stiffness: None,
         }
     }
 }
@@ -205,6 +237,19 @@ impl<T: Scalar> ScoredDirections<T> {
 }
 
 impl Problem {
+    /// The arm with each set of compliances that a score covers: the robot itself where no others are given.
+    pub fn scored_robots(&self) -> &[Robot] {
+        match &self.criterion.stiffness {
+            Some(sets) => &sets.robots,
+            None => std::slice::from_ref(&self.robot),
+        }
+    }
+
+    /// Whether a score is the largest over the sets of compliances.
+    pub fn is_over_worst(&self) -> bool {
+        self.criterion.stiffness.as_ref().is_some_and(|sets| sets.over == Over::Worst)
+    }
+
     /// The directions that are scored at a path point, in the frame in which its axes (feed, left of the feed, tool axis) are
     /// given as columns.
     pub fn scored_directions<T: Scalar>(&self, point: usize, axes: &Matrix3<T>) -> ScoredDirections<T> {

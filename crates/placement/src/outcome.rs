@@ -5,7 +5,7 @@ use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
 use super::refine::active::ActiveBound;
 use super::sense::Sense;
-use super::sensitivity::ForceSensitivity;
+use super::sensitivity::{ForceSensitivity, SetOutcome};
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -289,6 +289,8 @@ pub struct Outcome {
     pub interrupted: bool,
     /// What the force errors do to the best placement, where that was asked for.
     pub sensitivity: Option<ForceSensitivity>,
+    /// What each stiffness set of the criterion makes of the best placement; empty where there are none.
+    pub sets: Vec<SetOutcome>,
     /// What should be known about the result though nothing is wrong, in sentences.
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.

@@ -7,7 +7,7 @@ use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
 use super::sense::Sense;
-use super::sensitivity::{ForceSensitivity, objective_with_force_errors};
+use super::sensitivity::{ForceSensitivity, SetOutcome, mean_by, objective_with_force_errors, with_set_alone};
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{Refined, refine_basins, refine_side};
@@ -83,7 +83,9 @@ pub fn place(
         Some(size) if !interrupted => force_sensitivity(problem, &best_case, &found, size, monitor),
         _ => None,
     };
+    let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, &found, monitor) };
     Ok(Outcome {
+        sets,
         notes: small_part(problem, &best_case.plan).into_iter().collect(),
         sensitivity,
         cases: Cases {
@@ -131,6 +133,22 @@ fn force_sensitivity(
         distance: (0..3).map(|k| (to[k] - from[k]) * (to[k] - from[k])).sum::<f64>().sqrt(),
         turn: wrap(to.yaw - from.yaw).abs(),
     })
+}
+
+/// What each stiffness set of the criterion makes of the best placement, beside the best for that set alone.
+fn set_outcomes(problem: &Problem, best: &Case, found: &[SearchResult; 2], monitor: &Monitor) -> Vec<SetOutcome> {
+    let Some(sets) = &problem.criterion.stiffness else { return Vec::new() };
+    let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
+    let outcome = |set| {
+        let alone = with_set_alone(problem, set);
+        let planner = Planner::finer(&alone);
+        let (solutions, _) = refine_side(&Evaluator::new(&planner, None), &basins, monitor);
+        let best_alone = solutions.into_iter().flatten().next().map(|Refined { solution, .. }| {
+            mean_by(&alone, &solution.placement, &detailed(&alone, &solution.placement, &solution.plans))
+        });
+        SetOutcome { mean: mean_by(&alone, &best.placement, &best.plan), alone: best_alone }
+    };
+    sets.robots.iter().map(outcome).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! What a result rests on: how its mean answers to the stiffness of every joint, and to errors of the force.
 
+use super::criterion::Criterion;
 use super::evaluate::reference::state;
-use super::outcome::Plan;
+use super::outcome::{Plan, PlanPoint};
 use super::problem::{Placement, Problem};
 use super::redundancy::SegmentPlan;
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ pub fn mean_by_stiffness(problem: &Problem, placement: &Placement, plans: &[Segm
         .flat_map(|plan| plan.points.clone().zip(&plan.betas).map(|(point, beta)| (point, *beta, plan.posture)))
         .collect();
     let mean = |robot: Robot| {
-        let changed = Problem { robot, ..problem.clone() };
+        let changed = with_set_alone(problem, &robot);
         let score = |(point, beta, posture): &(usize, f64, _)| {
             state(&changed, *point, placement, *beta, *posture).map_or(0.0, |state| state.score())
         };
@@ -67,6 +68,35 @@ pub struct ForceSensitivity {
     pub distance: f64,
     /// How far it is turned from that. rad
     pub turn: f64,
+}
+
+/// What one set of compliances makes of a best placement that was found for several.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SetOutcome {
+    /// The mean score under this set, of the plan found for all. m
+    pub mean: f64,
+    /// The mean score of the best placement for this set alone, refined from the same basins; `None` where none has a plan. m
+    pub alone: Option<f64>,
+}
+
+impl SetOutcome {
+    /// How much larger the mean is than it could be for this set alone, relative to that.
+    pub fn regret(&self) -> Option<f64> {
+        self.alone.filter(|alone| *alone > 0.0).map(|alone| self.mean / alone - 1.0)
+    }
+}
+
+/// The same problem with one set of compliances alone.
+pub fn with_set_alone(problem: &Problem, set: &Robot) -> Problem {
+    let criterion = Criterion { stiffness: None, ..problem.criterion.clone() };
+    Problem { robot: set.clone(), criterion, ..problem.clone() }
+}
+
+/// The mean score of a plan at a placement as another problem on the same path scores it. m
+pub fn mean_by(problem: &Problem, placement: &Placement, plan: &Plan) -> f64 {
+    let score =
+        |p: &PlanPoint| state(problem, p.point, placement, p.beta, p.posture).map_or(p.score, |state| state.score());
+    plan.points.iter().map(score).sum::<f64>() / plan.points.len() as f64
 }
 
 /// The objective of a plan at a placement, with scores that cover force errors of a relative size. m

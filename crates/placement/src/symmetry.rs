@@ -131,6 +131,8 @@ pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
     let Criterion { weights, aggregate, .. } = &problem.criterion;
     if *weights != Weights::WALL {
         Err(Unsupported::OtherCriterion { key: "criterion.direction" })
+    } else if problem.criterion.stiffness.is_some() {
+        Err(Unsupported::OtherCriterion { key: "criterion.robots" })
     } else if *aggregate != Aggregate::Mean {
         Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
     } else {

@@ -63,6 +63,7 @@ pub fn outcome() -> &'static Outcome {
             states: 157_248_000,
             interrupted: false,
             sensitivity: None,
+            sets: Vec::new(),
             notes: Vec::new(),
             warnings: Vec::new(),
         }
@@ -213,7 +214,7 @@ impl Grid {
             axial_part: state.axial_part,
             surface_part: None,
             score: state.score(),
-            deviation: state.deviation,
+            deviation: state.own.deviation,
         }
     }
 }

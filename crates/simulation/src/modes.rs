@@ -5,7 +5,7 @@
 //! frequency is that without damping, near `omega = |s|`.
 
 use super::arm::Arm;
-use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Schur, Vector3};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -64,6 +64,9 @@ impl<const N: usize> LinearArm<N> {
         let half = factor.l().solve_lower_triangular(&to_dynamic(&self.stiffness))?;
         let both = factor.l().solve_lower_triangular(&half.transpose())?;
         let both = (&both + both.transpose()) / 2.0;
+        if !is_within_reach(&both) {
+            return None;
+        }
         let mut found: Vec<f64> =
             both.symmetric_eigenvalues().iter().map(|square| libm::sqrt(square.max(0.0)) / TAU).collect();
         found.sort_by(f64::total_cmp);
@@ -80,11 +83,10 @@ impl<const N: usize> LinearArm<N> {
         Some(matrix)
     }
 
-    /// All modes, by natural frequency; none where the mass matrix is not positive definite.
+    /// All modes, by natural frequency; none where the mass matrix is not positive definite, or stiffness and damping are beyond all
+    /// numbers.
     pub fn modes(&self) -> Option<Vec<Mode>> {
-        let matrix = self.state_matrix()?;
-        let mut modes: Vec<Mode> = matrix
-            .complex_eigenvalues()
+        let mut modes: Vec<Mode> = eigenvalues(self.state_matrix()?)?
             .iter()
             // One of each pair; what does not swing is by itself.
             .filter(|s| s.im >= 0.0)
@@ -134,6 +136,27 @@ impl<const N: usize> LinearArm<N> {
         let response = jacobian.transpose() * angles;
         Some(Matrix3::from_fn(|row, column| response[(row, column)]))
     }
+}
+
+/// Entries of a matrix whose eigenvalues, powers and exponential can be held in numbers.
+const REACH: f64 = 1e25;
+/// Steps of the QR algorithm for each eigenvalue; two or three are usual.
+const QR_STEPS: usize = 100;
+
+/// Whether a matrix has finite entries, none of them so large that its powers overflow.
+pub(crate) fn is_within_reach(matrix: &DMatrix<f64>) -> bool {
+    matrix.iter().all(|entry| entry.abs() <= REACH)
+}
+
+/// The eigenvalues of a square matrix; none where its entries are [beyond reach](is_within_reach) or the QR algorithm does not
+/// converge.
+pub(crate) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    if !is_within_reach(&matrix) {
+        return None;
+    }
+    let steps = QR_STEPS * matrix.nrows();
+    let schur = Schur::try_new(matrix, f64::EPSILON, steps)?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
 fn to_dynamic<const N: usize>(matrix: &SMatrix<f64, N, N>) -> DMatrix<f64> {

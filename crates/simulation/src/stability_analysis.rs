@@ -4,7 +4,7 @@ use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::milling::PassCut;
 use super::modes::{LinearArm, Mode};
 use super::setup::Setup;
-use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, lobes};
+use super::stability::{Lobe, Plant, PlantError, SemiDiscretisation, Verdict, ZeroOrder, ZeroOrderError, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
 use serde::Serialize;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
@@ -106,13 +106,13 @@ pub fn analyse(
 /// Critical depths up to `max_depth` (m), and the stability of the cut.
 ///
 /// # Errors
-/// [`EngagementError`] for a cut without width.
+/// [`ZeroOrderError`] for a cut without width, and for a spindle too slow for the zero-order solution.
 pub fn cut_stability(
     plant: &Plant,
     cutter: &Cutter,
     cut: &PassCut,
     max_depth: f64,
-) -> Result<CutStability, EngagementError> {
+) -> Result<CutStability, ZeroOrderError> {
     let motion = SemiDiscretisation::new(plant, cutter, cut)?;
     Ok(CutStability {
         semi_discretisation: motion.critical_depth(max_depth),
@@ -133,6 +133,12 @@ pub enum StabilityError {
     /// The cut has no width.
     #[error("{0}")]
     Engagement(#[from] EngagementError),
+    /// The motion of the arm cannot be computed.
+    #[error("{0}")]
+    Plant(#[from] PlantError),
+    /// There is no zero-order solution.
+    #[error("{0}")]
+    ZeroOrder(#[from] ZeroOrderError),
 }
 
 /// The arm of a setup, linearised at a distance (m) along its pass.
@@ -201,14 +207,14 @@ impl AnyLinearArm {
     /// The tip as a plant of the stability analysis.
     ///
     /// # Errors
-    /// [`StabilityError::Singular`].
+    /// [`StabilityError::Plant`].
     pub fn plant(&self, frame: &CutFrame) -> Result<Plant, StabilityError> {
         let directions = [frame.feed, frame.normal, frame.axis];
         let plant = match self {
             Self::Six(linear) => Plant::of_arm(linear, directions),
             Self::Eighteen(linear) => Plant::of_arm(linear, directions),
         };
-        plant.ok_or(StabilityError::Singular)
+        Ok(plant?)
     }
 
     /// Frequency response in the plane of the cut at frequencies (Hz).

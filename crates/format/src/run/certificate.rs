@@ -105,7 +105,7 @@ mod tests {
         assert_eq!((with("").memory, with("memory_gb = 0.5\n").memory), (4_000_000_000, 500_000_000));
         for bad in ["0", "-1", "0.0001", "1e7", "nan"] {
             let table = format!("[certificate]\ngap_percent = 1\nmemory_gb = {bad}\n[cell]");
-            assert_refused("[cell]", &table, &["run.toml:8: certificate.memory_gb: ", &format!("found {bad};"), "GB"]);
+            assert_refused("[cell]", &table, &["run.toml:8: certificate.memory_gb: ", &format!("found {bad};")]);
         }
     }
 }

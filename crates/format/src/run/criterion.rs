@@ -1,16 +1,18 @@
 //! The tables `[criterion]` and `[[segment]]` of a run file: what is minimised.
 
-use crate::input::InputError;
+use crate::input::{InputError, InputFile, input_file};
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::robot::robot_from;
 use crate::scalars::{Whole, Word, words};
+use crate::toml_file::TomlFile;
 use crate::units::{Number, ZeroToTen, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_model::robot::Robot;
+use stead_model::robot::{Joint, Robot};
 use stead_model::task::Task;
-use stead_placement::criterion::{Aggregate, Criterion, Direction, Weights};
+use stead_placement::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
 
 ranges! {
     /// From 0 to 1000.
@@ -21,10 +23,11 @@ ranges! {
 
 words!(Direction: "wall" => Direction::Wall, "surface" => Direction::Surface, "axis" => Direction::Axis,
     "total" => Direction::Total);
+words!(Over: "mean" => Over::Mean, "worst" => Over::Worst);
 words!(Aggregate: "mean" => Aggregate::Mean, "rms" => Aggregate::Rms, "max" => Aggregate::Max);
 
 /// By what a placement is scored.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CriterionTable {
     /// Which part of the deflection is scored: normal to the `wall` (axis x feed; where left out), normal to the `surface` that the
@@ -40,6 +43,10 @@ pub struct CriterionTable {
     /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
     /// file needs a table `[covariance]`.
     pub confidence: Option<Number<ZeroToTen>>,
+    /// Robot files of the same geometry, relative to the folder of this file: the sets of joint stiffness that a score covers.
+    pub robots: Option<Vec<String>>,
+    /// With `robots`, what is scored: the `mean` over the sets, or the `worst` of them at each point.
+    pub over: Option<Word<Over>>,
 }
 
 /// What the parts of a deflection count; 0 where left out.
@@ -68,13 +75,14 @@ pub struct SegmentTable {
 
 impl CriterionTable {
     /// # Errors
-    /// [`InputError`] for a direction beside weights, weights that are all zero, a surface that the task does not state, and a
+    /// [`InputError`] for stiffness sets of another geometry or without a word on what is scored, a direction beside weights, weights that are all zero, a surface that the task does not state, and a
     /// confidence where nothing is known of the errors of the compliances.
     pub(super) fn criterion(
         &self,
         segments: &[SegmentTable],
         robot: &Robot,
         task: &Task,
+        sets: Vec<Robot>,
         root: &Place<'_>,
     ) -> Result<Criterion, InputError> {
         let at = root.key("criterion");
@@ -92,7 +100,20 @@ impl CriterionTable {
         }
         let [force_uncertainty, confidence] =
             [self.force_uncertainty, self.confidence].map(|value| value.map_or(0.0, Quantity::si));
-        if confidence > 0.0 && robot.uncertainty().is_none() {
+        let stiffness = match (self.over, sets.is_empty()) {
+            (Some(over), false) => Some(StiffnessSets { robots: sets, over: over.0 }),
+            (None, true) => None,
+            (Some(_), true) => {
+                return Err(at.key("over").error("is there without criterion.robots", "both or neither"));
+            }
+            (None, false) => {
+                let allowed = "criterion.over = \"mean\" or \"worst\" beside them";
+                return Err(at.key("robots").error("do not say what is scored over them", allowed));
+            }
+        };
+        let known = |robot: &Robot| robot.uncertainty().is_some();
+        let is_known = stiffness.as_ref().map_or(known(robot), |sets| sets.robots.iter().all(known));
+        if confidence > 0.0 && !is_known {
             return Err(at.key("confidence").error(
                 "asks for standard deviations, but the robot file has no table [covariance]",
                 "0, or a robot file that says how well its compliances are known",
@@ -104,8 +125,57 @@ impl CriterionTable {
             segment_weights: segment_weights(segments, task.segments().len(), &root.key("segment"))?,
             force_uncertainty,
             confidence,
+            stiffness,
         })
     }
+
+    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, and the files.
+    ///
+    /// # Errors
+    /// [`InputError`] for a file that cannot be read, an arm of another geometry or with other joint limits, an empty list.
+    pub(super) fn sets(
+        &self,
+        robot: &Robot,
+        narrowed: impl Fn(Robot) -> Result<Robot, InputError>,
+        root: &Place<'_>,
+    ) -> Result<(Vec<Robot>, Vec<InputFile>), InputError> {
+        let at = root.key("criterion").key("robots");
+        let Some(names) = &self.robots else { return Ok((Vec::new(), Vec::new())) };
+        if names.is_empty() {
+            return Err(at.error("is empty", "one robot file or more"));
+        }
+        let (mut robots, mut inputs) = (Vec::new(), Vec::new());
+        for number in 1..=names.len() {
+            let at = at.element(number);
+            let file = at.named_file()?;
+            let source = TomlFile::new(&file.file, file.bytes)?;
+            let set = narrowed(robot_from(&source)?)?;
+            if let Some(joint) = differs(robot, &set) {
+                let problem = format!("is an arm of another geometry or other limits at joint {joint}");
+                return Err(at.error(problem, "robot files with the rows and joint limits of the run's robot"));
+            }
+            inputs.push(input_file("stiffness", file.name, source.bytes()));
+            let laws = set.joints().clone().map(|joint| joint.compliance);
+            let with = robot.with_compliances(laws).map_err(|e| at.error(e.to_string(), "another robot file"))?;
+            robots.push(match set.uncertainty() {
+                Some(known) => {
+                    with.with_uncertainty(known.clone()).map_err(|e| at.error(e.to_string(), "another robot file"))?
+                }
+                None => with,
+            });
+        }
+        Ok((robots, inputs))
+    }
+}
+
+/// Rows of two arms may differ by this and be the same. m, rad
+const SAME_ROW: f64 = 1e-9;
+
+/// The first joint (from 1) whose row or limits differ.
+fn differs(a: &Robot, b: &Robot) -> Option<usize> {
+    let row = |joint: &Joint| [joint.alpha, joint.a, joint.d, joint.min, joint.max];
+    let is_other = |(a, b): (&Joint, &Joint)| row(a).iter().zip(row(b)).any(|(a, b)| (a - b).abs() > SAME_ROW);
+    a.joints().iter().zip(b.joints()).position(is_other).map(|joint| joint + 1)
 }
 
 impl WeightsTable {
@@ -153,6 +223,39 @@ mod tests {
         assert_eq!(criterion.segment_weights, [2.0]);
         let text = format!("{RUN}[criterion]\nweights = {{ wall = 1.0, axis = 0.5 }}\n");
         assert_eq!(read(&text).unwrap().problem.criterion.weights, Weights { axis: 0.5, ..Weights::WALL });
+    }
+
+    #[test]
+    fn stiffness_sets_are_arms_of_one_geometry() {
+        let folder = crate::testing::folder();
+        let file = folder.path().join("run.toml");
+        let arm = std::fs::read_to_string(folder.path().join("arm.toml")).unwrap();
+        let softer = arm.replacen("stiffness_mnm_per_rad = 0.237", "stiffness_mnm_per_rad = 0.2", 1);
+        assert_ne!(arm, softer);
+        std::fs::write(folder.path().join("softer.toml"), softer).unwrap();
+        std::fs::write(folder.path().join("longer.toml"), arm.replacen("a_mm = 1250", "a_mm = 1300", 1)).unwrap();
+        let read = |table: &str| {
+            std::fs::write(&file, format!("{RUN}[criterion]\n{table}\n")).unwrap();
+            crate::read_run(&file)
+        };
+        let run = read("robots = ['arm.toml', 'softer.toml']\nover = 'worst'").unwrap();
+        let sets = run.problem.criterion.stiffness.unwrap();
+        assert_eq!((sets.over, sets.robots.len(), run.inputs.len()), (Over::Worst, 2, 5));
+        assert_eq!(sets.robots[0].joints(), run.problem.robot.joints());
+        assert_eq!(sets.robots[1].joints()[0].compliance, (1e-6 / 0.2).into());
+        for (table, parts) in [
+            (
+                "robots = ['arm.toml', 'longer.toml']\nover = 'mean'",
+                [":18: criterion.robots[2]: ", "geometry", "joint 3"],
+            ),
+            ("robots = ['arm.toml']", [":18: criterion.robots: ", "over", "\"worst\""]),
+            ("over = 'mean'", [":18: criterion.over: ", "without criterion.robots", "both"]),
+            ("robots = []\nover = 'mean'", [":18: criterion.robots: ", "is empty", "one robot file"]),
+            ("robots = ['none.toml']\nover = 'mean'", [":18: criterion.robots[1]: ", "cannot be read", "none.toml"]),
+        ] {
+            let message = read(table).unwrap_err().to_string();
+            parts.iter().for_each(|part| assert!(message.contains(part), "{part} in {message}"));
+        }
     }
 
     #[test]

@@ -154,14 +154,18 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     let imported = parse_csv(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> =
         [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
-    let inputs = vec![
+    let mut inputs = vec![
         source.as_config(),
         input_file("robot", robot_file.name, robot_source.bytes()),
         input_file("task", &task_file.name, &task_file.bytes),
     ];
     let task = task_from(imported, &task_file, &task_field, cutting.as_ref(), run.stability.is_some())?;
     let segments = run.segment.unwrap_or_default();
-    let criterion = run.criterion.unwrap_or_default().criterion(&segments, &robot, &task, &at)?;
+    let criterion = run.criterion.unwrap_or_default();
+    let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
+    let (sets, files) = criterion.sets(&robot, narrowed, &at)?;
+    inputs.extend(files);
+    let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let postures = match &run.postures {
         Some(table) => table.rules(&at.key("postures"))?,

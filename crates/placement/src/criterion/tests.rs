@@ -165,6 +165,40 @@ fn the_stated_worst_case_is_the_largest_under_errors_on_the_boundary() {
     }
 }
 
+#[test]
+fn scores_over_sets_are_their_mean_or_their_largest() {
+    let mut problem = with_surface();
+    problem.criterion.weights = Weights::TOTAL;
+    let softer = |factor: f64| {
+        let compliances = problem.robot.constant_compliances().unwrap();
+        problem
+            .robot
+            .with_compliances(
+                [compliances[0] * factor]
+                    .into_iter()
+                    .chain(compliances[1..].iter().copied())
+                    .collect::<Vec<_>>()
+                    .try_into()
+                    .unwrap_or(compliances),
+            )
+            .unwrap()
+    };
+    let robots = vec![softer(1.0), softer(0.3), softer(2.0)];
+    let alone: Vec<f64> = robots
+        .iter()
+        .map(|robot| {
+            let problem = Problem { robot: robot.clone(), ..problem.clone() };
+            state(&problem, 41, &optimum(), 0.4, Posture::ALL[2]).unwrap().score()
+        })
+        .collect();
+    let mut over = |over| {
+        problem.criterion.stiffness = Some(StiffnessSets { robots: robots.clone(), over });
+        state(&problem, 41, &optimum(), 0.4, Posture::ALL[2]).unwrap().score()
+    };
+    assert!((over(Over::Mean) / (alone.iter().sum::<f64>() / 3.0) - 1.0).abs() < 1e-12);
+    assert_eq!(over(Over::Worst), alone.iter().copied().fold(0.0, f64::max));
+}
+
 proptest! {
     #[test]
     fn derivatives_of_scores_agree_with_central_differences(
@@ -187,7 +221,7 @@ proptest! {
         let placement = Placement::from(std::array::from_fn(|k| Dual::<5>::variable(base[k], k)));
         let Ok(exact) = state(&problem, point, &placement, Dual::variable(beta, 4), Posture::ALL[2]) else { return Ok(()) };
         // A degree and more away from where a signed part vanishes.
-        prop_assume!(exact.inverse_condition.value > 0.05 && exact.scored.value.abs() > 1e-4);
+        prop_assume!(exact.inverse_condition.value > 0.05 && exact.own.scored.value.abs() > 1e-4);
         let gradient = exact.score().gradient;
         let along = gradient[0] * direction.x + gradient[1] * direction.y + gradient[2] * direction.z + gradient[3] - gradient[4];
         let h = 1e-5;

@@ -3,7 +3,7 @@
 //! This is the reference evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
 //! batch evaluator of [`super::batch`], which is tested against this one.
 
-use crate::criterion::{ScoredDirections, worst_force_error};
+use crate::criterion::{Over, ScoredDirections, worst_force_error};
 use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, conditioning::inverse_condition};
@@ -29,6 +29,15 @@ pub struct State<T: Scalar> {
     pub axial_part: T,
     /// Its part along the normal of the surface, where the task states that. m
     pub surface_part: Option<T>,
+    /// What is scored under the robot's own compliances.
+    pub own: SetScore<T>,
+    /// The score: that under the robot's own compliances, or the mean or the largest under the sets of the criterion. m
+    pub score: T,
+}
+
+/// What is scored of a state under one set of compliances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetScore<T: Scalar> {
     /// The scored part: with its sign where one direction is scored, else the norm of the parts. Its absolute value is c_i
     /// (eq. 11, where that is the wall). m
     pub scored: T,
@@ -40,10 +49,17 @@ pub struct State<T: Scalar> {
     pub margin: T,
 }
 
-impl<T: Scalar> State<T> {
-    /// The score of the point: c_i, what force errors can add to it, and `confidence sigma_i`. m
+impl<T: Scalar> SetScore<T> {
+    /// The score: c_i, what force errors can add to it, and `confidence sigma_i`. m
     pub fn score(&self) -> T {
         self.scored.abs() + self.uncertainty + self.margin
+    }
+}
+
+impl<T: Scalar> State<T> {
+    /// The score of the point. m
+    pub fn score(&self) -> T {
+        self.score
     }
 }
 
@@ -65,7 +81,47 @@ pub fn state<T: Scalar>(
     let PlacedPoint { tip, axes, force, moment } = &placed;
     let compliances = problem.robot.compliances_at(&joints);
     let deflection = displacement(&frames, tip, &compliances, force, moment).linear;
-    let moved_by = |force: &Vector3<T>| displacement(&frames, tip, &compliances, force, &Vector3::zeros()).linear;
+    let own = set_score(problem, &problem.robot, point, &frames, &placed, &joints);
+    let score = match &problem.criterion.stiffness {
+        None => own.score(),
+        Some(sets) => {
+            let scores =
+                sets.robots.iter().map(|set| set_score(problem, set, point, &frames, &placed, &joints).score());
+            match sets.over {
+                Over::Mean => scores.fold(T::zero(), |sum, score| sum + score).scale(1.0 / sets.robots.len() as f64),
+                Over::Worst => {
+                    scores.fold(T::zero(), |worst, score| if score.value() > worst.value() { score } else { worst })
+                }
+            }
+        }
+    };
+    Ok(State {
+        joints,
+        inverse_condition: inverse_condition(&frames, tip, problem.constraints.characteristic_length),
+        base_distance: problem.base_distance(tip),
+        deflection,
+        feed_part: deflection.dot(&axes.column(0)),
+        normal_part: deflection.dot(&axes.column(1)),
+        axial_part: deflection.dot(&axes.column(2)),
+        surface_part: problem.surface_normal(point, placement).map(|normal| deflection.dot(&normal)),
+        own,
+        score,
+    })
+}
+
+/// What is scored under the compliances of a robot, at joint angles that [`state`] found for path point `point`.
+fn set_score<T: Scalar>(
+    problem: &Problem,
+    robot: &Robot,
+    point: usize,
+    frames: &Frames<T>,
+    placed: &PlacedPoint<T>,
+    joints: &[T; 6],
+) -> SetScore<T> {
+    let PlacedPoint { tip, axes, force, moment } = placed;
+    let compliances = robot.compliances_at(joints);
+    let deflection = displacement(frames, tip, &compliances, force, moment).linear;
+    let moved_by = |force: &Vector3<T>| displacement(frames, tip, &compliances, force, &Vector3::zeros()).linear;
     let directions = problem.scored_directions(point, axes);
     let scored = Scored::new(&directions, &deflection);
     let size = problem.criterion.force_uncertainty * problem.task.wrenches()[point].force.norm();
@@ -84,28 +140,52 @@ pub fn state<T: Scalar>(
             parts.dot(&parts).sqrt() - scored.part
         }
     };
-    let deviation = problem.robot.uncertainty().map(|known| {
-        let parts = parts_per_compliance(&frames, &placed, &scored.direction);
-        known.standard_deviation(&by_parameters(&problem.robot, &joints, &parts))
+    let deviation = robot.uncertainty().map(|known| {
+        let parts = parts_per_compliance(frames, placed, &scored.direction);
+        known.standard_deviation(&by_parameters(robot, joints, &parts))
     });
     let margin = match deviation {
         Some(deviation) if problem.criterion.confidence > 0.0 => deviation.scale(problem.criterion.confidence),
         _ => T::zero(),
     };
-    Ok(State {
-        joints,
-        inverse_condition: inverse_condition(&frames, tip, problem.constraints.characteristic_length),
-        base_distance: problem.base_distance(tip),
-        deflection,
-        feed_part: deflection.dot(&axes.column(0)),
-        normal_part: deflection.dot(&axes.column(1)),
-        axial_part: deflection.dot(&axes.column(2)),
-        surface_part: problem.surface_normal(point, placement).map(|normal| deflection.dot(&normal)),
-        scored: scored.part,
-        uncertainty,
-        deviation,
-        margin,
-    })
+    SetScore { scored: scored.part, uncertainty, deviation, margin }
+}
+
+/// What is scored under every set of compliances ([`Problem::scored_robots`]), at joint angles that [`state`] found for path point
+/// `point` and a workpiece at `placement`, with the derivatives of each scored part by the uncertain parameters of its set
+/// ([`scored_part_by_parameters`]).
+pub fn set_scores<T: Scalar>(
+    problem: &Problem,
+    point: usize,
+    placement: &Placement<T>,
+    joints: &[T; 6],
+) -> Vec<(SetScore<T>, Vec<T>)> {
+    let frames = Frames::new(&problem.robot, joints);
+    let placed = problem.placed(point, placement);
+    let of = |robot: &Robot| {
+        let slopes = scored_slopes(problem, robot, point, &frames, &placed, joints);
+        (set_score(problem, robot, point, &frames, &placed, joints), slopes)
+    };
+    problem.scored_robots().iter().map(of).collect()
+}
+
+/// The parts of the deflection along the scored directions under every set of compliances, as [`set_scores`]; several directions
+/// only. m
+pub fn scored_parts<T: Scalar>(
+    problem: &Problem,
+    point: usize,
+    placement: &Placement<T>,
+    joints: &[T; 6],
+) -> Vec<Vec<T>> {
+    let frames = Frames::new(&problem.robot, joints);
+    let placed = problem.placed(point, placement);
+    let directions = problem.scored_directions(point, &placed.axes);
+    let of = |robot: &Robot| {
+        let compliances = robot.compliances_at(joints);
+        let moved = displacement(&frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
+        directions.vectors().iter().map(|direction| direction.dot(&moved)).collect()
+    };
+    problem.scored_robots().iter().map(of).collect()
 }
 
 /// The scored part of a deflection, and the direction along which it grows fastest, as long as it grows.
@@ -140,17 +220,30 @@ pub fn scored_part_by_parameters<T: Scalar>(
     joints: &[T; 6],
 ) -> Vec<T> {
     let frames = Frames::new(&problem.robot, joints);
-    let placed = problem.placed(point, placement);
+    scored_slopes(problem, &problem.robot, point, &frames, &problem.placed(point, placement), joints)
+}
+
+fn scored_slopes<T: Scalar>(
+    problem: &Problem,
+    robot: &Robot,
+    point: usize,
+    frames: &Frames<T>,
+    placed: &PlacedPoint<T>,
+    joints: &[T; 6],
+) -> Vec<T> {
+    if robot.uncertainty().is_none() {
+        return Vec::new();
+    }
     let directions = problem.scored_directions(point, &placed.axes);
     let direction = match directions.single() {
         Some(direction) => *direction,
         None => {
-            let compliances = problem.robot.compliances_at(joints);
-            let moved = displacement(&frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
+            let compliances = robot.compliances_at(joints);
+            let moved = displacement(frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
             Scored::new(&directions, &moved).direction
         }
     };
-    by_parameters(&problem.robot, joints, &parts_per_compliance(&frames, &placed, &direction))
+    by_parameters(robot, joints, &parts_per_compliance(frames, placed, &direction))
 }
 
 /// What each joint adds to the part of the deflection along a direction per compliance: `(J_j . n) (J_j . w)`, in m per
@@ -276,7 +369,7 @@ mod tests {
                 let Ok(down) = at(shift) else { continue };
                 let difference = |f: &dyn Fn(&State<f64>) -> f64| (f(&up) - f(&down)) / (2.0 * h);
                 prop_assert!((exact.normal_part.gradient[k] - difference(&|s| s.normal_part)).abs() < 1e-8);
-                prop_assert!((exact.uncertainty.gradient[k] - difference(&|s| s.uncertainty)).abs() < 1e-8);
+                prop_assert!((exact.own.uncertainty.gradient[k] - difference(&|s| s.own.uncertainty)).abs() < 1e-8);
                 prop_assert!((exact.inverse_condition.gradient[k] - difference(&|s| s.inverse_condition)).abs() < 1e-6);
                 for j in 0..6 {
                     let turned = stead_model::robot::angles::wrap(up.joints[j] - down.joints[j]) / (2.0 * h);

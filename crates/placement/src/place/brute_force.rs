@@ -59,6 +59,9 @@ fn paths() -> [Task; 2] {
     [task(straight.collect()), task(bent.collect())]
 }
 
+/// Objectives below this are balanced to nothing. m
+const FLAT: f64 = 1e-6;
+
 #[test]
 fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
     let transfer = TransferSettings::default();
@@ -90,7 +93,8 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
                     let found = scored.best.objective;
                     let name = format!("{arm} {path} {direction:?} {:?}", problem.criterion.aggregate);
                     assert!(found > best * (1.0 - 1e-3) - 1e-9, "{name}: {found} below {best} at {placement:?}");
-                    assert!(found < worst * (1.0 + 2e-2), "{name}: {found} above {worst} at {placement:?}");
+                    // Where plans can balance the scored part to nothing, the worst placement is a spike in a flat landscape.
+                    assert!(found < worst * (1.0 + 2e-2) + FLAT, "{name}: {found} above {worst} at {placement:?}");
                 }
             }
         }

@@ -28,7 +28,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = state(problem, point, placement, plan.betas[place], plan.posture) else { continue };
             let placed = problem.placed(point, placement);
-            let sign = if s.scored < 0.0 { -1.0 } else { 1.0 };
+            let sign = if s.own.scored < 0.0 { -1.0 } else { 1.0 };
             for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {
                 *sum += sign * slope;
             }
@@ -47,7 +47,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 axial_part: s.axial_part,
                 surface_part: s.surface_part,
                 score: s.score(),
-                deviation: s.deviation,
+                deviation: s.own.deviation,
             });
         }
     }

@@ -107,10 +107,7 @@ impl<'a> Planner<'a> {
         Self {
             problem,
             grid,
-            evaluators: Flips::of(&problem.robot)
-                .iter()
-                .map(|flips| BatchEvaluator::new(problem, &grid, *flips))
-                .collect(),
+            evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
             rate_limit: rate_limit::RateLimit::new(problem, &grid),
             steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their

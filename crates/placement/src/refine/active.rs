@@ -5,7 +5,8 @@
 //! objective across it, since the objective is a minimum over plans.
 
 use super::linearise::{Curvature, UNITS, linearise};
-use super::subproblem::{Answer, Question, pose_bounds, solve};
+use super::programme::pose_bounds;
+use super::subproblem::{Answer, Question, solve};
 use super::{LENGTH_UNIT, Solution, planned};
 use crate::problem::Problem;
 use crate::redundancy::{Planner, off_grid};

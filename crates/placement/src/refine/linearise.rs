@@ -1,6 +1,7 @@
 //! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
 
-use super::super::evaluate::reference::{State, scored_part_by_parameters, state};
+use super::super::criterion::Criterion;
+use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
 use super::super::problem::{Placement, Problem};
 use super::{LENGTH_UNIT, Solution};
 use nalgebra::{Matrix5, SymmetricEigen};
@@ -17,20 +18,29 @@ pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0
 pub struct Local {
     /// The state with exact gradients.
     pub state: State<Dual<LOCAL>>,
-    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near. m
-    pub added: Dual<LOCAL>,
-    /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
-    /// criterion asks, whose Euclidean norm is [`State::margin`]. Empty elsewhere. m
-    pub changes: Vec<Dual<LOCAL>>,
-    /// Where several directions are scored and their norm has its kink near: the parts along them, whose norm is
-    /// [`State::scored`]. Empty elsewhere. m
-    pub parts: Vec<Dual<LOCAL>>,
+    /// What is scored, under every set of compliances.
+    pub sets: Vec<LocalScore>,
     /// Real joint angles. rad
     pub joints: [f64; 6],
     /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
-    /// left out.
+    /// left out; over several sets their mean, or that of the worst.
     /// m per square unit
     pub curvature: Matrix5<f64>,
+}
+
+/// What is scored of a path point under one set of compliances, linearised.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalScore {
+    /// See [`SetScore::scored`]. m
+    pub scored: Dual<LOCAL>,
+    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near. m
+    pub added: Dual<LOCAL>,
+    /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
+    /// criterion asks, whose Euclidean norm is [`SetScore::margin`]. Empty elsewhere. m
+    pub changes: Vec<Dual<LOCAL>>,
+    /// Where several directions are scored and their norm has its kink near: the parts along them, whose norm is
+    /// [`SetScore::scored`]. Empty elsewhere. m
+    pub parts: Vec<Dual<LOCAL>>,
 }
 
 /// Step from gradient to gradient for the curvature, in scaled variables.
@@ -60,16 +70,19 @@ pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Op
                 plan.betas[place],
             ];
             let mut centre = gradient(problem, point, at, plan.posture)?;
-            for kinked in [&mut centre.changes, &mut centre.parts] {
-                if !is_near_kink(kinked) {
-                    kinked.clear();
+            for set in &mut centre.sets {
+                for kinked in [&mut set.changes, &mut set.parts] {
+                    if !is_near_kink(kinked) {
+                        kinked.clear();
+                    }
                 }
             }
             let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
-            let Differentiated { state, changes, parts } = centre;
-            let margin = if changes.is_empty() { state.margin } else { Dual::constant(0.0) };
-            let added = state.uncertainty + margin;
-            locals.push(Local { state, added, changes, parts, joints: plan.joints[place], curvature });
+            let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
+                let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
+                LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
+            });
+            locals.push(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], curvature });
         }
     }
     Some(locals)
@@ -87,9 +100,15 @@ fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
     size < KINK * KINK * slope
 }
 
-/// A state, and the vectors of which the norms of its score are taken.
+/// A state, and what is scored of it under every set of compliances.
 struct Differentiated {
     state: State<Dual<LOCAL>>,
+    sets: Vec<DifferentiatedSet>,
+}
+
+/// A score, and the vectors of which its norms are taken.
+struct DifferentiatedSet {
+    score: SetScore<Dual<LOCAL>>,
     /// That of the margin.
     changes: Vec<Dual<LOCAL>>,
     /// That of the scored part, where several directions are scored and errors of the force do not smooth it.
@@ -106,22 +125,30 @@ fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture)
     let [x, y, z, yaw, beta] = variables;
     let placement = Placement::from([x, y, z, yaw]);
     let found = state(problem, point, &placement, beta, posture).ok()?;
-    let confidence = problem.criterion.confidence;
-    let changes = match problem.robot.uncertainty() {
-        Some(known) if confidence > 0.0 => {
-            let slopes = scored_part_by_parameters(problem, point, &placement, &found.joints);
-            known.changes(&slopes).map(|change| change.scale(confidence)).collect()
+    let Criterion { confidence, force_uncertainty, weights, stiffness, .. } = &problem.criterion;
+    let robots = problem.scored_robots();
+    let scores = match stiffness {
+        Some(_) => set_scores(problem, point, &placement, &found.joints),
+        None if *confidence > 0.0 => {
+            vec![(found.own, scored_part_by_parameters(problem, point, &placement, &found.joints))]
         }
-        _ => Vec::new(),
+        None => vec![(found.own, Vec::new())],
     };
-    let directions = problem.scored_directions(point, &problem.placed(point, &placement).axes);
-    let parts = match directions.single() {
-        None if problem.criterion.force_uncertainty == 0.0 => {
-            directions.vectors().iter().map(|direction| direction.dot(&found.deflection)).collect()
-        }
-        _ => Vec::new(),
+    let mut parts = match weights.is_single() || *force_uncertainty > 0.0 {
+        true => vec![Vec::new(); robots.len()],
+        false => scored_parts(problem, point, &placement, &found.joints),
     };
-    Some(Differentiated { state: found, changes, parts })
+    let sets = scores.into_iter().zip(robots).zip(&mut parts).map(|(((score, slopes), robot), parts)| {
+        let changes = match robot.uncertainty() {
+            Some(known) if *confidence > 0.0 => {
+                known.changes(&slopes).map(|change| change.scale(*confidence)).collect()
+            }
+            _ => Vec::new(),
+        };
+        DifferentiatedSet { score, changes, parts: std::mem::take(parts) }
+    });
+    let sets = sets.collect();
+    Some(Differentiated { state: found, sets })
 }
 
 /// Differences of exact gradients, made symmetric, without negative eigenvalues: what a convex model can use.
@@ -138,21 +165,36 @@ fn curvature(
         Curvature::Beta => LOCAL - 1,
         Curvature::Full => 0,
     };
-    let sign = if centre.state.scored.value < 0.0 { -1.0 } else { 1.0 };
     // Near a kink the norm is the subproblem's: here the vector is followed along its present direction.
     let shares = |vector: &[Dual<LOCAL>], norm: f64| -> Vec<f64> {
         vector.iter().map(|entry| if norm > 0.0 { entry.value / norm } else { 0.0 }).collect()
     };
-    let changes = shares(&centre.changes, centre.state.margin.value);
-    let parts = shares(&centre.parts, centre.state.scored.value);
     let along = |shares: &[f64], vector: &[Dual<LOCAL>], k: usize| -> f64 {
         shares.iter().zip(vector).map(|(share, entry)| share * entry.gradient[k]).sum()
     };
-    let slope = |there: &Differentiated, k: usize| {
-        let s = &there.state;
-        let margin = if changes.is_empty() { s.margin.gradient[k] } else { along(&changes, &there.changes, k) };
-        let scored = if parts.is_empty() { sign * s.scored.gradient[k] } else { along(&parts, &there.parts, k) };
+    let score = |set: &DifferentiatedSet| set.score.score().value;
+    let worst = (0..centre.sets.len()).max_by(|a, b| score(&centre.sets[*a]).total_cmp(&score(&centre.sets[*b])));
+    let counted: Vec<usize> = match worst.filter(|_| problem.is_over_worst()) {
+        Some(worst) => vec![worst],
+        None => (0..centre.sets.len()).collect(),
+    };
+    let followed: Vec<(f64, Vec<f64>, Vec<f64>)> = centre
+        .sets
+        .iter()
+        .map(|set| {
+            let sign = if set.score.scored.value < 0.0 { -1.0 } else { 1.0 };
+            (sign, shares(&set.changes, set.score.margin.value), shares(&set.parts, set.score.scored.value))
+        })
+        .collect();
+    let slope_of = |there: &DifferentiatedSet, (sign, changes, parts): &(f64, Vec<f64>, Vec<f64>), k: usize| {
+        let s = &there.score;
+        let margin = if changes.is_empty() { s.margin.gradient[k] } else { along(changes, &there.changes, k) };
+        let scored = if parts.is_empty() { sign * s.scored.gradient[k] } else { along(parts, &there.parts, k) };
         scored + s.uncertainty.gradient[k] + margin
+    };
+    let slope = |there: &Differentiated, k: usize| {
+        let sum: f64 = counted.iter().map(|set| slope_of(&there.sets[*set], &followed[*set], k)).sum();
+        if counted.len() == 1 { sum } else { sum / counted.len() as f64 }
     };
     let mut hessian = Matrix5::zeros();
     for k in from..LOCAL {

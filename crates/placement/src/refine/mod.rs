@@ -21,6 +21,8 @@ pub mod active;
 mod agreement;
 pub mod ascent;
 pub mod linearise;
+pub mod programme;
+mod rows;
 pub mod solver;
 pub mod subproblem;
 

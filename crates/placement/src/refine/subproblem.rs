@@ -10,18 +10,16 @@
 //! likewise for the norm of the parts where several directions are scored.
 
 use super::super::criterion::Aggregate;
-use super::super::problem::{Interval, Placement, Problem};
+use super::super::problem::Problem;
 use super::super::redundancy::SegmentPlan;
+use super::Solution;
 use super::active::{Limit, Side};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
-use super::{LENGTH_UNIT, Solution};
+use super::programme::{pose_bounds, programme};
+use super::rows::{Rows, Triplets, curvature};
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
-    SupportedConeT, ZeroConeT,
-};
-use nalgebra::{Matrix4, Vector4};
-use stead_model::robot::angles::wrap;
+use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
+use std::ops::Range;
 use stead_numerics::scalar::Dual;
 
 /// What a subproblem is asked.
@@ -56,48 +54,21 @@ pub struct Answer {
 #[error("the subproblem could not be solved")]
 pub struct Unsolved;
 
-/// Coefficients of inequalities `row . x <= bound`.
-#[derive(Default)]
-struct Rows {
-    row: Vec<usize>,
-    column: Vec<usize>,
-    value: Vec<f64>,
-    bound: Vec<f64>,
-    /// Which bound of the problem stands behind a row, ascending by row; none behind those of the model.
-    bounds: Vec<(usize, Side)>,
-}
-
-impl Rows {
-    fn add(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, bound: f64) {
-        let row = self.bound.len();
-        for (column, value) in terms {
-            self.row.push(row);
-            self.column.push(column);
-            self.value.push(value);
-        }
-        self.bound.push(bound);
-    }
-
-    /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
-    fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
-        if high < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: true }));
-            self.add(terms.iter().copied(), high);
-        }
-        if -low < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: false }));
-            self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
-        }
-    }
-}
-
 /// Solves the subproblem at a solution with its linearisation.
 ///
 /// # Errors
 /// [`Unsolved`] when clarabel refused it or found no solution.
-pub fn solve(problem: &Problem, solution: &Solution, locals: &[Local], question: Question) -> Result<Answer, Unsolved> {
-    let vectors = |i: usize| [&locals[i].changes[..], &locals[i].parts[..]].map(|vector| (i, vector));
-    let kinked = (0..locals.len()).flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
+pub fn solve<'p>(
+    problem: &'p Problem,
+    solution: &'p Solution,
+    locals: &'p [Local],
+    question: Question,
+) -> Result<Answer, Unsolved> {
+    let vectors = |(i, local): (usize, &'p Local)| {
+        let sets = local.sets.iter().enumerate();
+        sets.flat_map(move |(set, of)| [&of.changes[..], &of.parts[..]].map(|vector| ((i, set), vector)))
+    };
+    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
     let rows = Rows::default();
     let mut build = Build { problem, solution, locals, question, kinked, unit: solution.objective, rows };
     if question.pose_stays {
@@ -122,8 +93,8 @@ struct Build<'a> {
     solution: &'a Solution,
     locals: &'a [Local],
     question: Question,
-    /// Points whose score has the norm of a vector in it that needs a second-order cone.
-    kinked: Vec<(usize, &'a [Dual<LOCAL>])>,
+    /// Points, and sets of compliances, whose score has the norm of a vector in it that needs a second-order cone.
+    kinked: Vec<((usize, usize), &'a [Dual<LOCAL>])>,
     /// Scores are in this unit. m
     unit: f64,
     rows: Rows,
@@ -138,9 +109,20 @@ impl Build<'_> {
         BETA + self.locals.len()
     }
 
+    /// Number of scores of each point: one for every set of compliances where their mean counts, else one above all.
+    fn copies(&self) -> usize {
+        if self.problem.is_over_worst() { 1 } else { self.problem.scored_robots().len() }
+    }
+
+    /// Columns of the scores of a point.
+    fn scores_of(&self, i: usize) -> Range<usize> {
+        let first = self.epigraph() + i * self.copies();
+        first..first + self.copies()
+    }
+
     /// Column of the first norm with a kink.
     fn norms(&self) -> usize {
-        BETA + 2 * self.locals.len()
+        self.epigraph() + self.copies() * self.locals.len()
     }
 
     /// Number of variables; the largest score is the last.
@@ -166,24 +148,13 @@ impl Build<'_> {
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
     fn point(&mut self, i: usize) {
         let (local, unit) = (&self.locals[i], self.unit);
-        let (epigraph, norms) = (self.epigraph() + i, self.norms());
-        let first = self.kinked.partition_point(|(point, _)| *point < i);
-        let own = self.kinked[first..].iter().take_while(|(point, _)| *point == i).count();
-        let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
-        let (c, u) = (&local.state.scored, &local.added);
-        let signs: &[f64] = match self.problem.criterion.weights.is_single() {
-            true => &[1.0, -1.0],
-            false if local.parts.is_empty() => &[1.0],
-            false => &[0.0],
-        };
-        for sign in signs {
-            let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
-            self.rows.add(row, -(sign * c.value + u.value) / unit);
+        for set in 0..local.sets.len() {
+            self.score(i, set);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
+            let (scores, share) = (self.scores_of(i), 1.0 / self.copies() as f64);
             self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::MaxDeflection, is_upper: true }));
-            self.rows.add([(epigraph, 1.0)], limit / unit);
+            self.rows.add(scores.map(|column| (column, share)), limit / unit);
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
@@ -197,6 +168,28 @@ impl Build<'_> {
             let q = local.joints[j];
             let terms = Self::terms(i, &local.state.joints[j].gradient);
             self.add_between(Limit::Joint(j as u8 + 1), &terms, joint.min - q, joint.max - q);
+        }
+    }
+
+    /// The score of point `i` under one set of compliances.
+    fn score(&mut self, i: usize, set: usize) {
+        let (local, unit) = (&self.locals[i].sets[set], self.unit);
+        let scores = self.scores_of(i);
+        let epigraph = scores.start + set % self.copies();
+        let norms = self.norms();
+        let first = self.kinked.partition_point(|(place, _)| *place < (i, set));
+        let own = self.kinked[first..].iter().take_while(|(place, _)| *place == (i, set)).count();
+        let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
+        let (c, u) = (&local.scored, &local.added);
+        let signs: &[f64] = match self.problem.criterion.weights.is_single() {
+            true => &[1.0, -1.0],
+            false if local.parts.is_empty() => &[1.0],
+            false => &[0.0],
+        };
+        for sign in signs {
+            let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
+            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
+            self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
     }
 
@@ -240,10 +233,12 @@ impl Build<'_> {
 
     /// The largest score is above that of every point.
     fn largest(&mut self) {
-        let (largest, epigraph) = (self.variables() - 1, self.epigraph());
+        let (largest, copies) = (self.variables() - 1, self.copies() as f64);
         if self.aggregate() == Aggregate::Max {
             for i in 0..self.locals.len() {
-                self.rows.add([(epigraph + i, self.problem.point_weight(i)), (largest, -1.0)], 0.0);
+                let weight = self.problem.point_weight(i) / copies;
+                let scores = self.scores_of(i).map(|column| (column, weight));
+                self.rows.add(scores.chain([(largest, -1.0)]), 0.0);
             }
         }
     }
@@ -252,7 +247,7 @@ impl Build<'_> {
     fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
         let (norms, unit) = (self.norms(), self.unit);
         let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, (i, vector)) in self.kinked.iter().enumerate() {
+        for (place, ((i, _), vector)) in self.kinked.iter().enumerate() {
             self.rows.add([(norms + place, -1.0)], 0.0);
             for entry in *vector {
                 let slopes = entry.gradient.map(|slope| -slope / unit);
@@ -278,17 +273,23 @@ impl Build<'_> {
     fn answer(self, cones: &[SupportedConeT<f64>]) -> Result<Answer, Unsolved> {
         let (n, unit, question) = (self.locals.len(), self.unit, self.question);
         let variables = self.variables();
-        let (mut linear, epigraph) = (vec![0.0; variables], self.epigraph());
+        let mut linear = vec![0.0; variables];
+        let copies = self.copies() as f64;
         let (shares, total) = (self.shares(), self.problem.total_weight());
         let mut quadratic = match question.curved {
             true => curvature(self.locals, &shares, unit * total),
             false => Triplets::default(),
         };
         match self.aggregate() {
-            Aggregate::Mean => (0..n).for_each(|i| linear[epigraph + i] = shares[i] / total),
-            Aggregate::Rms => {
-                (0..n).for_each(|i| quadratic.add(epigraph + i, epigraph + i, self.problem.point_weight(i) / total))
+            Aggregate::Mean => {
+                (0..n).for_each(|i| linear[self.scores_of(i)].fill(shares[i] / total / copies));
             }
+            Aggregate::Rms => (0..n).for_each(|i| {
+                let weight = self.problem.point_weight(i) / total / (copies * copies);
+                for column in self.scores_of(i) {
+                    (self.scores_of(i).start..=column).for_each(|row| quadratic.add(row, column, weight));
+                }
+            }),
             Aggregate::Max => linear[variables - 1] = 1.0,
         }
         let curvature = quadratic.matrix(variables);
@@ -315,139 +316,6 @@ impl Build<'_> {
             multipliers: bounds.into_iter().map(|(row, side)| (side, found.z[row] * unit)).collect(),
         })
     }
-}
-
-/// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
-fn programme(
-    quadratic: &CscMatrix<f64>,
-    linear: &[f64],
-    matrix: &CscMatrix<f64>,
-    bound: &[f64],
-    cones: &[SupportedConeT<f64>],
-) -> Result<DefaultSolution<f64>, Unsolved> {
-    let settings = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-    let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings).map_err(|_| Unsolved)?;
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => Ok(solver.solution),
-        _ => Err(Unsolved),
-    }
-}
-
-/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
-/// clarabel found none.
-pub fn pose_step(
-    problem: &Problem,
-    placement: &Placement,
-    gradient: &Vector4<f64>,
-    curvature: &Matrix4<f64>,
-    trust: f64,
-) -> Option<Vector4<f64>> {
-    let unit = gradient.norm();
-    let upper = curvature.upper_triangle() / unit;
-    let entries = (0..4).flat_map(|k| (0..=k).map(move |j| (j, k)));
-    let (row, column): (Vec<usize>, Vec<usize>) = entries.unzip();
-    let value = row.iter().zip(&column).map(|(j, k)| upper[(*j, *k)]).collect();
-    let quadratic = CscMatrix::new_from_triplets(4, 4, row, column, value);
-    let linear: Vec<f64> = gradient.iter().map(|g| -g / unit).collect();
-    let mut rows = Rows::default();
-    let bounds = pose_bounds(problem, placement);
-    for (k, bound) in bounds.iter().enumerate() {
-        rows.add([(k, 1.0)], bound.max.min(trust));
-        rows.add([(k, -1.0)], (-bound.min).min(trust));
-    }
-    let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
-    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)]).ok()?;
-    Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
-}
-
-/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
-/// infinite when there is no gradient or clarabel found none.
-pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
-    let unit = gradients.iter().map(|g| g.norm()).fold(0.0, f64::max);
-    if gradients.is_empty() || unit == 0.0 {
-        return if gradients.is_empty() { f64::INFINITY } else { 0.0 };
-    }
-    let columns: Vec<Vector4<f64>> =
-        gradients.iter().map(|g| g / unit).chain(normals.iter().map(|normal| -normal)).collect();
-    let n = columns.len();
-    let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
-    for k in 0..n {
-        for j in 0..=k {
-            row.push(j);
-            column.push(k);
-            value.push(columns[j].dot(&columns[k]));
-        }
-    }
-    let quadratic = CscMatrix::new_from_triplets(n, n, row, column, value);
-    let mut rows = Rows::default();
-    rows.add((0..gradients.len()).map(|i| (i, 1.0)), 1.0);
-    for k in 0..n {
-        rows.add([(k, -1.0)], 0.0);
-    }
-    let matrix = CscMatrix::new_from_triplets(n + 1, n, rows.row, rows.column, rows.value);
-    let cones = [ZeroConeT(1), NonnegativeConeT(n)];
-    let Ok(found) = programme(&quadratic, &vec![0.0; n], &matrix, &rows.bound, &cones) else { return f64::INFINITY };
-    let sum = columns.iter().zip(&found.x).fold(Vector4::zeros(), |sum, (c, x)| sum + c * *x);
-    sum.norm() * unit
-}
-
-/// How far each pose variable may move inside the cell, in scaled variables.
-pub fn pose_bounds(problem: &Problem, placement: &Placement) -> [Interval; 4] {
-    let cell = &problem.cell;
-    std::array::from_fn(|k| {
-        if k < 3 {
-            let Interval { min, max } = cell.position[k];
-            Interval { min: (min - placement[k]) / LENGTH_UNIT, max: (max - placement[k]) / LENGTH_UNIT }
-        } else if cell.is_yaw_free() {
-            Interval { min: f64::NEG_INFINITY, max: f64::INFINITY }
-        } else {
-            let middle = (cell.yaw.min + cell.yaw.max) / 2.0;
-            let yaw = middle + wrap(placement.yaw - middle);
-            Interval { min: cell.yaw.min - yaw, max: cell.yaw.max - yaw }
-        }
-    })
-}
-
-/// The entries of a symmetric matrix on and above its diagonal.
-#[derive(Default)]
-struct Triplets {
-    row: Vec<usize>,
-    column: Vec<usize>,
-    value: Vec<f64>,
-}
-
-impl Triplets {
-    fn add(&mut self, row: usize, column: usize, value: f64) {
-        self.row.push(row);
-        self.column.push(column);
-        self.value.push(value);
-    }
-
-    fn matrix(self, size: usize) -> CscMatrix<f64> {
-        CscMatrix::new_from_triplets(size, size, self.row, self.column, self.value)
-    }
-}
-
-/// The curvature of the objective, each point's by its share of `whole`: an arrow of the pose block, its coupling with every
-/// beta, and the diagonal.
-fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplets {
-    let mut entries = Triplets::default();
-    let mut pose = [[0.0; 4]; 4];
-    for (i, local) in locals.iter().enumerate() {
-        let share = shares[i] / whole;
-        for k in 0..4 {
-            for j in 0..=k {
-                pose[j][k] += local.curvature[(j, k)] * share;
-            }
-            entries.add(k, 4 + i, local.curvature[(k, 4)] * share);
-        }
-        entries.add(4 + i, 4 + i, local.curvature[(4, 4)] * share);
-    }
-    for (j, row) in pose.iter().enumerate() {
-        (j..4).for_each(|k| entries.add(j, k, row[k]));
-    }
-    entries
 }
 
 /// Trust region in which the linear model is asked what it still promises.

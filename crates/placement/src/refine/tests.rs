@@ -65,11 +65,11 @@ fn margins_may_be_driven_to_their_kink() {
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
     let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
-    let margins = || locals.iter().map(|local| local.state.margin.value);
+    let margins = || locals.iter().map(|local| local.state.own.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
-    for local in locals.iter().filter(|local| !local.changes.is_empty()) {
-        let [change] = local.changes[..] else { panic!("one uncertain parameter is one change") };
-        assert!((change.value.abs() - local.state.margin.value).abs() < 1e-18);
+    for local in locals.iter().filter(|local| !local.sets[0].changes.is_empty()) {
+        let [change] = local.sets[0].changes[..] else { panic!("one uncertain parameter is one change") };
+        assert!((change.value.abs() - local.state.own.margin.value).abs() < 1e-18);
     }
     assert!(report.kkt_residual.unwrap() < 1e-3 * report.end_mean, "{report:?}");
 }

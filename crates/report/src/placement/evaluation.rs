@@ -111,7 +111,7 @@ pub fn explain_json(
             "feasible": e.is_allowed(),
             "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
         });
-        put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.deviation));
+        put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.own.deviation));
         value
     };
     context.document().with(json!({
@@ -127,7 +127,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
     let states = || postures.iter().filter_map(|e| e.state.as_ref());
     let mut header =
         vec!["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
-    header.extend(states().find_map(|s| s.deviation).map(|_| "std mm"));
+    header.extend(states().find_map(|s| s.own.deviation).map(|_| "std mm"));
     header.push("");
     let last = header.len() - 1;
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
@@ -137,8 +137,8 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         match &e.state {
             Some(s) => {
                 row.extend(s.joints.map(|angle| fixed(angle.to_degrees(), 3)));
-                row.extend([fixed(s.inverse_condition, 4), fixed(s.scored.abs() * 1e3, 5)]);
-                row.extend(s.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
+                row.extend([fixed(s.inverse_condition, 4), fixed(s.own.scored.abs() * 1e3, 5)]);
+                row.extend(s.own.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
             }
             None => row.extend((1..last).map(|_| "-".to_owned())),
         }

@@ -8,13 +8,14 @@ use crate::document::{Timing, deflection_mm, placement, placement_exact, put_dev
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
+use stead_format::input::InputFile;
 use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan, PlanPoint, Refinement, Transfer};
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
 use stead_placement::refine::active::ActiveBound;
-use stead_placement::sensitivity::ForceSensitivity;
+use stead_placement::sensitivity::{ForceSensitivity, SetOutcome};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
@@ -63,6 +64,8 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
+    document
+        .extend((!outcome.sets.is_empty()).then(|| ("stiffness_sets".to_owned(), stiffness_sets(outcome, context))));
     document.extend(outcome.sensitivity.as_ref().map(|found| ("sensitivity".to_owned(), sensitivity(found))));
     document.extend(
         context
@@ -173,6 +176,25 @@ fn sensitivity(found: &ForceSensitivity) -> Value {
     })
 }
 
+/// What each stiffness set makes of the best placement: its mean, what is best for it alone, and the regret.
+fn stiffness_sets(outcome: &Outcome, context: &Context) -> Value {
+    let files = context.inputs.iter().filter(|input| input.role == "stiffness");
+    let set = |(set, file): (&SetOutcome, &InputFile)| {
+        json!({
+            "robot": file.name,
+            "mean_mm": number(Unit::DEFLECTION_MM, set.mean),
+            "best_alone_mm": optional(Unit::DEFLECTION_MM, set.alone),
+            "regret": optional(Unit::PLAIN, set.regret()),
+        })
+    };
+    let largest = |of: fn(&SetOutcome) -> Option<f64>| outcome.sets.iter().filter_map(of).reduce(f64::max);
+    json!({
+        "sets": outcome.sets.iter().zip(files).map(set).collect::<Vec<_>>(),
+        "worst_mean_mm": optional(Unit::DEFLECTION_MM, largest(|set| Some(set.mean))),
+        "largest_regret": optional(Unit::PLAIN, largest(SetOutcome::regret)),
+    })
+}
+
 fn plan_point(point: &PlanPoint) -> Value {
     let mut value = json!({
         "point": point.point,
@@ -252,6 +274,9 @@ fn criterion(problem: &Problem) -> Value {
         "segment_weights": segment_weights,
         "force_uncertainty": force_uncertainty,
     });
+    if let (Some(sets), Value::Object(map)) = (&problem.criterion.stiffness, &mut value) {
+        map.insert("over".to_owned(), json!(sets.over.name()));
+    }
     if let (Some(_), Value::Object(map)) = (problem.robot.uncertainty(), &mut value) {
         map.insert("confidence".to_owned(), json!(problem.criterion.confidence));
     }

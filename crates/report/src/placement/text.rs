@@ -32,6 +32,10 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));
+    if let [_, ..] = &outcome.sets[..] {
+        text.push('\n');
+        text.push_str(&aligned(&set_rows(outcome, context), &[0]));
+    }
     if let Some(found) = &outcome.sensitivity {
         sensitivity(found).iter().for_each(|row| line(&mut text, row));
     }
@@ -90,9 +94,22 @@ fn stiffest(plan: &Plan) -> String {
     let (slope, joint): (f64, usize) = largest.map_or((0.0, 1), |(slope, joint)| (*slope, joint));
     let share = if plan.mean > CANCELLATION { slope / plan.mean } else { 0.0 };
     format!(
-        "joint {joint} matters most to it: with 1 % more stiffness the mean changes by {} % under the same plan",
+        "joint {joint} matters most to the best placement: 1 % more stiffness changes its mean by {} % (same plan)",
         figures(share)
     )
+}
+
+/// What each stiffness set makes of the best placement.
+fn set_rows(outcome: &Outcome, context: &Context) -> Vec<Vec<String>> {
+    let mut rows = vec![["stiffness set", "mean mm", "best alone mm", "regret %"].map(str::to_owned).to_vec()];
+    let files = context.inputs.iter().filter(|input| input.role == "stiffness");
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    rows.extend(outcome.sets.iter().zip(files).map(|(set, file)| {
+        let regret = set.regret().map(|regret| fixed(regret * 100.0, 1));
+        let alone = set.alone.map(|alone| fixed(alone * 1e3, 4));
+        vec![file.name.clone(), fixed(set.mean * 1e3, 4), or_dash(alone), or_dash(regret)]
+    }));
+    rows
 }
 
 /// What force errors do to the best placement.

@@ -3,6 +3,7 @@
 use super::directional::{Directional, exit};
 use super::plant::Plant;
 use crate::milling::PassCut;
+use crate::modes::eigenvalues;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -281,11 +282,13 @@ impl<'a> Map<'a> {
             let exhausted = columns.len() == size || !goes_on;
             if columns.len() == wanted || exhausted {
                 let now = largest(&columns);
-                let close = |before: Complex<f64>| (before.norm_sqr() / now.norm_sqr() - 1.0).abs() < AGREE;
-                if exhausted || found.is_some_and(close) {
-                    return now;
+                let close =
+                    |before: Complex<f64>, now: Complex<f64>| (before.norm_sqr() / now.norm_sqr() - 1.0).abs() < AGREE;
+                if exhausted || found.zip(now).is_some_and(|(before, now)| close(before, now)) {
+                    // What cannot be found at all is beyond what numbers can hold.
+                    return now.unwrap_or(Complex::new(f64::INFINITY, 0.0));
                 }
-                found = Some(now);
+                found = now;
                 wanted = (wanted + wanted / 2).min(size);
             }
             basis.push(vector.iter().map(|a| a / norm).collect());
@@ -305,15 +308,11 @@ fn start(size: usize) -> Vec<f64> {
     raw.iter().map(|a| a / norm).collect()
 }
 
-/// The largest eigenvalue of an upper Hessenberg matrix given by its columns.
-fn largest(columns: &[Vec<f64>]) -> Complex<f64> {
+/// The largest eigenvalue of an upper Hessenberg matrix given by its columns; none where its eigenvalues are not found.
+fn largest(columns: &[Vec<f64>]) -> Option<Complex<f64>> {
     let size = columns.len();
     let matrix = DMatrix::from_fn(size, size, |row, column| columns[column].get(row).copied().unwrap_or(0.0));
-    let eigenvalues = matrix.complex_eigenvalues();
-    eigenvalues.iter().fold(
-        Complex::new(0.0, 0.0),
-        |most, value| {
-            if value.norm_sqr() > most.norm_sqr() { *value } else { most }
-        },
-    )
+    let larger =
+        |most: Complex<f64>, value: Complex<f64>| if value.norm_sqr() > most.norm_sqr() { value } else { most };
+    Some(eigenvalues(matrix)?.into_iter().fold(Complex::new(0.0, 0.0), larger))
 }

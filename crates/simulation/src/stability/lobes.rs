@@ -2,12 +2,11 @@
 
 use super::floquet::SemiDiscretisation;
 use super::plant::Plant;
-use super::zero_order::ZeroOrder;
+use super::zero_order::{ZeroOrder, ZeroOrderError};
 use crate::milling::PassCut;
 use rayon::prelude::*;
 use serde::Serialize;
 use stead_model::cutting::Cutter;
-use stead_model::cutting::EngagementError;
 
 /// Critical depths of cut at a spindle speed; `None` where all depths up to the largest are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -23,14 +22,14 @@ pub struct Lobe {
 /// Critical depths up to `max_depth` (m) at spindle speeds (rad/s), in their order, for the cut at hand otherwise.
 ///
 /// # Errors
-/// [`EngagementError`] for a width of cut that is none.
+/// [`ZeroOrderError`] for a width of cut that is none, and for speeds that are too slow for the zero-order solution.
 pub fn lobes(
     plant: &Plant,
     cutter: &Cutter,
     cut: &PassCut,
     spindle_speeds: &[f64],
     max_depth: f64,
-) -> Result<Vec<Lobe>, EngagementError> {
+) -> Result<Vec<Lobe>, ZeroOrderError> {
     let zero_order = ZeroOrder::new(plant);
     let lobe = |&spindle_speed: &f64| {
         let cut = PassCut { spindle_speed, ..*cut };

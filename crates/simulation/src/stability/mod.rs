@@ -22,4 +22,4 @@ mod zero_order;
 pub use floquet::{Kind, SemiDiscretisation, Verdict};
 pub use lobes::{Lobe, lobes};
 pub use plant::{Plant, PlantError};
-pub use zero_order::ZeroOrder;
+pub use zero_order::{ZeroOrder, ZeroOrderError};

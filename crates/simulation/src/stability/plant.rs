@@ -1,6 +1,6 @@
 //! Response of the tool tip to forces, as a state-space model.
 
-use crate::modes::LinearArm;
+use crate::modes::{LinearArm, eigenvalues, is_within_reach};
 use nalgebra::{Complex, DMatrix, Matrix2x3, Vector3};
 
 /// `x' = A x + B F`, `u = C x`: force F (N) on the tool tip along the feed, the outward normal of the wall and the tool axis, and
@@ -10,6 +10,7 @@ pub struct Plant {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
     c: DMatrix<f64>,
+    poles: Vec<Complex<f64>>,
 }
 
 /// Why matrices make no plant.
@@ -18,38 +19,47 @@ pub enum PlantError {
     /// Shapes that do not fit.
     #[error("a plant needs A of n x n, B of n x 3 (or n x 2) and C of 2 x n")]
     Shape,
-    /// Entries that are not finite.
-    #[error("a plant needs finite numbers")]
+    /// Entries that are not finite, or so large that the motion over a step cannot be computed.
+    #[error("the arm is so stiff or so damped beside its masses that its motion is beyond all numbers")]
     NotFinite,
+    /// Eigenvalues that cannot be found.
+    #[error("the eigenvalues of the arm's motion are not found: its stiffness, damping and masses are too far apart")]
+    NoPoles,
+    /// A mass matrix without an inverse.
+    #[error("the arm has no mass matrix that is positive definite")]
+    Singular,
 }
 
 impl Plant {
     /// A plant of its matrices. B may have two columns: then a force along the tool axis does nothing.
     ///
     /// # Errors
-    /// [`PlantError`] for shapes that do not fit and entries that are not finite.
+    /// [`PlantError`] for shapes that do not fit, entries that are not finite or too large, and a matrix A without eigenvalues.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> Result<Self, PlantError> {
         let n = a.nrows();
         if n == 0 || a.shape() != (n, n) || b.nrows() != n || !(2..=3).contains(&b.ncols()) || c.shape() != (2, n) {
             return Err(PlantError::Shape);
         }
-        if a.iter().chain(&b).chain(&c).all(|entry| entry.is_finite()) {
-            Ok(Self { a, b: b.resize_horizontally(3, 0.0), c })
-        } else {
-            Err(PlantError::NotFinite)
+        if ![&a, &b, &c].into_iter().all(is_within_reach) {
+            return Err(PlantError::NotFinite);
         }
+        let poles = eigenvalues(a.clone()).ok_or(PlantError::NoPoles)?;
+        Ok(Self { a, b: b.resize_horizontally(3, 0.0), c, poles })
     }
 
     /// Small motions of an arm's tip under forces along three directions in the base frame: the feed, the outward normal of the
-    /// wall and the tool axis. `None` where the mass matrix has no inverse.
-    pub fn of_arm<const N: usize>(arm: &LinearArm<N>, directions: [Vector3<f64>; 3]) -> Option<Self> {
-        let a = arm.state_matrix()?;
+    /// wall and the tool axis.
+    ///
+    /// # Errors
+    /// [`PlantError`] for an arm whose mass matrix has no inverse, or whose stiffness and damping are beyond all numbers.
+    pub fn of_arm<const N: usize>(arm: &LinearArm<N>, directions: [Vector3<f64>; 3]) -> Result<Self, PlantError> {
+        let a = arm.state_matrix().ok_or(PlantError::Singular)?;
         let tip = DMatrix::from_fn(3, N, |row, joint| directions[row].dot(&arm.tip.column(joint)));
         let mass = DMatrix::from_fn(N, N, |row, column| arm.mass[(row, column)]);
         let (mut b, mut c) = (DMatrix::zeros(2 * N, 3), DMatrix::zeros(2, 2 * N));
-        b.view_mut((N, 0), (N, 3)).copy_from(&mass.cholesky()?.solve(&tip.transpose()));
+        b.view_mut((N, 0), (N, 3)).copy_from(&mass.cholesky().ok_or(PlantError::Singular)?.solve(&tip.transpose()));
         c.view_mut((0, 0), (2, N)).copy_from(&tip.rows(0, 2));
-        Self::new(a, b, c).ok()
+        Self::new(a, b, c)
     }
 
     /// Number of states.
@@ -68,8 +78,8 @@ impl Plant {
     }
 
     /// Eigenvalues of A. 1/s
-    pub fn poles(&self) -> Vec<Complex<f64>> {
-        self.a.complex_eigenvalues().iter().copied().collect()
+    pub fn poles(&self) -> &[Complex<f64>] {
+        &self.poles
     }
 
     /// Motion (m, complex amplitude) for a force (N) that swings with `omega` (rad/s): `C (i omega - A)^-1 B`; none in a resonance

@@ -257,6 +257,31 @@ fn a_plant_of_the_wrong_shape_is_refused() {
     assert_eq!(Plant::new(zeros(2, 2) * f64::NAN, zeros(2, 2), zeros(2, 2)), Err(PlantError::NotFinite));
 }
 
+/// However stiff or damped, an analysis ends: with what there is of modes that can swing with a cutter, or with the reason.
+#[test]
+fn what_no_machine_has_ends_all_the_same() {
+    let plant = |stiffness: f64, damping: f64| {
+        let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -stiffness, -damping]);
+        let b = DMatrix::from_row_slice(2, 2, &[0.0, 0.0, 1.0 / MASS, 0.0]);
+        Plant::new(a, b, DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]))
+    };
+    let (cutter, cut) = (benchmark_cutter(&[180.0; 2], 0.0), cut(Way::Climb, 0.5, 5000.0));
+    for (stiffness, damping) in [(1e3, 1e12), (1e24, 1.0), (1e16, 1e20)] {
+        let plant = plant(stiffness, damping).unwrap();
+        assert_eq!(ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 20e-3), Ok(None), "{stiffness} {damping}");
+        let method = SemiDiscretisation::new(&plant, &cutter, &cut).unwrap();
+        assert!(!method.verdict(1e-3).multiplier.norm().is_nan(), "{stiffness} {damping}");
+    }
+    for beyond in [1e26, 1e308, f64::INFINITY, f64::NAN] {
+        assert_eq!(plant(beyond, 1.0), Err(PlantError::NotFinite));
+        assert_eq!(plant(1.0, beyond), Err(PlantError::NotFinite));
+    }
+    // At a turn in ten hours each tooth follows after more periods than can be followed.
+    let slow = PassCut { spindle_speed: TAU / 36e3, ..cut };
+    let error = ZeroOrder::new(&benchmark_plant()).critical_depth(&cutter, &slow, 20e-3).unwrap_err();
+    assert!(matches!(error, ZeroOrderError::TooSlow { .. }) && error.to_string().contains("too slow"), "{error}");
+}
+
 /// Exact for a force that rises linearly: an oscillator without damping from rest.
 #[test]
 fn a_step_is_exact_for_a_rising_force() {

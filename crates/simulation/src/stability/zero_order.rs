@@ -4,6 +4,7 @@ use super::directional::{exit, mean};
 use super::plant::Plant;
 use crate::milling::PassCut;
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
+use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
 
@@ -25,22 +26,45 @@ const AROUND: f64 = 12.0;
 const EVENLY: usize = 2000;
 /// Delays are followed in such steps of their phase. rad
 const STEP: f64 = 0.1;
-/// Frequencies go so far beyond the fastest mode.
+/// Frequencies go so far beyond the fastest mode,
 const BEYOND: f64 = 2.0;
+/// and no farther than this: what moves faster does not swing with the teeth of a cutter. rad/s
+const FASTEST: f64 = 1e6;
+/// Steps in which the delays are followed over all frequencies, at most.
+const MAX_STEPS: f64 = 2e7;
+
+/// Why there is no zero-order solution.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ZeroOrderError {
+    /// The cut has no width.
+    #[error("{0}")]
+    Engagement(#[from] EngagementError),
+    /// The delays between teeth hold too many periods of the fastest modes.
+    #[error(
+        "a spindle of {rpm:.3} rpm is too slow for the zero-order solution of an arm with modes up to {fastest_hz:.3e} Hz: each tooth \
+         follows the one before after too many of their periods"
+    )]
+    TooSlow {
+        /// Spindle speed. 1/min
+        rpm: f64,
+        /// Frequency up to which modes are considered. Hz
+        fastest_hz: f64,
+    },
+}
 
 impl ZeroOrder {
     /// Looks at the plant at evenly spread frequencies and densely around its resonances.
     pub fn new(plant: &Plant) -> Self {
         let poles = plant.poles();
         let swinging = poles.iter().filter(|pole| pole.im > 0.0);
-        let most = BEYOND * poles.iter().fold(1.0_f64, |most, pole| most.max(pole.norm()));
+        let most = (BEYOND * poles.iter().fold(1.0_f64, |most, pole| most.max(pole.norm()))).min(FASTEST);
         let mut frequencies: Vec<f64> = (1..=EVENLY).map(|k| most * k as f64 / EVENLY as f64).collect();
         for pole in swinging {
             let step = (pole.re.abs() / IN_RESONANCE).max(1e-6 * pole.im);
             let count = (AROUND * IN_RESONANCE) as i32;
             frequencies.extend((-count..=count).map(|k| pole.im + step * f64::from(k)));
         }
-        frequencies.retain(|omega| *omega > 0.0);
+        frequencies.retain(|omega| *omega > 0.0 && *omega <= FASTEST);
         frequencies.sort_by(f64::total_cmp);
         let responses = frequencies.into_iter().filter_map(|omega| Some((omega, plant.response(omega)?)));
         Self { responses: responses.collect() }
@@ -49,17 +73,23 @@ impl ZeroOrder {
     /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `max_depth`. m
     ///
     /// # Errors
-    /// [`EngagementError`] for a width of cut that is none.
+    /// [`ZeroOrderError`] for a width of cut that is none, and for a spindle so slow beside the modes of the arm that the delays cannot be
+    /// followed.
     pub fn critical_depth(
         &self,
         cutter: &Cutter,
         cut: &PassCut,
         max_depth: f64,
-    ) -> Result<Option<f64>, EngagementError> {
+    ) -> Result<Option<f64>, ZeroOrderError> {
         let teeth = cutter.teeth();
         let coefficients = mean(cutter, cut, exit(cutter, cut)?).map(Complex::from);
         let delays: Vec<f64> = teeth.iter().map(|tooth| tooth.pitch / cut.spindle_speed).collect();
         let longest = delays.iter().fold(0.0_f64, |most, delay| most.max(*delay));
+        let fastest = self.responses.last().map_or(0.0, |(omega, _)| *omega);
+        if fastest * longest / STEP > MAX_STEPS {
+            let rpm = cut.spindle_speed / TAU * 60.0;
+            return Err(ZeroOrderError::TooSlow { rpm, fastest_hz: fastest / TAU });
+        }
         let mut best = max_depth;
         let mut last = None::<[Complex<f64>; 2]>;
         for pair in self.responses.windows(2) {

@@ -2,7 +2,6 @@
 //! [`State::margin`](super::super::evaluate::reference::State), several states at a time.
 
 use super::limit::Limit;
-use crate::problem::Problem;
 use pulp::Simd;
 use stead_model::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
 use stead_numerics::simd::Lanes;
@@ -88,10 +87,9 @@ impl Slope {
 
 impl Deviation {
     /// Nothing where the score does not ask for it, or where nothing is known.
-    pub fn new(problem: &Problem) -> Option<Self> {
-        let confidence = problem.criterion.confidence;
-        let known = problem.robot.uncertainty().filter(|_| confidence > 0.0)?;
-        let slope = |parameter: &Parameter| (parameter.joint(), Slope::new(&problem.robot, *parameter));
+    pub fn new(robot: &Robot, confidence: f64) -> Option<Self> {
+        let known = robot.uncertainty().filter(|_| confidence > 0.0)?;
+        let slope = |parameter: &Parameter| (parameter.joint(), Slope::new(robot, *parameter));
         let slopes = known.parameters().iter().map(slope).collect();
         Some(Self { confidence, slopes, directions: known.directions().to_vec() })
     }

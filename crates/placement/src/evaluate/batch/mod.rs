@@ -40,8 +40,10 @@ pub struct BatchEvaluator<'a> {
     cosine: Vec<f64>,
     sine: Vec<f64>,
     limits: [Limit; 6],
-    laws: Laws,
-    deviation: Option<Deviation>,
+    /// For each set of compliances its laws, and what is known of them.
+    sets: Vec<(Laws, Option<Deviation>)>,
+    /// Whether the largest score over the sets counts, and not their mean.
+    is_over_worst: bool,
     flips: Flips,
     forearm_sin_cos: (f64, f64),
     instructions: Instructions,
@@ -59,9 +61,13 @@ pub enum Flips {
 }
 
 impl Flips {
-    /// What evaluators an arm needs: one for both postures of a class, or one for each.
-    pub fn of(robot: &Robot) -> &'static [Self] {
-        if robot.flips_yield_alike() { &[Self::Both] } else { &[Self::Plain, Self::Flipped] }
+    /// What evaluators a problem needs: one for both postures of a class, or one for each.
+    pub fn of(problem: &Problem) -> &'static [Self] {
+        if problem.scored_robots().iter().all(Robot::flips_yield_alike) {
+            &[Self::Both]
+        } else {
+            &[Self::Plain, Self::Flipped]
+        }
     }
 
     /// Whether a posture is among them.
@@ -125,8 +131,12 @@ impl<'a> BatchEvaluator<'a> {
             cosine: (0..padded).map(|k| angle(k).1).collect(),
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
-            laws: Laws::new(&problem.robot),
-            deviation: Deviation::new(problem),
+            sets: problem
+                .scored_robots()
+                .iter()
+                .map(|robot| (Laws::new(robot), Deviation::new(robot, problem.criterion.confidence)))
+                .collect(),
+            is_over_worst: problem.is_over_worst(),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
             instructions: Instructions::best(),
@@ -213,7 +223,8 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let is_robust = self.geometry.uncertainty > 0.0 || self.evaluator.deviation.is_some();
+        let is_robust =
+            self.geometry.uncertainty > 0.0 || self.evaluator.sets.iter().any(|(_, deviation)| deviation.is_some());
         match (self.evaluator.problem.criterion.weights.is_single(), is_robust) {
             (true, false) => self.batches::<S, false, 1>(simd),
             (true, true) => self.batches::<S, true, 1>(simd),

@@ -1,7 +1,7 @@
 //! The batch evaluator against the reference evaluator.
 
 use super::*;
-use crate::criterion::{Aggregate, Criterion, Weights};
+use crate::criterion::{Aggregate, Criterion, Over, StiffnessSets, Weights};
 use crate::evaluate::reference::state;
 use crate::testing::{compensated, five_segments, with_laws, with_uncertainty};
 use stead_model::robot::angles::{wrap, yaw_from_q4};
@@ -11,7 +11,7 @@ use stead_model::task::{Task, Wrench};
 
 /// Holds every state of some points against [`state`]; returns how many were allowed.
 fn compare(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize> + Clone) -> usize {
-    Flips::of(&problem.robot).iter().map(|flips| compare_flips(problem, placement, points.clone(), *flips)).sum()
+    Flips::of(problem).iter().map(|flips| compare_flips(problem, placement, points.clone(), *flips)).sum()
 }
 
 fn compare_flips(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize>, flips: Flips) -> usize {
@@ -100,7 +100,8 @@ fn agrees_whatever_is_scored() {
             for aggregate in [Aggregate::Mean, Aggregate::Rms] {
                 let mut problem = with_uncertainty(plain.clone(), 0.1);
                 let segment_weights = vec![1.0, 2.0, 0.5, 3.0, 1.0];
-                problem.criterion = Criterion { weights, aggregate, segment_weights, force_uncertainty, confidence };
+                problem.criterion =
+                    Criterion { weights, aggregate, segment_weights, force_uncertainty, confidence, stiffness: None };
                 problem.constraints.max_deflection = Some(2.5e-3);
                 problem.constraints.min_base_distance = 1.9;
                 let mut allowed = 0;
@@ -216,6 +217,31 @@ fn agrees_with_uncertain_compliances() {
 }
 
 #[test]
+fn agrees_over_sets_of_compliances() {
+    let range = Compliance::Range { at_min: 5e-7, at_max: 1.2e-6 };
+    for weights in [Weights::WALL, Weights::TOTAL] {
+        for over in [Over::Mean, Over::Worst] {
+            for (force_uncertainty, confidence) in [(0.0, 0.0), (0.1, 2.0)] {
+                let mut problem = with_surface();
+                // The last of them yields differently in the two flips of the wrist.
+                let laws =
+                    [vec![], vec![(0, Compliance::Constant(4e-6))], vec![(4, range), (1, compensated(0.2, 3e-7))]];
+                let robots = laws.iter().map(|laws| with_uncertainty(with_laws(problem.clone(), laws), 0.1).robot);
+                let stiffness = Some(StiffnessSets { robots: robots.collect(), over });
+                problem.criterion =
+                    Criterion { weights, force_uncertainty, confidence, stiffness, ..Criterion::default() };
+                problem.constraints.max_deflection = Some(4e-3);
+                let mut allowed = 0;
+                for placement in [[2.2e-3, -1.6435, -0.5564, 2.1], [0.2, -1.9, -0.3, -1.0]].map(Placement::from) {
+                    allowed += compare(&problem, &placement, (0..105).step_by(9));
+                }
+                assert!(allowed > 300, "{allowed} {over:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn agrees_for_every_sign_of_twist_and_with_offsets() {
     // Springs at every joint, so that each angle's sine and cosine is held against the reference evaluator too.
     let compensator = Compensator { spring_stiffness: 4e4, a: 0.5, l: 0.3, alpha: 0.7, free_length: 0.5 };
@@ -241,7 +267,7 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
 /// Every bit of the scores, and of the joint angles of allowed states, for some points.
 fn bits(problem: &Problem, instructions: Instructions, poses: &[Placement]) -> Vec<u64> {
     let mut bits = Vec::new();
-    for flips in Flips::of(&problem.robot) {
+    for flips in Flips::of(problem) {
         let evaluator = BatchEvaluator::new(problem, &problem.redundancy, *flips).with_instructions(instructions);
         let mut states = StateGrid::new(problem.redundancy.beta_count, 2);
         for placement in poses {

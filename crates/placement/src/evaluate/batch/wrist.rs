@@ -115,10 +115,21 @@ impl BatchEvaluator<'_> {
             turned[4] = [-fifth[0], fifth[1]];
             turned[5] = [-sixth[0], -sixth[1]];
         }
-        let compliances = self.laws.at(simd, &self.limits, &turned);
-        let (mut score, parts) = pose.score::<ROBUST, N>(simd, g.lateral, &compliances, &demand.load, uncertainty);
-        if ROBUST && let Some(deviation) = &self.deviation {
-            score = score + deviation.margin(simd, &self.limits, &parts, &turned, &compliances);
+        let mut score = zero;
+        for (place, (laws, deviation)) in self.sets.iter().enumerate() {
+            let compliances = laws.at(simd, &self.limits, &turned);
+            let (mut of_set, parts) = pose.score::<ROBUST, N>(simd, g.lateral, &compliances, &demand.load, uncertainty);
+            if ROBUST && let Some(deviation) = deviation {
+                of_set = of_set + deviation.margin(simd, &self.limits, &parts, &turned, &compliances);
+            }
+            score = match (place, self.is_over_worst) {
+                (0, _) => of_set,
+                (_, true) => score.max(of_set),
+                (_, false) => score + of_set,
+            };
+        }
+        if self.sets.len() > 1 && !self.is_over_worst {
+            score = score * (1.0 / self.sets.len() as f64);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));

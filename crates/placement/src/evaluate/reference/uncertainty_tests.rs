@@ -59,7 +59,7 @@ fn drawn_compliances_scatter_the_normal_part_as_much_as_its_deviation_says() {
         }
     }
     for (square, nominal) in squares.iter().zip(nominal) {
-        let ratio = libm::sqrt(square / DRAWS as f64) / nominal.deviation.unwrap();
+        let ratio = libm::sqrt(square / DRAWS as f64) / nominal.own.deviation.unwrap();
         // The standard deviation of a sample's standard deviation is 1 / sqrt(2 n) of it: 3 of them.
         assert!((ratio - 1.0).abs() < 3.0 / libm::sqrt(2.0 * DRAWS as f64), "{ratio}");
     }
@@ -70,15 +70,15 @@ fn a_score_adds_deviations_as_often_as_asked() {
     let mut problem = with_uncertainty(five_segments(), 0.1);
     let at = |problem: &Problem| state(problem, 41, &published_optimum(), 0.4, Posture::ALL[3]).unwrap();
     let sure = at(&problem);
-    assert_eq!((sure.margin, sure.score()), (0.0, at(&five_segments()).score()));
-    assert_eq!(at(&five_segments()).deviation, None);
+    assert_eq!((sure.own.margin, sure.score()), (0.0, at(&five_segments()).score()));
+    assert_eq!(at(&five_segments()).own.deviation, None);
     problem.criterion = Criterion { force_uncertainty: 0.1, confidence: 2.0, ..Criterion::default() };
     let found = at(&problem);
-    assert_eq!(found.deviation, sure.deviation);
-    assert!(found.uncertainty > 0.0 && found.margin == 2.0 * sure.deviation.unwrap());
-    assert!((found.score() - sure.score() - found.uncertainty - found.margin).abs() < 1e-18);
+    assert_eq!(found.own.deviation, sure.own.deviation);
+    assert!(found.own.uncertainty > 0.0 && found.own.margin == 2.0 * sure.own.deviation.unwrap());
+    assert!((found.score() - sure.score() - found.own.uncertainty - found.own.margin).abs() < 1e-18);
     // Errors of 10 % in each compliance are about 10 % of the deflection, and not far from it.
-    let share = found.deviation.unwrap() / found.normal_part.abs();
+    let share = found.own.deviation.unwrap() / found.normal_part.abs();
     assert!((0.02..0.3).contains(&share), "{share}");
 }
 
@@ -104,7 +104,7 @@ proptest! {
         });
         let covariance = problem.robot.compliance_covariance_at(&found.joints);
         let variance = (parts.transpose() * covariance * parts)[0];
-        let deviation = found.deviation.unwrap();
+        let deviation = found.own.deviation.unwrap();
         prop_assert!((deviation * deviation - variance).abs() < 1e-11 * variance, "{} {}", deviation * deviation, variance);
     }
 
@@ -125,9 +125,9 @@ proptest! {
                 state(&problem, point, &shifted, beta + if k == 4 { h } else { 0.0 }, Posture::ALL[2])
             };
             let (Ok(up), Ok(down)) = (at(h), at(-h)) else { continue };
-            let slope = (up.margin - down.margin) / (2.0 * h);
-            prop_assert!((exact.margin.gradient[k] - slope).abs() < 1e-8, "{} {}", exact.margin.gradient[k], slope);
-            let whole = sign * exact.normal_part.gradient[k] + exact.margin.gradient[k];
+            let slope = (up.own.margin - down.own.margin) / (2.0 * h);
+            prop_assert!((exact.own.margin.gradient[k] - slope).abs() < 1e-8, "{} {}", exact.own.margin.gradient[k], slope);
+            let whole = sign * exact.normal_part.gradient[k] + exact.own.margin.gradient[k];
             prop_assert_eq!(whole, exact.score().gradient[k]);
         }
     }

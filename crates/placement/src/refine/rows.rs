@@ -1,0 +1,81 @@
+//! Matrices of a convex programme, as they are being built.
+
+use super::active::{Limit, Side};
+use super::linearise::Local;
+use clarabel::algebra::CscMatrix;
+
+/// Coefficients of inequalities `row . x <= bound`.
+#[derive(Default)]
+pub(super) struct Rows {
+    pub row: Vec<usize>,
+    pub column: Vec<usize>,
+    pub value: Vec<f64>,
+    pub bound: Vec<f64>,
+    /// Which bound of the problem stands behind a row, ascending by row; none behind those of the model.
+    pub bounds: Vec<(usize, Side)>,
+}
+
+impl Rows {
+    pub fn add(&mut self, terms: impl IntoIterator<Item = (usize, f64)>, bound: f64) {
+        let row = self.bound.len();
+        for (column, value) in terms {
+            self.row.push(row);
+            self.column.push(column);
+            self.value.push(value);
+        }
+        self.bound.push(bound);
+    }
+
+    /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
+    pub fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
+        if high < swing {
+            self.bounds.push((self.bound.len(), Side { limit, is_upper: true }));
+            self.add(terms.iter().copied(), high);
+        }
+        if -low < swing {
+            self.bounds.push((self.bound.len(), Side { limit, is_upper: false }));
+            self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
+        }
+    }
+}
+
+/// The entries of a symmetric matrix on and above its diagonal.
+#[derive(Default)]
+pub(super) struct Triplets {
+    row: Vec<usize>,
+    column: Vec<usize>,
+    value: Vec<f64>,
+}
+
+impl Triplets {
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.row.push(row);
+        self.column.push(column);
+        self.value.push(value);
+    }
+
+    pub fn matrix(self, size: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(size, size, self.row, self.column, self.value)
+    }
+}
+
+/// The curvature of the objective, each point's by its share of `whole`: an arrow of the pose block, its coupling with every
+/// beta, and the diagonal.
+pub(super) fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplets {
+    let mut entries = Triplets::default();
+    let mut pose = [[0.0; 4]; 4];
+    for (i, local) in locals.iter().enumerate() {
+        let share = shares[i] / whole;
+        for k in 0..4 {
+            for j in 0..=k {
+                pose[j][k] += local.curvature[(j, k)] * share;
+            }
+            entries.add(k, 4 + i, local.curvature[(k, 4)] * share);
+        }
+        entries.add(4 + i, 4 + i, local.curvature[(4, 4)] * share);
+    }
+    for (j, row) in pose.iter().enumerate() {
+        (j..4).for_each(|k| entries.add(j, k, row[k]));
+    }
+    entries
+}
