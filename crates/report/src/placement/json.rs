@@ -225,6 +225,7 @@ fn refinement(refinement: &Refinement) -> Value {
         "start": placement(&refinement.start),
         "start_mean_mm": number(Unit::DEFLECTION_MM, refinement.start_mean),
         "end": placement(&refinement.end),
+        "end_exact": placement_exact(&refinement.end),
         "end_mean_mm": number(Unit::DEFLECTION_MM, refinement.end_mean),
         "rounds": refinement.rounds,
         "iterations": refinement.iterations,
