@@ -8,6 +8,7 @@ mod certify;
 mod circularity;
 mod common;
 mod compensate;
+mod criterion;
 mod discretisation;
 mod documents;
 mod facade;

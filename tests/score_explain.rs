@@ -224,14 +224,14 @@ fn a_tight_corner_needs_a_limit_in_space_and_score_says_so() {
         "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n",
     );
     let mut row = |x: f64, y: f64, heading: f64| {
-        let (sine, cosine) = heading.sin_cos();
+        let (sine, cosine) = libm::sincos(heading);
         path +=
             &format!("1,{x:.6},{y:.6},0,{cosine:.9},{sine:.9},0,0,0,1,{:.6},{:.6},0\n", 80.0 * sine, -80.0 * cosine);
     };
     (0..4).for_each(|k| row(10.0 * f64::from(k), 0.0, 0.0));
     (0..=9).for_each(|k| {
         let turned = f64::from(k) * 10.0_f64.to_radians();
-        row(40.0 + 2.0 * turned.sin(), 2.0 - 2.0 * turned.cos(), turned);
+        row(40.0 + 2.0 * libm::sin(turned), 2.0 - 2.0 * libm::cos(turned), turned);
     });
     (1..5).for_each(|k| row(42.0, 2.0 + 10.0 * f64::from(k), 90.0_f64.to_radians()));
     bench.write("tasks/five-segments.csv", &path);

@@ -19,7 +19,7 @@
 //!
 //! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
 //! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
-//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0";
+//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0 and not above 1e6";
 //! assert_eq!(error.as_deref(), Some(expected));
 //! # Ok(())
 //! # }

@@ -40,6 +40,12 @@ pub struct Candidate {
     pub objective: Objective,
 }
 
+/// The better one of several objectives of a placement.
+pub(crate) fn best_of(sense: Sense, objectives: impl Iterator<Item = Objective>) -> Objective {
+    let nothing = Objective::Infeasible { points: usize::MAX, segments: usize::MAX };
+    objectives.fold(nothing, |best, next| if rank(sense, next, best).is_lt() { next } else { best })
+}
+
 /// Order of two candidates, better first.
 pub fn rank(sense: Sense, a: Objective, b: Objective) -> Ordering {
     match (a, b) {

@@ -18,6 +18,8 @@ pub enum ConstraintKind {
     JointStep,
     /// The turns of the joints along a segment.
     JointTurn,
+    /// The allowed postures, and whether they may change between segments.
+    Posture,
     /// The arm reaches the point.
     Reach,
     /// The limits of a joint, from 1.
@@ -44,6 +46,7 @@ impl ConstraintKind {
         match self {
             Self::JointStep => "joint_step".to_owned(),
             Self::JointTurn => "joint_turn".to_owned(),
+            Self::Posture => "posture".to_owned(),
             Self::Reach => "reach".to_owned(),
             Self::JointLimit(joint) => format!("joint_{joint}"),
             Self::Conditioning => "conditioning".to_owned(),
@@ -69,6 +72,8 @@ impl Problem {
         kinds.extend(turns.iter().any(Option::is_some).then_some(SpindleTurn));
         kinds.extend(self.constraints.max_deflection.map(|_| MaxDeflection));
         kinds.extend((self.constraints.min_base_distance > 0.0).then_some(BaseDistance));
+        let is_free = self.postures.may_change && self.postures.allowed().count() == 8;
+        kinds.extend((!is_free).then_some(Posture));
         kinds.push(CellPosition);
         kinds.extend((!self.cell.is_yaw_free()).then_some(CellYaw));
         kinds
@@ -102,6 +107,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
     words.extend(kinds.iter().filter_map(|kind| {
         match kind {
             JointStep | JointTurn | JointLimit(_) => None,
+            Posture => Some("allowed postures"),
             Reach => Some("reach"),
             Conditioning => Some("conditioning"),
             BetaRate => Some("rate of beta"),

@@ -179,7 +179,8 @@ pub fn diagnose(
             let beta = problem.redundancy.beta(k);
             explain(problem, placement, point, beta).map(|e| (beta, e))
         });
-        let states = states.filter(|(_, e)| only.is_none_or(|posture| e.posture == posture));
+        let states = states
+            .filter(|(_, e)| only.is_none_or(|posture| e.posture == posture) && problem.postures.allows(e.posture));
         states.min_by(|a, b| a.1.severity().total_cmp(&b.1.severity()))
     };
     let nearest: Vec<_> = none.blocked_points.par_iter().map(|point| (*point, nearest_of(*point))).collect();

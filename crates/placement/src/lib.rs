@@ -28,6 +28,7 @@ pub mod feasibility;
 pub mod lookup;
 pub mod outcome;
 pub mod place;
+pub mod postures;
 pub mod problem;
 pub mod redundancy;
 pub mod refine;
@@ -43,6 +44,7 @@ pub mod testing {
     //! The problem of Caro 2013 for the tests of this crate and of those above.
     #![allow(clippy::unwrap_used)]
     use super::criterion::Criterion;
+    use super::postures::PostureRules;
     use super::problem::*;
     use nalgebra::{DMatrix, Vector3};
     use std::f64::consts::PI;
@@ -74,6 +76,7 @@ pub mod testing {
                 max_spindle_turn: None,
                 max_spindle_speed: None,
             },
+            postures: PostureRules::default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The placement problem: what may vary, what must hold, and what a placement is.
 
 use super::criterion::Criterion;
+use super::postures::PostureRules;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
@@ -255,6 +256,8 @@ pub struct Problem {
     pub criterion: Criterion,
     /// How beta is planned.
     pub redundancy: Redundancy,
+    /// Which postures segments may be driven in.
+    pub postures: PostureRules,
 }
 
 impl Problem {

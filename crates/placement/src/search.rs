@@ -79,7 +79,7 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
             let children = (elite..settings.population)
                 .map(|index| {
                     let mut random = stream(settings.seed, sense, generation, index);
-                    breed(cell, settings, &population, sense, generation, &mut random)
+                    breed(problem, settings, &population, sense, generation, &mut random)
                 })
                 .collect::<Vec<_>>();
             population.truncate(elite);
@@ -178,6 +178,7 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
     });
     let bounds = bounds(&problem.cell);
     let segments = problem.task.segments().len();
+    let allowed: Vec<Posture> = problem.postures.allowed().collect();
     (0..size)
         .map(|index| {
             let mut random = stream(settings.seed, sense, 0, index);
@@ -186,14 +187,14 @@ fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Ca
                 bounds[k].0 + share * (bounds[k].1 - bounds[k].0)
             });
             let scheme = (settings.postures == PostureSearch::Genetic)
-                .then(|| (0..segments).map(|_| random_posture(&mut random)).collect());
+                .then(|| (0..segments).map(|_| random_posture(&allowed, &mut random)).collect());
             Candidate { placement: Placement::from(placement), scheme, objective: UNEVALUATED }
         })
         .collect()
 }
 
-fn random_posture(random: &mut impl Rng) -> Posture {
-    Posture::ALL[random.random_range(0..8)]
+fn random_posture(allowed: &[Posture], random: &mut impl Rng) -> Posture {
+    allowed[random.random_range(0..allowed.len())]
 }
 
 fn evaluate(evaluator: &Evaluator<'_>, population: &mut Vec<Candidate>, from: usize, monitor: &Monitor) {
@@ -231,13 +232,14 @@ fn evaluate_by<W>(
 
 /// One child: of two parents, or a mutant of one.
 fn breed(
-    cell: &Cell,
+    problem: &Problem,
     settings: &SearchSettings,
     population: &[Candidate],
     sense: Sense,
     generation: usize,
     random: &mut ChaCha8Rng,
 ) -> Candidate {
+    let cell = &problem.cell;
     let mother = tournament(population, sense, random);
     let mut child = mother.clone();
     if random.random::<f64>() < CROSSOVER {
@@ -261,10 +263,11 @@ fn breed(
             child.placement[k] += spread * (max - min) * normal(random);
         }
         if let Some(scheme) = &mut child.scheme {
+            let allowed: Vec<Posture> = problem.postures.allowed().collect();
             let chance = 1.0 / scheme.len() as f64;
             for posture in scheme.iter_mut() {
                 if random.random::<f64>() < chance {
-                    *posture = random_posture(random);
+                    *posture = random_posture(&allowed, random);
                 }
             }
         }

@@ -4,6 +4,7 @@ mod certificate;
 mod criterion;
 mod notes;
 mod output;
+mod postures;
 mod redundancy;
 mod stability;
 mod tables;
@@ -13,6 +14,7 @@ mod tests;
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
 pub use output::OutputTable;
+pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
@@ -26,12 +28,14 @@ use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
 use notes::{density_note, direction_note, speed_note, tilt_note};
+use postures::check_postures;
 use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_model::published::Published;
 use stead_model::task::Task;
+use stead_placement::postures::PostureRules;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
@@ -60,6 +64,8 @@ pub struct RunFile {
     pub segment: Option<Vec<SegmentTable>>,
     /// The free rotation of the spindle about the tool axis.
     pub redundancy: RedundancyTable,
+    /// Which postures the segments may be driven in, and how the moves between them count.
+    pub postures: Option<PosturesTable>,
     /// How hard to search.
     pub search: Option<SearchTable>,
     /// Moves between segments.
@@ -161,7 +167,14 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     inputs.extend(files);
     let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
-    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy };
+    let postures = match &run.postures {
+        Some(table) => table.rules(&at.key("postures"))?,
+        None => PostureRules::default(),
+    };
+    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures };
+    if let Some(table) = &run.postures {
+        check_postures(table, &problem, &search, &at.key("postures"))?;
+    }
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     notes.extend(problem.notes());

@@ -72,7 +72,8 @@ pub(super) fn check_axis_turns(problem: &Problem, at: &Place<'_>) -> Result<(), 
         if turn <= limit * (1.0 + 1e-9) {
             return Ok(());
         }
-        let turn = turn.to_degrees() * unit;
+        // Rounded up, so that what is said to be allowed is.
+        let turn = (turn.to_degrees() * unit * 1e4).ceil() / 1e4;
         let why = format!("the tool axis alone turns by {turn:.4} between path points {} and {point}", point - 1);
         Err(at.key(key).error(why, format!("at least {turn:.4}")))
     };
@@ -115,7 +116,7 @@ mod tests {
         let file = folder.path().join("run.toml");
         for (key, limit, parts) in [
             ("max_spindle_turn_deg_per_mm", 3.0, ["turns by 3.6870 between path points 0 and 1", "found 3;"]),
-            ("max_spindle_turn_deg_per_s", 180.0, ["turns by 184.3494 between path points 0 and 1", "found 180;"]),
+            ("max_spindle_turn_deg_per_s", 180.0, ["turns by 184.3495 between path points 0 and 1", "found 180;"]),
         ] {
             let read = |limit: f64| {
                 std::fs::write(&file, RUN.replace(RATE, &format!("{key} = {limit}"))).unwrap();

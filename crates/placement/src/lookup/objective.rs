@@ -5,11 +5,12 @@
 use super::interpolate::Scratch;
 use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
-use crate::candidate::Objective;
+use crate::candidate::{Objective, best_of};
 use crate::problem::Placement;
 use crate::redundancy::BetaChange;
+use crate::sense::Sense;
 use std::ops::Range as Span;
-use stead_model::robot::Posture;
+use stead_model::robot::{Posture, PostureClass};
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]
@@ -45,12 +46,19 @@ impl LookupTable<'_> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
+        let schemes = self.problem.unchanging_schemes(scheme);
+        if !schemes.is_empty() {
+            let of = |scheme: Vec<Posture>| self.objective(placement, grid, Some(&scheme), workspace);
+            return best_of(Sense::Min, schemes.into_iter().map(of));
+        }
         let placed = self.place(placement);
+        let rules = &self.problem.postures;
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
             let only = scheme.map(|s| s[index].class().index());
-            let asked = |class: usize| only.is_none_or(|asked| asked == class);
+            let asked =
+                |class: usize| only.is_none_or(|asked| asked == class) && rules.allows_class(PostureClass::ALL[class]);
             let mut best = f64::INFINITY;
             // The class that won last time goes first: the others can then mostly be given up on the way.
             let first = workspace.favourites[index];

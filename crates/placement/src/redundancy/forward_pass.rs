@@ -142,7 +142,9 @@ impl Planner<'_> {
         count_only: bool,
     ) -> ForwardPass {
         let mut forward_pass = ForwardPass { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
-        let asked = PostureClass::ALL.map(|class| only.is_none_or(|posture| posture.class() == class));
+        let rules = &self.problem.postures;
+        let asked = PostureClass::ALL
+            .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
         let Workspace { before, now, record } = workspace;
         record.costs.clear();
         for (place, point) in pass.span.clone().enumerate() {

@@ -4,6 +4,7 @@ use super::SegmentPlan;
 use crate::constraints::{Measured, STEP_ROUNDING, on_joints, on_state};
 use crate::evaluate::reference::State;
 use crate::problem::{Placement, Problem};
+use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
@@ -107,49 +108,133 @@ fn combine(posture: Posture, tracks: &[Vec<Vec<f64>>; 6], length: usize, joint_p
     }
 }
 
-/// Takes one way for each segment, so that the moves between segments are short: the least sum of the moves' lengths, by
-/// dynamic programming over the segments. Of equal sums (to a millionth) the first in order is taken: the lowest posture
-/// number, then the lowest turns.
-pub(super) fn select_joint_paths(problem: &Problem, choices: Vec<SegmentChoice>) -> Vec<SegmentPlan> {
-    let mut sums: Vec<i64> = vec![0; choices.first().map_or(0, |c| c.joint_paths.len())];
+/// Takes one plan and one way to drive it for each segment, by dynamic programming over the segments, exact for the plans given
+/// (the best of each segment first).
+///
+/// Of the plans within the tie of a segment's best, those that make the moves between segments short: the least sum of the moves'
+/// lengths. With a weight on moves, of all plans those with the least objective and weighed moves. Of equal sums (to a
+/// millionth) the first in order is taken: the best plan, then the lowest posture number, then the lowest turns.
+pub(super) fn select_joint_paths(
+    problem: &Problem,
+    sense: Sense,
+    choices: Vec<Vec<SegmentChoice>>,
+) -> Vec<SegmentPlan> {
+    let options: Vec<Vec<SegmentOption>> = choices.into_iter().map(|plans| options(problem, sense, plans)).collect();
+    let mut sums: Vec<Sum> =
+        options.first().map_or(Vec::new(), |first| first.iter().map(|o| Sum::of(o.cost)).collect());
     let mut back: Vec<Vec<usize>> = Vec::new();
-    for pair in choices.windows(2) {
+    for pair in options.windows(2) {
         let mut next = Vec::new();
         let mut from = Vec::new();
-        for way in &pair[1].joint_paths {
-            let (best, cost) = pair[0]
-                .joint_paths
-                .iter()
-                .zip(&sums)
-                .map(|(old, sum)| sum.saturating_add(length(problem, old.joints.last(), way.joints.first())))
-                .enumerate()
-                .fold((0, i64::MAX), |best, item| if item.1 < best.1 { item } else { best });
-            next.push(cost);
+        for option in &pair[1] {
+            let moved = pair[0].iter().zip(&sums).map(|(old, sum)| {
+                let length = length(problem, old.way.joints.last(), option.way.joints.first());
+                sum.plus(option.cost, length, weight(problem, sense))
+            });
+            let (best, sum) = first_least(moved);
+            next.push(sum);
             from.push(best);
         }
         sums = next;
         back.push(from);
     }
-    let mut pick = (0..sums.len()).fold(0, |best, k| if sums[k] < sums[best] { k } else { best });
-    let mut picks = vec![pick; choices.len()];
+    let (mut pick, _) = first_least(sums.into_iter());
+    let mut picks = vec![pick; options.len()];
     for (place, from) in back.iter().enumerate().rev() {
         pick = from[pick];
         picks[place] = pick;
     }
-    choices
+    let picked = options
         .into_iter()
         .zip(picks)
-        .map(|(mut choice, pick)| {
-            let way = choice.joint_paths.swap_remove(pick);
-            SegmentPlan {
-                points: choice.points,
-                posture: way.posture,
-                betas: unwrapped(&choice.betas),
-                joints: way.joints,
-                cost: choice.cost,
-            }
+        .filter_map(|(mut options, pick)| (pick < options.len()).then(|| options.swap_remove(pick)));
+    picked
+        .map(|SegmentOption { points, betas, cost_of_plan, way, .. }| SegmentPlan {
+            points,
+            posture: way.posture,
+            betas: unwrapped(&betas),
+            joints: way.joints,
+            cost: cost_of_plan,
         })
         .collect()
+}
+
+/// Of plans of the whole path the best, or of those within the tie the one with the shortest moves.
+pub(super) fn best_of(problem: &Problem, sense: Sense, found: Vec<Vec<SegmentPlan>>) -> Option<Vec<SegmentPlan>> {
+    let (sign, weight) = (sense.sign(), weight(problem, sense));
+    let judged = found.into_iter().map(|plans| {
+        let moved: i64 =
+            plans.windows(2).map(|pair| length(problem, pair[0].joints.last(), pair[1].joints.first())).sum();
+        let objective = sign * problem.objective(plans.iter().map(|plan| plan.cost)) + weight * moved as f64;
+        (objective, moved, plans)
+    });
+    let mut judged: Vec<_> = judged.collect();
+    judged.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = judged.first()?.0;
+    let tie = if weight > 0.0 { 0.0 } else { problem.postures.tie };
+    judged.retain(|(objective, ..)| *objective <= best + tie * best.abs());
+    judged.into_iter().min_by_key(|(_, moved, _)| *moved).map(|(.., plans)| plans)
+}
+
+/// What a millionth of a second of moves counts in the objective; nothing where the worst plan is sought. m
+fn weight(problem: &Problem, sense: Sense) -> f64 {
+    if sense == Sense::Min { problem.postures.move_weight * 1e-6 } else { 0.0 }
+}
+
+/// One plan of a segment and one way to drive it.
+struct SegmentOption {
+    points: Span<usize>,
+    betas: Vec<f64>,
+    cost_of_plan: f64,
+    /// What it counts in the choice. m
+    cost: f64,
+    way: JointPath,
+}
+
+/// The plans of a segment that may be taken, with every way to drive them.
+fn options(problem: &Problem, sense: Sense, mut plans: Vec<SegmentChoice>) -> Vec<SegmentOption> {
+    let is_weighed = weight(problem, sense) > 0.0;
+    if problem.postures.takes_the_best() {
+        plans.truncate(1);
+    }
+    let sign = sense.sign();
+    let best = plans.first().map_or(0.0, |best| best.cost * sign);
+    plans.retain(|plan| is_weighed || plan.cost * sign <= best + problem.postures.tie * best.abs());
+    let share = |cost: f64| if is_weighed { problem.objective([cost]) } else { 0.0 };
+    let driven = plans.into_iter().flat_map(|SegmentChoice { points, betas, cost, joint_paths }| {
+        joint_paths.into_iter().map(move |way| (points.clone(), betas.clone(), cost, way))
+    });
+    driven
+        .map(|(points, betas, plan, way)| SegmentOption { points, betas, cost_of_plan: plan, cost: share(plan), way })
+        .collect()
+}
+
+/// The objective and the length of the moves so far.
+#[derive(Clone, Copy)]
+struct Sum {
+    objective: f64,
+    length: i64,
+}
+
+impl Sum {
+    fn of(objective: f64) -> Self {
+        Self { objective, length: 0 }
+    }
+
+    fn plus(self, objective: f64, length: i64, weight: f64) -> Self {
+        let objective = self.objective + objective + weight * length as f64;
+        Self { objective, length: self.length.saturating_add(length) }
+    }
+
+    fn is_less(&self, other: &Self) -> bool {
+        self.objective < other.objective || (self.objective == other.objective && self.length < other.length)
+    }
+}
+
+/// The first of the least sums, with its number.
+fn first_least(sums: impl Iterator<Item = Sum>) -> (usize, Sum) {
+    let nothing = Sum { objective: f64::INFINITY, length: i64::MAX };
+    sums.enumerate().fold((0, nothing), |best, item| if item.1.is_less(&best.1) { item } else { best })
 }
 
 /// Length of a joint move in millionths: of a second at full speed of the slowest joint, where every speed is known, else of
@@ -191,3 +276,6 @@ pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
 pub(super) fn is_allowed(problem: &Problem, state: &State<f64>) -> bool {
     on_state(problem, state).all(|measured| measured.holds())
 }
+
+#[cfg(test)]
+mod tests;

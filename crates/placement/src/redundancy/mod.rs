@@ -25,7 +25,7 @@ pub mod transition;
 pub use obstruction::Obstruction;
 pub use rate_limit::BetaChange;
 
-use super::candidate::Objective;
+use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
@@ -153,6 +153,11 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
+        let schemes = self.problem.unchanging_schemes(scheme);
+        if !schemes.is_empty() {
+            let of = |scheme: Vec<Posture>| self.objective(placement, sense, Some(&scheme), workspace);
+            return best_of(sense, schemes.into_iter().map(of));
+        }
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for (index, span) in self.problem.task.segments().iter().enumerate() {
@@ -194,11 +199,12 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
-        Ok(joint_turns::select_joint_paths(
-            self.problem,
-            choices.into_iter().filter_map(|mut c| c.drain(..).next()).collect(),
-        ))
+        let rules = &self.problem.postures;
+        self.unchanging(scheme, sense, |scheme| {
+            let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
+            let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+            Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+        })
     }
 
     /// The best or worst plan with beta off the grid, one entry per segment.
@@ -216,27 +222,74 @@ impl<'a> Planner<'a> {
         spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let choices = self.choices(placement, sense, scheme, workspace, REFINED_EXCESS)?;
+        self.unchanging(scheme, sense, |scheme| self.refined(placement, sense, scheme, spacing, workspace))
+    }
+
+    /// What `plan` finds for a scheme, or where the posture may not change, the best of what it finds for each posture: of those
+    /// within the tie the one with the shortest moves.
+    fn unchanging(
+        &self,
+        scheme: Option<&[Posture]>,
+        sense: Sense,
+        mut plan: impl FnMut(Option<&[Posture]>) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
+    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        let schemes = self.problem.unchanging_schemes(scheme);
+        if schemes.is_empty() {
+            return plan(scheme);
+        }
+        let (mut found, mut failure): (Vec<Vec<SegmentPlan>>, Option<NoFeasiblePlan>) = (Vec::new(), None);
+        for scheme in &schemes {
+            match plan(Some(scheme)) {
+                Ok(plans) => found.push(plans),
+                Err(none) => {
+                    let size = |none: &NoFeasiblePlan| (none.blocked_points.len(), none.broken_segments.len());
+                    failure = Some(match failure {
+                        Some(known) if size(&known) <= size(&none) => known,
+                        _ => none,
+                    });
+                }
+            }
+        }
+        let nothing = || NoFeasiblePlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
+        joint_turns::best_of(self.problem, sense, found).ok_or_else(|| failure.unwrap_or_else(nothing))
+    }
+
+    fn refined(
+        &self,
+        placement: &Placement,
+        sense: Sense,
+        scheme: Option<&[Posture]>,
+        spacing: off_grid::Spacing,
+        workspace: &mut Workspace,
+    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        let (rules, sign) = (&self.problem.postures, sense.sign());
+        let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
+        let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
+        let choices = self.choices(placement, sense, scheme, workspace, margin)?;
         let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
-                let mut plan = joint_turns::select_joint_paths(self.problem, vec![choice]).pop()?;
+                let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
                 off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
                 Some(plan)
             });
-            let sign = sense.sign();
-            let plan = plans.min_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)))?;
+            let mut plans: Vec<SegmentPlan> = plans.collect();
+            plans.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
+            plans.truncate(if rules.takes_the_best() { 1 } else { plans.len() });
             // The refined betas may be driven in other flips and turns just as well.
-            let postures = match only {
-                Some(posture) => vec![posture],
-                None => self.equivalent_postures(plan.posture),
-            };
-            let span = plan.points.clone();
-            let again =
-                joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
-            Some(again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan)))
+            let driven = plans.into_iter().map(|plan| {
+                let postures = match only {
+                    Some(posture) => vec![posture],
+                    None => self.equivalent_postures(plan.posture),
+                };
+                let span = plan.points.clone();
+                let again =
+                    joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
+                again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan))
+            });
+            Some(driven.collect::<Vec<_>>()).filter(|driven| !driven.is_empty())
         });
-        Ok(joint_turns::select_joint_paths(self.problem, refined.collect()))
+        Ok(joint_turns::select_joint_paths(self.problem, sense, refined.collect()))
     }
 
     /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the

@@ -31,12 +31,14 @@ impl Planner<'_> {
         margin: Option<f64>,
     ) -> SegmentOptions {
         let mut found = SegmentOptions { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
+        let rules = &self.problem.postures;
         let is_spread = margin.is_some() && self.rate_limit.is_spread(&span);
-        for evaluator in
-            self.evaluators.iter().filter(|evaluator| only.is_none_or(|posture| evaluator.flips().contains(posture)))
-        {
-            let postures =
-                |posture: &Posture| evaluator.flips().contains(*posture) && only.is_none_or(|asked| asked == *posture);
+        let is_asked = |posture: Posture| only.is_none_or(|asked| asked == posture) && rules.allows(posture);
+        for evaluator in &self.evaluators {
+            let postures = |posture: &Posture| evaluator.flips().contains(*posture) && is_asked(*posture);
+            if !Posture::ALL.iter().any(postures) {
+                continue;
+            }
             // With steps saved up first; where they cannot be spread, without.
             for is_accumulated in [true, false].into_iter().skip(usize::from(!is_spread)) {
                 let pass = Pass { evaluator, span: &span, placement, sense, is_accumulated };
@@ -56,7 +58,8 @@ impl Planner<'_> {
     pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
         let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));
         let postures = posture.class().postures().into_iter();
-        postures.filter(|p| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p))).collect()
+        let is_like = |p: &Posture| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p));
+        postures.filter(|p| is_like(p) && self.problem.postures.allows(*p)).collect()
     }
 
     /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside its

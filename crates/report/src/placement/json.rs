@@ -12,6 +12,7 @@ use stead_format::input::InputFile;
 use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan, PlanPoint, Refinement, Transfer};
+use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
 use stead_placement::refine::active::ActiveBound;
 use stead_placement::sensitivity::{ForceSensitivity, SetOutcome};
@@ -45,6 +46,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("cases", cases(outcome, false)),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    entries.extend(postures(problem).map(|rules| ("postures".to_owned(), rules)));
     context.document().with(Value::Object(entries))
 }
 
@@ -288,6 +290,19 @@ fn constraints(problem: &Problem) -> Value {
         "max_deflection_mm": optional(Unit::DEFLECTION_MM, problem.constraints.max_deflection),
         "joint_margin_deg": number(Unit::ANGLE_DEG, problem.constraints.joint_margin),
         "min_base_distance_mm": number(Unit::PLACE_MM, problem.constraints.min_base_distance),
+    })
+}
+
+/// The rules for postures, where there are some.
+fn postures(problem: &Problem) -> Option<Value> {
+    let rules = &problem.postures;
+    (*rules != PostureRules::default()).then(|| {
+        json!({
+            "allowed": rules.allowed().map(|posture| posture.number()).collect::<Vec<_>>(),
+            "changes": if rules.may_change { "free" } else { "never" },
+            "move_weight_mm_per_s": number(Unit::DEFLECTION_MM, rules.move_weight),
+            "tie_percent": number(Unit::PLAIN, rules.tie * 100.0),
+        })
     })
 }
 

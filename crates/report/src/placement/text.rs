@@ -94,7 +94,7 @@ fn stiffest(plan: &Plan) -> String {
     let (slope, joint): (f64, usize) = largest.map_or((0.0, 1), |(slope, joint)| (*slope, joint));
     let share = if plan.mean > CANCELLATION { slope / plan.mean } else { 0.0 };
     format!(
-        "joint {joint} matters most to it: with 1 % more stiffness the mean changes by {} % under the same plan",
+        "joint {joint} matters most to the best placement: 1 % more stiffness changes its mean by {} % (same plan)",
         figures(share)
     )
 }

@@ -1,0 +1,108 @@
+//! What is minimised, from outside: directions, stiffness sets, margins, postures, sensitivity.
+
+use crate::common::{Bench, RUN};
+use serde_json::Value;
+
+/// A raster of 500 upright points in 20 lines, cut to and fro; the force is against the feed and to its right.
+fn raster() -> String {
+    let mut text =
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n".to_owned();
+    for line in 0..20 {
+        for k in 0..25 {
+            let (along, feed) = if line % 2 == 0 { (k, 1) } else { (24 - k, -1) };
+            let (x, y) = (10 * along - 120, 10 * line - 95);
+            text += &format!("{},{x},{y},0,{feed},0,0,0,0,1,{},{},-40\n", line + 1, -120 * feed, -80 * feed);
+        }
+    }
+    text
+}
+
+fn placed(bench: &Bench, more: &[&str]) -> Value {
+    let ended = bench.stead(&[&["place", RUN, "--out", "out", "--json"], more].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.json()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn scored_as_a_whole_the_deflection_of_a_raster_is_much_smaller() {
+    let bench = Bench::new();
+    bench.replace(RUN, "task = \"../tasks/five-segments.csv\"", "task = \"raster.csv\"");
+    bench.write("configs/raster.csv", &raster());
+    bench.replace(RUN, "population = 16\n", "population = 8\n");
+    bench.replace(RUN, "generations = 3\nbasins = 2\n", "generations = 1\nbasins = 1\n");
+    let total = |document: &Value| number(&document["cases"][0]["deflection_mm"]["total"]["mean"]);
+    let plain = placed(&bench, &[]);
+    bench.replace(RUN, "force_uncertainty = 0.0", "direction = \"total\"");
+    let whole = placed(&bench, &[]);
+    assert_eq!(whole["cases"][0]["mean_mm"], whole["cases"][0]["deflection_mm"]["total"]["mean"]);
+    assert!(total(&whole) < 0.7 * total(&plain), "{} {}", total(&whole), total(&plain));
+    let notes = plain["notes"].as_array().unwrap();
+    assert!(notes.iter().any(|note| note.as_str().unwrap().contains("below a fifth of the whole")), "{notes:?}");
+}
+
+/// The published placement.
+const PLACE: [&str; 8] = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258"];
+
+#[test]
+fn postures_are_kept_where_they_may_not_change() {
+    let bench = Bench::new();
+    bench.replace(RUN, "[constraints]", "[postures]\nallowed = [4, 3]\nchanges = \"never\"\n\n[constraints]");
+    let score = bench.stead(&[&["score", RUN, "--json"], &PLACE[..]].concat()).json();
+    for plan in ["best", "worst"] {
+        let postures = score[plan]["postures"].as_array().unwrap();
+        assert!(postures.iter().all(|posture| posture == &postures[0]), "{postures:?}");
+        assert!([3, 4].contains(&postures[0].as_u64().unwrap()), "{postures:?}");
+    }
+    bench.replace(RUN, "allowed = [4, 3]", "allowed = [4, 9]");
+    let refused = bench.stead(&[&["score", RUN], &PLACE[..]].concat());
+    assert_eq!(refused.code, Some(2));
+    refused.assert_says(&["postures.allowed[2]: ", "found 9", "from 1 to 8"]);
+}
+
+#[test]
+fn margins_keep_plans_off_the_limits_and_the_path_off_the_column() {
+    let bench = Bench::new();
+    bench.replace(RUN, "characteristic_length_mm = 682.0", "joint_margin_deg = 5.0\ncharacteristic_length_mm = 682.0");
+    let document = placed(&bench, &[]);
+    let limits = [(-185.0, 185.0), (0.0, 146.0), (-245.0, 29.0), (-350.0, 350.0), (-125.0, 125.0), (-350.0, 350.0)];
+    for case in document["cases"].as_array().unwrap() {
+        for point in case["plan"].as_array().unwrap() {
+            for (angle, (min, max)) in point["joints_deg"].as_array().unwrap().iter().zip(limits) {
+                assert!((min + 4.9999..=max - 4.9999).contains(&number(angle)), "{angle} beside {min} and {max}");
+            }
+        }
+    }
+    bench.replace(RUN, "joint_margin_deg = 5.0", "min_base_distance_mm = 2500.0");
+    let refused = bench.stead(&[&["score", RUN], &PLACE[..]].concat());
+    assert_eq!(refused.code, Some(1), "{}", refused.stderr);
+    refused.assert_says(&["from axis 1", "nearer than min_base_distance = 2500 mm"]);
+}
+
+#[test]
+fn one_placement_for_several_stiffnesses_and_what_force_errors_do_are_stated() {
+    let bench = Bench::new();
+    bench.copy_all(&["configs/robots/kuka-kr270-2-k1-0.8.toml"]);
+    bench.replace(RUN, "population = 16\n", "population = 8\n");
+    bench.replace(RUN, "generations = 3\nbasins = 2\n", "generations = 1\nbasins = 1\n");
+    let sets = "over = \"worst\"\nrobots = [\"robots/kuka-kr270-2.toml\", \"robots/kuka-kr270-2-k1-0.8.toml\"]\n";
+    bench.replace(RUN, "force_uncertainty = 0.0", sets);
+    let document = placed(&bench, &["--sensitivity"]);
+    let found = &document["stiffness_sets"];
+    let means: Vec<f64> = found["sets"].as_array().unwrap().iter().map(|set| number(&set["mean_mm"])).collect();
+    let worst = number(&found["worst_mean_mm"]);
+    assert!(means.len() == 2 && means[0].max(means[1]) == worst, "{found}");
+    assert!(worst <= number(&document["cases"][0]["mean_mm"]) + 1e-7, "{found}");
+    let sensitivity = &document["sensitivity"];
+    assert_eq!(sensitivity["force_uncertainty"], 0.1);
+    let [nominal, robust] = ["nominal", "robust"].map(|key| number(&sensitivity[key]["with_force_errors_mm"]));
+    assert!(robust <= nominal * (1.0 + 1e-6), "{sensitivity}");
+    assert_eq!(document["inputs"].as_array().unwrap().len(), 5);
+    for case in [0, 2] {
+        assert_eq!(document["cases"][case]["mean_by_stiffness"].as_array().unwrap().len(), 6);
+        assert!(document["cases"][case]["active_bounds"].is_array());
+    }
+}
