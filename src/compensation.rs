@@ -51,7 +51,7 @@ impl CompensationRun {
         let outcome = compensation::compensate(&self.run.job);
         match outcome.not_corrected().filter(NotCompensated::is_all) {
             Some(all) => Err(all.into()),
-            None => Ok(CompensatedPath { run: Arc::clone(&self.run), outcome }),
+            None => Ok(self.path(outcome)),
         }
     }
 
@@ -61,7 +61,12 @@ impl CompensationRun {
     /// [`Error::NotCompensated`] with the points that cannot be compensated, and why.
     pub fn compensate_all(&self) -> Result<CompensatedPath, Error> {
         let outcome = compensation::compensate(&self.run.job).complete()?;
-        Ok(CompensatedPath { run: Arc::clone(&self.run), outcome })
+        Ok(self.path(outcome))
+    }
+
+    fn path(&self, outcome: Outcome) -> CompensatedPath {
+        let notes = self.run.notes.iter().chain(&outcome.notes).cloned().collect();
+        CompensatedPath { run: Arc::clone(&self.run), outcome, notes }
     }
 }
 
@@ -70,6 +75,7 @@ impl CompensationRun {
 pub struct CompensatedPath {
     run: Arc<format::CompensateRun>,
     outcome: Outcome,
+    notes: Vec<String>,
 }
 
 impl CompensatedPath {
@@ -93,7 +99,7 @@ impl Report for CompensatedPath {
     }
 
     fn notes(&self) -> &[String] {
-        &self.run.notes
+        &self.notes
     }
 
     fn warnings(&self) -> &[Warning] {

@@ -15,6 +15,7 @@ mod facade;
 mod help;
 mod identify;
 mod identify_plan;
+mod looks_wrong;
 mod opw_oracle;
 mod place;
 mod score_explain;

@@ -19,6 +19,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
         }
         out.give_up();
     })?;
+    say_notes(path.notes().get(run.notes().len()..).unwrap_or_default());
     say_warnings(path.warnings());
     out.show(path.write(&out.path), &path, options.json, |folder| {
         if folder.is_empty() { folder } else { format!("results in {folder}\n") }

@@ -44,6 +44,8 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         let text = format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads);
         written = written.and(print(text.as_bytes()));
     }
+    // What was read was said before.
+    say_notes(placements.notes().get(run.notes().len()..).unwrap_or_default());
     say_warnings(placements.warnings());
 
     let shown = terminal.show(None);

@@ -17,7 +17,8 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         Folder::create(out).map_err(Failure::Output)?;
     }
     say_notes(run.notes());
-    say_notes(run.outside_cell(&placement).as_slice());
+    let outside_cell = run.outside_cell(&placement);
+    say_notes(outside_cell.as_slice());
     let shown = Terminal::start().show(None);
     let score = on_threads(None, || {
         let mut score = run.score_with(&placement, &shown.monitor)?;
@@ -33,6 +34,8 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
             let _ = print_json(&run.infeasible_json(nothing));
         }
     })?;
+    // What was known before was said then.
+    say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
     say_warnings(score.warnings());
     let written = options.out.as_ref().map_or(Ok(()), |out| files_written(score.write(out)));
     if options.json {

@@ -11,7 +11,7 @@ use super::sensitivity::{ForceSensitivity, SetOutcome, mean_by, objective_with_f
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{Refined, refine_basins, refine_side};
-use notes::{cancellation, interruption, small_part};
+use notes::{cancellation, interruption};
 use plan::{detailed, worst_plan};
 use searched::{Searched, search_cell};
 use stead_model::robot::angles::wrap;
@@ -86,7 +86,7 @@ pub fn place(
     let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, &found, monitor) };
     Ok(Outcome {
         sets,
-        notes: small_part(problem, &best_case.plan).into_iter().collect(),
+        notes: notes::of(problem, &best_case.plan),
         sensitivity,
         cases: Cases {
             best: best_case,

@@ -5,12 +5,14 @@ use super::postures::PostureRules;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
+use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Robot, Spindle,
     angles::{q4_from_yaw, wrap},
     cast, point_from_tool,
 };
 use stead_model::task::Task;
+use stead_numerics::digits::figures;
 use stead_numerics::scalar::Scalar;
 
 /// A closed interval.
@@ -48,7 +50,18 @@ pub struct Cell {
     pub yaw: Interval,
 }
 
+/// A cell that is smaller than this in every direction, and leaves room all the same, looks wrong. m
+const SMALLEST_CELL: f64 = 5e-3;
+
 impl Cell {
+    /// That the cell is so small that its ends look like another unit. A cell that leaves no room is one place, as asked for.
+    fn note(&self) -> Option<String> {
+        let widest = self.position.iter().map(Interval::width).fold(0.0, f64::max);
+        (widest > 0.0 && widest < SMALLEST_CELL).then(|| {
+            format!("the cell is no wider than {} mm in any direction: are its ends in mm?", figures(widest * 1e3))
+        })
+    }
+
     /// Whether every yaw is allowed, so that the yaw has no ends.
     pub fn is_yaw_free(&self) -> bool {
         self.yaw.width() >= TAU - 1e-9
@@ -248,6 +261,18 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// What looks like a wrong unit or sign though it is possible, in sentences.
+    pub fn notes(&self) -> Vec<String> {
+        let parts = [
+            plausibility::arm(&self.robot),
+            plausibility::spindle(&self.spindle),
+            plausibility::path(self.task.path()),
+            plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
+            self.cell.note(),
+        ];
+        parts.into_iter().flatten().collect()
+    }
+
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement
     /// and free angle `beta` in rad (Caro 2013, eq. 7 with eq. 8 to 10).
     pub fn base_from_flange<T: Scalar>(&self, point: usize, placement: &Placement<T>, beta: T) -> Pose<T> {

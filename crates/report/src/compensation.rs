@@ -85,7 +85,7 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
     let settings = &run.job.settings;
     let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
     let not_corrected = outcome.not_corrected().map_or_else(Vec::new, |not| not.failed);
-    document(run).warnings(&outcome.warnings).with(json!({
+    document(run).notes(&outcome.notes).warnings(&outcome.warnings).with(json!({
         "robot": run.job.robot.name(),
         "reality": run.has_reality.then(|| run.job.reality.name()),
         "model": Word(settings.model),

@@ -1,12 +1,14 @@
 //! Result of a simulated pass: forces, wall roughness, modes, stability.
 
-use super::coupled::{End, Job, JobError, Run};
+use super::coupled::{End, Job, JobError, Run, Sample};
 use super::judgement::{Evidence, Judgement, period_variation, steps};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
 use super::stability_analysis::{StabilityError, linear_at, runout_note};
+use nalgebra::{Vector2, Vector3};
 use serde::Serialize;
+use stead_model::plausibility;
 use stead_numerics::message::Warning;
 
 /// How a simulated pass is evaluated.
@@ -132,7 +134,7 @@ impl Simulation {
             filtered,
             roughness,
             warnings: warning(judgement, &run.end).into_iter().collect(),
-            notes: runout_note(job.cutter).into_iter().collect(),
+            notes: notes(job, &run),
             run,
         })
     }
@@ -141,6 +143,14 @@ impl Simulation {
     pub fn is_stable(&self) -> bool {
         self.judgement == Judgement::Calm
     }
+}
+
+/// What the result rests on, and what of it looks like a wrong unit or sign.
+fn notes(job: &Job<'_>, run: &Run) -> Vec<String> {
+    let largest = |size: fn(&Sample) -> f64| run.samples.iter().map(size).fold(0.0, f64::max);
+    let force = plausibility::force(largest(|sample| Vector3::from(sample.force).norm()));
+    let deflection = plausibility::deflection(largest(|sample| Vector2::from(sample.deflection).norm()));
+    job.setup.notes().into_iter().chain(runout_note(job.cutter)).chain(force).chain(deflection).collect()
 }
 
 /// What small motions do at two distances along the pass (m).

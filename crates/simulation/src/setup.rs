@@ -2,6 +2,7 @@
 
 use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::motion::Motion;
+use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
 
 /// An arm, how much of it is modelled, and the pass that it makes.
@@ -20,6 +21,11 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// What looks like a wrong unit or sign though it is possible, in sentences.
+    pub fn notes(&self) -> Vec<String> {
+        plausibility::arm(&self.robot).into_iter().chain(plausibility::spindle(&self.spindle)).collect()
+    }
+
     /// Chain and drives, their stiffnesses taken at the start of the pass.
     ///
     /// # Errors

@@ -99,7 +99,7 @@ pub fn analyse(
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
         lobes: lobes(&plant, cutter, cut, &between(settings.speeds, settings.points), settings.max_depth)?,
         pass_time: cut.length / setup.motion.ramp().feed,
-        notes: runout_note(cutter).into_iter().collect(),
+        notes: setup.notes().into_iter().chain(runout_note(cutter)).collect(),
     })
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt;
+use stead_model::plausibility;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
 use stead_numerics::mean_max::MeanAndMax;
@@ -67,11 +68,14 @@ pub struct CompensatedPath {
     pub points: Vec<CompensatedPoint>,
     /// Why the path may not be what was wanted: `not-corrected` where points keep their target.
     pub warnings: Vec<Warning>,
+    /// What looks like a wrong unit though it is possible, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl CompensatedPath {
     pub(super) fn new(points: Vec<CompensatedPoint>) -> Self {
-        let mut path = Self { points, warnings: Vec::new() };
+        let mut path = Self { points, warnings: Vec::new(), notes: Vec::new() };
+        path.notes = plausibility::deflection(path.deflections()[0].max).into_iter().collect();
         path.warnings =
             path.not_corrected().map(|not| Warning::new("not-corrected", not.summary())).into_iter().collect();
         path

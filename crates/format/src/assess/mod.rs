@@ -25,6 +25,7 @@ use stead_assessment::map::Grid;
 use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
 use stead_model::cutting::ForceHistory;
+use stead_model::plausibility;
 use stead_model::published::Published;
 use stead_model::robot::{Compliance, Pose, Robot};
 
@@ -57,7 +58,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let file: AssessmentFile = document.read()?;
     let plane = file.plane.map(|table| plane_from(&table, &at.key("plane"))).transpose()?.unwrap_or(Plane::XOZ);
     let spindle = file.spindle.map(|table| table.spindle(&at.key("spindle"))).transpose()?;
-    let flange_from_tool = spindle.map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
+    let flange_from_tool = spindle.as_ref().map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
     let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
     let force_history = cut.map(|cut| cut.force_history());
@@ -86,7 +87,11 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         None => None,
     };
     let asked = !selection.forces.is_empty();
-    let notes = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten()).collect();
+    // A benchmark of the arm alone has its tool at the flange.
+    let spindle_note = spindle.filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
+    let odd = robots.iter().filter_map(plausibility::arm).chain(spindle_note.as_ref().and_then(plausibility::spindle));
+    let known = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten());
+    let notes = known.chain(odd).collect();
     let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
     Ok(AssessRun { comparison, range_share: yields.range_share, force_history, published, inputs, notes })
 }

@@ -74,6 +74,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         (None, None) => None,
     };
     let has_reality = real.is_some();
+    let notes = run.problem.notes().into_iter().chain(plan.note).collect();
     let robot = run.problem.robot;
     let reality = match real {
         None => robot.clone(),
@@ -83,7 +84,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         }
     };
     let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
-    Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes: plan.note.into_iter().collect() })
+    Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes })
 }
 
 impl CompensationTable {

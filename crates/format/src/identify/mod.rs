@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::Problem;
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::spring::Geometry;
+use stead_model::plausibility;
 use stead_model::robot::{Compliance, Robot, Spindle};
 
 /// An identification file and the files it names, read and checked.
@@ -78,7 +79,10 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         reduce: fit.reduce.unwrap_or_default(),
         hold,
     };
-    let notes = note.into_iter().collect();
+    let largest =
+        problem.sheet.configurations.iter().map(|configuration| configuration.force.norm()).fold(0.0, f64::max);
+    let odd = plausibility::arm(&problem.robot).into_iter().chain(plausibility::force(largest));
+    let notes = note.into_iter().chain(odd).collect();
     Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
 

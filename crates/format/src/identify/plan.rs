@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
+use stead_model::plausibility;
 use stead_model::robot::Robot;
 
 /// Which measurements to choose.
@@ -130,7 +131,8 @@ pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> 
     let plan_at = at.key("plan");
     let plan = contents.plan.as_ref().ok_or_else(|| plan_at.missing("a table [plan]"))?;
     let inputs = vec![source.as_config(), shared.robot_input.clone()];
-    let notes = shared.note.iter().cloned().collect();
+    let odd = plausibility::arm(&shared.robot).into_iter().chain(plausibility::force(plan.load_n.si()));
+    let notes = shared.note.iter().cloned().chain(odd).collect();
     let mut request = plan.request(shared, noise, &plan_at)?;
     request.seed = seed.unwrap_or(request.seed);
     Ok(PlanRun {

@@ -177,6 +177,7 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     }
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
+    notes.extend(problem.notes());
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));

@@ -3,6 +3,7 @@
 use crate::criterion::Criterion;
 use crate::outcome::{CANCELLATION, Plan};
 use crate::problem::Problem;
+use stead_model::plausibility;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 
@@ -15,11 +16,17 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
     })
 }
 
+/// What should be known about a best plan though nothing is wrong with it.
+pub(super) fn of(problem: &Problem, plan: &Plan) -> Vec<String> {
+    let large = plausibility::deflection(plan.deflection.total.max);
+    small_part(problem, plan).into_iter().chain(large).collect()
+}
+
 /// A scored part below this share of the whole deflection is small.
 const SMALL_PART: f64 = 0.2;
 
 /// A note on a plan whose scored part is small beside the whole deflection: it may have been balanced against itself.
-pub(super) fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {
+fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {
     let (scored, total) = (plan.mean * 1e3, plan.deflection.total.mean * 1e3);
     (problem.criterion.force_uncertainty == 0.0 && scored < SMALL_PART * total).then(|| {
         format!(

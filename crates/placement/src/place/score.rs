@@ -1,7 +1,7 @@
 //! One given placement.
 
 use super::infeasible::{Infeasible, infeasible};
-use super::notes::{cancellation, small_part};
+use super::notes::{self, cancellation};
 use super::plan::{detailed, worst_plan};
 use crate::outcome::{Case, Cycle, Plan};
 use crate::problem::{Placement, Problem};
@@ -69,7 +69,7 @@ pub fn score(
     let plan = detailed(problem, placement, &best.plans);
     Ok(Score {
         placement: *placement,
-        notes: small_part(problem, &plan).into_iter().collect(),
+        notes: notes::of(problem, &plan),
         best: plan,
         worst: detailed(problem, placement, &worst),
         cycles: [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans)),

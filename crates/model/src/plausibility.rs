@@ -1,0 +1,142 @@
+//! What is possible but looks like a wrong unit or sign, in sentences: said beside a result, never refused.
+
+use crate::robot::{Robot, Spindle};
+use crate::task::ToolPath;
+use stead_numerics::digits::figures;
+
+/// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N m/rad
+const KNOWN_STIFFNESSES: [f64; 2] = [2.9e4, 9.1e6];
+/// So many times beyond these a stiffness looks wrong.
+const BEYOND: f64 = 100.0;
+/// A tool centre point nearer to the flange looks wrong. m
+const SHORTEST_SPINDLE: f64 = 1e-3;
+/// A shorter path looks wrong. m
+const SHORTEST_PATH: f64 = 5e-3;
+/// A larger force looks wrong. N
+const LARGEST_FORCE: f64 = 1e5;
+/// A larger deflection looks wrong. m
+const LARGEST_DEFLECTION: f64 = 10e-3;
+
+/// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
+pub fn arm(robot: &Robot) -> Option<String> {
+    let [softest, stiffest] = [KNOWN_STIFFNESSES[0] / BEYOND, KNOWN_STIFFNESSES[1] * BEYOND];
+    let stiffness = |joint: usize| 1.0 / robot.compliances_at(&middle(robot))[joint];
+    let odd: Vec<String> = (0..6)
+        .filter(|joint| !(softest..=stiffest).contains(&stiffness(*joint)))
+        .map(|joint| format!("joint {} with {} MN m/rad", joint + 1, figures(stiffness(joint) / 1e6)))
+        .collect();
+    (!odd.is_empty()).then(|| {
+        format!(
+            "{}: {} a hundred times stiffer or softer than any known joint (0.029 to 9.1 MN m/rad): are stiffnesses in MN m/rad, \
+             compliances in urad/(N m)?",
+            robot.name(),
+            match &odd[..] {
+                [one] => format!("{one} is"),
+                several => format!("{} are", several.join(", ")),
+            }
+        )
+    })
+}
+
+/// The middle of the range of every joint. rad
+fn middle(robot: &Robot) -> [f64; 6] {
+    std::array::from_fn(|joint| {
+        let joint = &robot.joints()[joint];
+        (joint.min + joint.max) / 2.0
+    })
+}
+
+/// A tool centre point at the flange, or a tool that points from there back to the flange.
+pub fn spindle(spindle: &Spindle) -> Option<String> {
+    let tool = &spindle.flange_from_tool;
+    let distance = tool.translation.norm();
+    if distance < SHORTEST_SPINDLE {
+        let mm = figures(distance * 1e3);
+        return Some(format!("the tool centre point is {mm} mm from the flange: is spindle.xyz_mm in mm?"));
+    }
+    (tool.rotation.column(2).dot(&tool.translation) < 0.0).then(|| {
+        "the tool points from its centre point back to the flange: the z axis of the tool frame, the third column of \
+         spindle.rotation, points out of the spindle to the work"
+            .to_owned()
+    })
+}
+
+/// A path of hardly any length.
+pub fn path(path: &ToolPath) -> Option<String> {
+    let length: f64 = (0..path.segments().len()).map(|segment| path.segment_length(segment)).sum();
+    (path.points().len() > 1 && length < SHORTEST_PATH)
+        .then(|| format!("the tool path is {} mm long in all: are its places in mm?", figures(length * 1e3)))
+}
+
+/// A force (N) that hardly any tool bears.
+pub fn force(largest: f64) -> Option<String> {
+    (largest > LARGEST_FORCE).then(|| format!("forces go up to {} N: are they in N?", figures(largest)))
+}
+
+/// A deflection (m) that no part survives.
+pub fn deflection(largest: f64) -> Option<String> {
+    (largest > LARGEST_DEFLECTION).then(|| {
+        format!(
+            "the tool deflects by up to {} mm: are forces in N and stiffnesses in MN m/rad?",
+            figures(largest * 1e3)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::testing::{kr270, spindle as mounted};
+    use crate::task::PathPoint;
+    use crate::task::testing::five_segments;
+    use nalgebra::{Vector3, vector};
+
+    #[test]
+    fn what_is_usual_is_not_noted() {
+        let task = five_segments();
+        assert_eq!((arm(&kr270()), spindle(&mounted())), (None, None));
+        assert_eq!((path(task.path()), force(2700.0), deflection(2.8e-3)), (None, None, None));
+    }
+
+    #[test]
+    fn joints_of_another_unit_are_named() {
+        let mut compliances = kr270().constant_compliances().unwrap();
+        // N m/rad written as MN m/rad.
+        compliances[0] *= 1e-6;
+        let note = arm(&kr270().with_compliances(compliances).unwrap()).unwrap();
+        assert!(note.contains("joint 1 with 237000 MN m/rad is a hundred times"), "{note}");
+        compliances[4] = 1.0;
+        let note = arm(&kr270().with_compliances(compliances).unwrap()).unwrap();
+        assert!(note.contains("joint 1 with 237000 MN m/rad, joint 5 with 1.00e-6 MN m/rad are"), "{note}");
+        for (stiffness, is_noted) in [(9.09e8, false), (9.2e8, true), (291.0, false), (289.0, true)] {
+            compliances = kr270().constant_compliances().unwrap();
+            compliances[2] = 1.0 / stiffness;
+            assert_eq!(arm(&kr270().with_compliances(compliances).unwrap()).is_some(), is_noted, "{stiffness}");
+        }
+    }
+
+    #[test]
+    fn spindles_of_no_length_and_those_that_point_back_are_noted() {
+        let with = |change: &dyn Fn(&mut Vector3<f64>)| {
+            let mut mounted = mounted();
+            change(&mut mounted.flange_from_tool.translation);
+            spindle(&mounted)
+        };
+        let metres = with(&|place| *place /= 1e3).unwrap();
+        assert!(metres.starts_with("the tool centre point is 0.684 mm from the flange"), "{metres}");
+        assert!(with(&|place| *place = vector![0.0, 0.0, 0.0]).unwrap().starts_with("the tool centre point is 0 mm"));
+        assert!(with(&|place| *place *= -1.0).unwrap().starts_with("the tool points from its centre point back"));
+    }
+
+    #[test]
+    fn short_paths_large_forces_and_large_deflections_are_noted() {
+        let [place, axis, feed] = [Vector3::zeros(), Vector3::z(), Vector3::x()];
+        let point = |x: f64| (1, PathPoint { position: place + feed * x, axis, feed });
+        let along = |length: f64| path(&ToolPath::new([point(0.0), point(length)]).unwrap());
+        assert_eq!(along(5.1e-3), None);
+        assert_eq!(along(4e-4).unwrap(), "the tool path is 0.400 mm long in all: are its places in mm?");
+        assert!(force(2e5).unwrap().starts_with("forces go up to 200000 N"));
+        assert!(deflection(0.037).unwrap().starts_with("the tool deflects by up to 37.0 mm"));
+        assert_eq!(deflection(f64::NAN), None);
+    }
+}
