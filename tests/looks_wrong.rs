@@ -25,12 +25,21 @@ fn scale_task(bench: &Bench, places: f64, forces: f64) {
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
     let cases: [(&dyn Fn(&Bench), &str); 7] = [
         (
-            &|bench| drop(bench.replace(ROBOT, "= 3.32", "= 332e3")),
+            &|bench| {
+                bench.replace(ROBOT, "= 3.32", "= 332e3");
+            },
             "joint 2 with 332000 MN m/rad is a hundred times stiffer",
         ),
-        (&|bench| drop(bench.replace(RUN, "684.0]", "0.684]")), "the tool centre point is 0.684 mm from the flange"),
         (
-            &|bench| drop(bench.replace(RUN, "684.0]", "-684.0]")),
+            &|bench| {
+                bench.replace(RUN, "684.0]", "0.684]");
+            },
+            "the tool centre point is 0.684 mm from the flange",
+        ),
+        (
+            &|bench| {
+                bench.replace(RUN, "684.0]", "-684.0]");
+            },
             "the tool points from its centre point back to the flange",
         ),
         (&|bench| scale_task(bench, 1e-3, 1.0), "the tool path is 1.00 mm long in all"),
