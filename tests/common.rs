@@ -116,6 +116,12 @@ impl From<std::process::Output> for Ended {
 }
 
 impl Ended {
+    /// Standard error but for the note that the scored part is small beside the whole deflection: so it is in the published case.
+    pub fn said(&self) -> String {
+        let lines = self.stderr.lines().filter(|line| !line.starts_with("note: the scored part of the deflection, "));
+        lines.map(|line| format!("{line}\n")).collect()
+    }
+
     /// The one JSON document that is all of standard output. It states what every document of stead states.
     pub fn json(&self) -> serde_json::Value {
         let document: serde_json::Value =

@@ -23,7 +23,8 @@ fn scale_task(bench: &Bench, places: f64, forces: f64) {
 
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
-    let cases: [(&dyn Fn(&Bench), &str); 7] = [
+    type Change<'c> = &'c dyn Fn(&Bench);
+    let cases: [(Change<'_>, &str); 7] = [
         (
             &|bench| {
                 bench.replace(ROBOT, "= 3.32", "= 332e3");

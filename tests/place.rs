@@ -67,7 +67,7 @@ fn names(bench: &Bench, folder: &str) -> Vec<String> {
 #[test]
 fn all_files_are_there_and_nothing_else() {
     let (bench, ended) = placed();
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     // In particular no temporary file.
     assert_eq!(names(bench, "out"), FILES);
     let mut all: Vec<String> = FILES.map(|file| format!("out/{file}")).to_vec();
@@ -163,7 +163,7 @@ fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
     lines[5] = format!("{},0,0,0.1", task.lines().nth(5).unwrap());
     bench.write(TASK, &(lines.join("\n") + "\n"));
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert!(
         ended.stdout.contains("none of them from a lookup table: a moment acts on the tool at point 4"),
         "{}",
@@ -282,7 +282,7 @@ fn threads_do_not_change_the_result() {
     other.write("a/b/five/notes.txt", "the user's own\n");
     other.write("a/b/five/best.csv", "an earlier result\n");
     let five = other.stead(&text);
-    assert_eq!((five.code, five.stderr.as_str()), (Some(0), ""));
+    assert_eq!((five.code, five.said().as_str()), (Some(0), ""));
     let mut found = other.tree("a/b/five");
     assert_eq!(found.remove("notes.txt"), Some(Some(b"the user's own\n".to_vec())));
     assert_same(&found, &expected);
@@ -321,7 +321,7 @@ fn another_seed_is_another_search() {
     other.replace(RUN, "generations = 3", "generations = 0");
     other.replace(RUN, "basins = 2", "basins = 1");
     let ended = other.stead(&["place", RUN, "--out", "two", "--seed", "2", "--json"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     let first = |text: String| text.lines().nth(1).unwrap().to_owned();
     assert_ne!(first(other.read("two/convergence.csv")), first(bench.read("out/convergence.csv")));
     let summary: Value = serde_json::from_str(&other.read("two/summary.json")).unwrap();
@@ -338,7 +338,7 @@ fn postures_may_be_part_of_the_genome() {
     bench.replace(RUN, "population = 16", "population = 60");
     bench.replace(RUN, "basins = 2", "basins = 1");
     let ended = bench.stead(&["place", RUN, "--out", "out", "--json"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(names(&bench, "out"), FILES);
     let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
     assert_eq!(summary["search"]["postures"], "genetic");
@@ -385,7 +385,7 @@ mod interrupt {
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
         let said = "interrupted: ending with what there is; Ctrl-C again ends at once\n\
                     warning: interrupted: the results are the best found so far, not the end of the search\n";
-        assert_eq!(ended.stderr, said);
+        assert_eq!(ended.said(), said);
         assert_eq!(names(&bench, "out"), FILES);
         let document = ended.json();
         assert_eq!(document["interrupted"], true);

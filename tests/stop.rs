@@ -61,7 +61,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     let text = bench.read(RUN);
     bench.write(RUN, &format!("{text}\n[output]\nmaps = false\n"));
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(names(&bench, "out"), FILES);
     for (name, bytes) in bench.tree("out") {
         // The summary names the run file's digest.
@@ -70,7 +70,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     assert!(MAPS.iter().all(|map| before.contains_key(*map)));
 
     let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(names(&bench, "scored"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
 }
 
