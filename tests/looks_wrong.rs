@@ -21,6 +21,9 @@ fn scale_task(bench: &Bench, places: f64, forces: f64) {
     bench.write(TASK, &bench.read(TASK).lines().enumerate().map(scaled).collect::<String>());
 }
 
+/// What makes an input look wrong.
+type Change = fn(&Bench);
+
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
     type Change<'c> = &'c dyn Fn(&Bench);
@@ -43,10 +46,10 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
             },
             "the tool points from its centre point back to the flange",
         ),
-        (&|bench| scale_task(bench, 1e-3, 1.0), "the tool path is 1.00 mm long in all"),
-        (&|bench| scale_task(bench, 1.0, 2e3), "forces go up to "),
+        (|bench| scale_task(bench, 1e-3, 1.0), "the tool path is 1.00 mm long in all"),
+        (|bench| scale_task(bench, 1.0, 2e3), "forces go up to "),
         (
-            &|bench| {
+            |bench| {
                 for (axis, ends) in [("x_mm", "[-0.3, 0.3]"), ("y_mm", "[-1.64, -1.0]"), ("z_mm", "[-0.5, -0.2]")] {
                     let text = bench.read(RUN);
                     let line = text.lines().find(|line| line.starts_with(&format!("{axis} = "))).unwrap();
@@ -55,7 +58,7 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
             },
             "the cell is no wider than 0.640 mm in any direction",
         ),
-        (&|_| (), ""),
+        (|_| (), ""),
     ];
     for (change, note) in cases {
         let bench = Bench::new();
