@@ -26,22 +26,21 @@ type Change = fn(&Bench);
 
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
-    type Change<'c> = &'c dyn Fn(&Bench);
-    let cases: [(Change<'_>, &str); 7] = [
+    let cases: [(Change, &str); 7] = [
         (
-            &|bench| {
+            |bench| {
                 bench.replace(ROBOT, "= 3.32", "= 332e3");
             },
             "joint 2 with 332000 MN m/rad is a hundred times stiffer",
         ),
         (
-            &|bench| {
+            |bench| {
                 bench.replace(RUN, "684.0]", "0.684]");
             },
             "the tool centre point is 0.684 mm from the flange",
         ),
         (
-            &|bench| {
+            |bench| {
                 bench.replace(RUN, "684.0]", "-684.0]");
             },
             "the tool points from its centre point back to the flange",
