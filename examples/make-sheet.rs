@@ -3,8 +3,8 @@
 //! `cargo run --release --example make-sheet -- [seed, 1] [noise in mm, 0.03] [load in N, 2700] > tasks/identify-example.csv`
 //!
 //! The arm is a KUKA KR270-2 with the compliances that Klimchik et al. 2017 (Table 4) give for a KR 270, and beside joint 2 a
-//! compensator made up for the purpose; it comes to its static equilibrium under the load. 20 configurations with 5 distinct angles of joint 2, three reference points,
-//! a load of 2.7 kN in random directions, 250 mm off axis 6.
+//! compensator made up for the purpose; it comes to its static equilibrium under the load. 20 configurations with 5 distinct
+//! angles of joint 2, three reference points, a load of 2.7 kN in random directions, 250 mm off axis 6.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
