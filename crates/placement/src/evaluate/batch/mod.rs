@@ -223,21 +223,21 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let is_robust =
-            self.geometry.uncertainty > 0.0 || self.evaluator.sets.iter().any(|(_, deviation)| deviation.is_some());
-        match (self.evaluator.problem.criterion.weights.is_single(), is_robust) {
-            (true, false) => self.batches::<S, false, 1>(simd),
+        let is_plain = self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [(_, None)]);
+        match (self.evaluator.problem.criterion.weights.is_single(), is_plain) {
             (true, true) => self.batches::<S, true, 1>(simd),
-            (false, false) => self.batches::<S, false, 3>(simd),
+            (true, false) => self.batches::<S, false, 1>(simd),
             (false, true) => self.batches::<S, true, 3>(simd),
+            (false, false) => self.batches::<S, false, 3>(simd),
         }
     }
 }
 
 impl Evaluation<'_> {
-    /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `ROBUST` where scores cover errors.
+    /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of compliances, and scores
+    /// cover no errors.
     #[inline(always)]
-    fn batches<S: Simd, const ROBUST: bool, const N: usize>(self, simd: S) {
+    fn batches<S: Simd, const PLAIN: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, states } = self;
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
         for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
@@ -255,7 +255,7 @@ impl Evaluation<'_> {
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
-                    let found = evaluator.wrist::<S, ROBUST, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    let found = evaluator.wrist::<S, PLAIN, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
                         let cost = if is_squared { score * score } else { score };
                         states.set_lanes(class, start, cost * geometry.weight, &directions);

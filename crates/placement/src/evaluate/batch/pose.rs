@@ -194,7 +194,7 @@ impl<S: Simd> Pose<S> {
     /// The score, the norm of the parts of K^-1 w along the scored directions, with the share of force errors; and what each
     /// joint adds to it per compliance.
     #[inline(always)]
-    pub fn score<const ROBUST: bool, const N: usize>(
+    pub fn score<const PLAIN: bool, const N: usize>(
         &self,
         simd: S,
         lateral: f64,
@@ -230,7 +230,7 @@ impl<S: Simd> Pose<S> {
         }
         if N == 1 {
             let mut score = deflection[0].abs();
-            if ROBUST && uncertainty > 0.0 {
+            if !PLAIN && uncertainty > 0.0 {
                 let response = response(simd, &self.velocities(simd, [px, py]), &torque_n[0], compliances);
                 score = score + response.dot(response).sqrt() * uncertainty;
             }
@@ -242,7 +242,7 @@ impl<S: Simd> Pose<S> {
         }
         let scored = square.sqrt();
         let mut score = scored;
-        if ROBUST {
+        if !PLAIN {
             // Along the deflection itself, where there is one.
             let inverse = zero.less(scored).select(Lanes::splat(simd, 1.0) / scored, zero);
             let mut along = [zero; 6];

@@ -2,7 +2,7 @@
 
 use super::arm::{Arm, Elbow};
 use super::pose::{Directions, Load, Pose, Vector, turned};
-use super::{BatchEvaluator, Flips, PointGeometry, Turning};
+use super::{BatchEvaluator, Deviation, Flips, Laws, PointGeometry, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
 use stead_numerics::simd::Lanes;
@@ -19,16 +19,18 @@ pub(super) struct Demand<S: Simd, const N: usize> {
 impl<S: Simd, const N: usize> Demand<S, N> {
     #[inline(always)]
     pub fn new(simd: S, geometry: &PointGeometry, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Self {
+        let force = Self::constant(simd, &geometry.force, arm);
+        // A loop and not a closure, which would be compiled without the processor's wide instructions.
+        let mut directions = [force; N];
+        for (turned, direction) in directions.iter_mut().zip(&geometry.directions) {
+            *turned = Self::constant(simd, direction, arm);
+        }
         Self {
             x6: Self::turning(&geometry.x6, arm, cosine, sine),
             y6: Self::turning(&geometry.y6, arm, cosine, sine),
             z6: Self::turning(&geometry.z6, arm, cosine, sine),
             lever: Self::turning(&geometry.lever, arm, cosine, sine),
-            load: Load {
-                directions: std::array::from_fn(|k| Self::constant(simd, &geometry.directions[k], arm)),
-                force: Self::constant(simd, &geometry.force, arm),
-                moment: Self::constant(simd, &geometry.moment, arm),
-            },
+            load: Load { directions, force, moment: Self::constant(simd, &geometry.moment, arm) },
         }
     }
 
@@ -45,10 +47,10 @@ impl<S: Simd, const N: usize> Demand<S, N> {
 
 impl BatchEvaluator<'_> {
     /// Scores of the states with one elbow, infinite where not allowed, and the sines and cosines of their joint angles
-    /// (theta_5 not negative); nothing where none is allowed. `ROBUST` where scores cover errors of the force or of the
-    /// compliances.
+    /// (theta_5 not negative); nothing where none is allowed. `PLAIN` where there is one set of compliances, and scores cover
+    /// no errors.
     #[inline(always)]
-    pub(super) fn wrist<S: Simd, const ROBUST: bool, const N: usize>(
+    pub(super) fn wrist<S: Simd, const PLAIN: bool, const N: usize>(
         &self,
         simd: S,
         uncertainty: f64,
@@ -115,21 +117,16 @@ impl BatchEvaluator<'_> {
             turned[4] = [-fifth[0], fifth[1]];
             turned[5] = [-sixth[0], -sixth[1]];
         }
-        let mut score = zero;
-        for (place, (laws, deviation)) in self.sets.iter().enumerate() {
-            let compliances = laws.at(simd, &self.limits, &turned);
-            let (mut of_set, parts) = pose.score::<ROBUST, N>(simd, g.lateral, &compliances, &demand.load, uncertainty);
-            if ROBUST && let Some(deviation) = deviation {
-                of_set = of_set + deviation.margin(simd, &self.limits, &parts, &turned, &compliances);
+        let mut score =
+            self.score_of_set::<S, PLAIN, N>(simd, &self.sets[0], &pose, &demand.load, &turned, uncertainty);
+        if !PLAIN {
+            for set in &self.sets[1..] {
+                let other = self.score_of_set::<S, PLAIN, N>(simd, set, &pose, &demand.load, &turned, uncertainty);
+                score = if self.is_over_worst { score.max(other) } else { score + other };
             }
-            score = match (place, self.is_over_worst) {
-                (0, _) => of_set,
-                (_, true) => score.max(of_set),
-                (_, false) => score + of_set,
-            };
-        }
-        if self.sets.len() > 1 && !self.is_over_worst {
-            score = score * (1.0 / self.sets.len() as f64);
+            if !self.is_over_worst {
+                score = score * (1.0 / self.sets.len() as f64);
+            }
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));
@@ -138,5 +135,25 @@ impl BatchEvaluator<'_> {
             }
         }
         Some((allowed.select(score, Lanes::splat(simd, f64::INFINITY)), directions))
+    }
+
+    /// Scores with one set of compliances.
+    #[inline(always)]
+    fn score_of_set<S: Simd, const PLAIN: bool, const N: usize>(
+        &self,
+        simd: S,
+        (laws, deviation): &(Laws, Option<Deviation>),
+        pose: &Pose<S>,
+        load: &Load<S, N>,
+        directions: &Directions<S>,
+        uncertainty: f64,
+    ) -> Lanes<S> {
+        let compliances = laws.at(simd, &self.limits, directions);
+        let lateral = self.problem.robot.geometry().lateral;
+        let (score, parts) = pose.score::<PLAIN, N>(simd, lateral, &compliances, load, uncertainty);
+        match deviation {
+            Some(deviation) if !PLAIN => score + deviation.margin(simd, &self.limits, &parts, directions, &compliances),
+            _ => score,
+        }
     }
 }
