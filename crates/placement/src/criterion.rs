@@ -281,10 +281,20 @@ impl Problem {
         directions
     }
 
-    /// The weight of the segment of a path point.
+    /// The weight of a segment, from 0.
+    pub fn segment_weight(&self, segment: usize) -> f64 {
+        self.criterion.segment_weights.get(segment).copied().unwrap_or(1.0)
+    }
+
+    /// The weight of a path point: that of its segment and, where points make up a mean, the number of points it stands for.
     pub fn point_weight(&self, point: usize) -> f64 {
-        let weights = &self.criterion.segment_weights;
-        if weights.is_empty() { 1.0 } else { weights[self.task.path().segment_of(point)] }
+        let path = self.task.path();
+        let segment =
+            if self.criterion.segment_weights.is_empty() { 1.0 } else { self.segment_weight(path.segment_of(point)) };
+        match self.criterion.aggregate {
+            Aggregate::Mean | Aggregate::Rms => segment * path.weight(point),
+            Aggregate::Max => segment,
+        }
     }
 
     /// What a path point of this score (m) adds to the cost of a plan.
@@ -305,6 +315,9 @@ impl Problem {
 
     /// Sum of the weights of all points.
     pub fn total_weight(&self) -> f64 {
+        if self.task.path().is_thinned() {
+            return (0..self.task.points().len()).map(|point| self.point_weight(point)).sum();
+        }
         let points = |(weight, span): (&f64, &std::ops::Range<usize>)| weight * span.len() as f64;
         match &self.criterion.segment_weights[..] {
             [] => self.task.points().len() as f64,

@@ -27,6 +27,7 @@ pub mod evaluator;
 pub mod feasibility;
 pub mod lookup;
 pub mod outcome;
+pub mod path_subset;
 pub mod place;
 pub mod postures;
 pub mod problem;

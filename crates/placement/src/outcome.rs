@@ -268,6 +268,31 @@ pub struct LookupSummary {
     pub accuracy: Accuracy,
 }
 
+/// How far the means on a subset of a path are off, measured on placements drawn from the cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct SubsetAccuracy {
+    /// Points of the subset.
+    pub points: usize,
+    /// Placements that were planned both on the subset and on the whole path, drawn at random.
+    pub pairs: usize,
+    /// The largest relative error of their means; none where no placement was allowed. It covers the error at the next placement
+    /// drawn with probability `pairs / (pairs + 1)`, whatever the path, since the errors are exchangeable.
+    pub error: Option<f64>,
+}
+
+/// How a long path was searched: on a subset, refined on a larger one, and planned whole.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct PathLevels {
+    /// Points of the path.
+    pub points: usize,
+    /// The subset for the search, and that for the refinement.
+    pub subsets: [SubsetAccuracy; 2],
+    /// Points that joined the subsets because they decide whether a placement has a plan.
+    pub deciding: usize,
+    /// Placements planned on the whole path before the last plans.
+    pub whole: usize,
+}
+
 /// The result of the placement job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -275,6 +300,8 @@ pub struct Outcome {
     pub cases: Cases,
     /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
+    /// How a long path was searched; `None` for a path short enough to be searched whole.
+    pub path_levels: Option<PathLevels>,
     /// Both genetic searches, generation by generation.
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.

@@ -11,6 +11,7 @@ use super::sensitivity::{ForceSensitivity, SetOutcome, mean_by, objective_with_f
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{Refined, refine_basins, refine_side};
+use long_path::LongPath;
 use notes::{cancellation, interruption};
 use plan::{detailed, worst_plan};
 use searched::{Searched, search_cell};
@@ -19,6 +20,8 @@ use stead_numerics::monitor::{Monitor, Progress};
 
 mod basins;
 mod infeasible;
+mod long_path;
+mod long_refinement;
 mod notes;
 mod plan;
 mod score;
@@ -43,13 +46,19 @@ pub fn place(
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
     let planner = Planner::finer(problem);
-    let Searched { found, table, lookup_summary, evaluations } = search_cell(&planner, settings, monitor)?;
+    let mut long = LongPath::new(&planner, settings, monitor);
+    let searched = match &mut long {
+        Some(path) => path.search(&planner, settings, monitor)?,
+        None => search_cell(&planner, settings, monitor)?,
+    };
+    let Searched { found, table, lookup_summary, evaluations } = searched;
+    let long = long.as_ref();
     let refused = || {
         let nearest = &found[0].basins[0];
         infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
     };
     let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
-    let (solutions, refinements) = refine_basins(&evaluator, &found, monitor).ok_or_else(refused)?;
+    let (solutions, refinements) = refine_basins(&evaluator, long, &found, monitor).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let [best, worst] = &solutions;
     let worst_plan_of =
@@ -80,10 +89,10 @@ pub fn place(
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     let best_case = case(Sense::Min, best, Sense::Min, &of_best);
     let sensitivity = match settings.sensitivity {
-        Some(size) if !interrupted => force_sensitivity(problem, &best_case, &found, size, monitor),
+        Some(size) if !interrupted => force_sensitivity(problem, &best_case, (&found, long), size, monitor),
         _ => None,
     };
-    let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, &found, monitor) };
+    let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, (&found, long), monitor) };
     Ok(Outcome {
         sets,
         notes: notes::of(problem, &best_case.plan),
@@ -95,11 +104,14 @@ pub fn place(
             worst_worst_plan: case(Sense::Max, worst, Sense::Max, &of_worst),
         },
         lookup_summary,
+        path_levels: long.map(|path| path.levels),
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         maps: None,
         evaluations,
-        states: evaluations * problem.task.points().len() * problem.redundancy.beta_count,
+        states: evaluations
+            * long.map_or(problem.task.points().len(), |path| path.levels.subsets[0].points)
+            * problem.redundancy.beta_count,
         interrupted,
         warnings: cancellation(problem, best.solution.objective)
             .into_iter()
@@ -112,7 +124,7 @@ pub fn place(
 fn force_sensitivity(
     problem: &Problem,
     best: &Case,
-    found: &[SearchResult; 2],
+    (found, long): (&[SearchResult; 2], Option<&LongPath>),
     size: f64,
     monitor: &Monitor,
 ) -> Option<ForceSensitivity> {
@@ -121,7 +133,7 @@ fn force_sensitivity(
     let planner = Planner::finer(&robust);
     let evaluator = Evaluator::new(&planner, None);
     let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
-    let (solutions, _) = refine_side(&evaluator, &basins, monitor);
+    let (solutions, _) = refine_side(&evaluator, long, &basins, monitor);
     let Refined { solution, .. } = solutions.into_iter().flatten().next()?;
     let plan = detailed(problem, &solution.placement, &solution.plans);
     let (from, to) = (&best.placement, &solution.placement);
@@ -136,13 +148,18 @@ fn force_sensitivity(
 }
 
 /// What each stiffness set of the criterion makes of the best placement, beside the best for that set alone.
-fn set_outcomes(problem: &Problem, best: &Case, found: &[SearchResult; 2], monitor: &Monitor) -> Vec<SetOutcome> {
+fn set_outcomes(
+    problem: &Problem,
+    best: &Case,
+    (found, long): (&[SearchResult; 2], Option<&LongPath>),
+    monitor: &Monitor,
+) -> Vec<SetOutcome> {
     let Some(sets) = &problem.criterion.stiffness else { return Vec::new() };
     let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
     let outcome = |set| {
         let alone = with_set_alone(problem, set);
         let planner = Planner::finer(&alone);
-        let (solutions, _) = refine_side(&Evaluator::new(&planner, None), &basins, monitor);
+        let (solutions, _) = refine_side(&Evaluator::new(&planner, None), long, &basins, monitor);
         let best_alone = solutions.into_iter().flatten().next().map(|Refined { solution, .. }| {
             mean_by(&alone, &solution.placement, &detailed(&alone, &solution.placement, &solution.plans))
         });

@@ -89,6 +89,13 @@ impl Cell {
         Placement { x: x.clamp(placement.x), y: y.clamp(placement.y), z: z.clamp(placement.z), yaw }
     }
 
+    /// The placement at a share of the way from one placement to another, the yaw turned the short way, inside the cell.
+    pub fn between(&self, from: &Placement, to: &Placement, share: f64) -> Placement {
+        let along = |k: usize| from[k] + share * (to[k] - from[k]);
+        let yaw = from.yaw + share * wrap(to.yaw - from.yaw);
+        self.clamp(&Placement { x: along(0), y: along(1), z: along(2), yaw })
+    }
+
     /// Whether a placement is inside the cell.
     pub fn contains(&self, placement: &Placement) -> bool {
         let [x, y, z] = self.position;
@@ -327,10 +334,9 @@ impl Problem {
         self.step_length(point) / self.redundancy.feed
     }
 
-    /// Distance from path point `point - 1` to `point`. m
+    /// Distance along the path from point `point - 1` to `point`. m
     pub fn step_length(&self, point: usize) -> f64 {
-        let points = self.task.points();
-        (points[point].position - points[point - 1].position).norm()
+        self.task.path().step_length(point)
     }
 
     /// Largest step of each joint from path point `point - 1` to `point`: what its speed allows at the feed, and in any case

@@ -165,6 +165,12 @@ fn bounds(cell: &Cell) -> [(f64, f64); 4] {
     [(x.min, x.max), (y.min, y.max), (z.min, z.max), (cell.yaw.min, cell.yaw.max)]
 }
 
+/// Placements drawn from the cell as those of a first generation are, other ones for every `draw`.
+pub fn drawn(problem: &Problem, settings: &SearchSettings, draw: u64) -> Vec<Placement> {
+    let settings = SearchSettings { seed: settings.seed ^ (draw + 1) << 32, ..*settings };
+    initial(problem, &settings, Sense::Min).into_iter().map(|candidate| candidate.placement).collect()
+}
+
 /// A Latin hypercube: along every gene, one candidate in each of equal slices.
 fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Candidate> {
     let size = settings.population;

@@ -3,6 +3,10 @@
 //! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches with it, given by
 //! the file or computed by a cutting model (see [`crate::cutting`]).
 
+mod thinned;
+
+pub use thinned::KeptPoint;
+
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 use std::ops::Range;
@@ -60,6 +64,7 @@ pub struct ToolPath {
     points: Vec<PathPoint>,
     segments: Vec<Range<usize>>,
     surface_normals: Option<Vec<Vector3<f64>>>,
+    thinned: Option<thinned::Thinned>,
 }
 
 /// A tool path with the wrench at every point.
@@ -151,7 +156,7 @@ impl ToolPath {
     /// # Errors
     /// [`TaskError`] at the first point that breaks a rule.
     pub fn new(points: impl IntoIterator<Item = (u32, PathPoint)>) -> Result<Self, TaskError> {
-        let mut path = Self { points: Vec::new(), segments: Vec::new(), surface_normals: None };
+        let mut path = Self { points: Vec::new(), segments: Vec::new(), surface_normals: None, thinned: None };
         for (index, (segment, point)) in points.into_iter().enumerate() {
             let point = check_point(index, point)?;
             let before = path.segments.len() as u32;
@@ -207,8 +212,7 @@ impl ToolPath {
 
     /// Length of one segment along the straight lines between its points. m
     pub fn segment_length(&self, segment: usize) -> f64 {
-        let points = &self.points[self.segments[segment].clone()];
-        points.windows(2).map(|pair| (pair[1].position - pair[0].position).norm()).sum()
+        self.segments[segment].clone().skip(1).map(|point| self.step_length(point)).sum()
     }
 }
 

@@ -69,7 +69,7 @@ impl LookupTable<'_> {
                 }
             }
             if best.is_finite() {
-                costs.push(self.problem.point_cost(span.start, best));
+                costs.push(self.problem.segment_weight(index) * best);
                 continue;
             }
             let Workspace { scratch, scores, .. } = workspace;
@@ -111,6 +111,10 @@ impl LookupTable<'_> {
         for (place, point) in span.enumerate() {
             if !self.interpolate(&self.polar_point(placed, point)?, class, grid, scratch, scores) {
                 return None;
+            }
+            let weight = self.problem.task.path().weight(point) as f32;
+            if weight != 1.0 {
+                scores.iter_mut().for_each(|score| *score *= weight);
             }
             if place == 0 {
                 costs.copy_from_slice(scores);

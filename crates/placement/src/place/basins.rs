@@ -1,5 +1,7 @@
 //! Refinement of the basins that a search found, and the choice among what comes out.
 
+use super::long_path::LongPath;
+use super::long_refinement;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
@@ -31,10 +33,11 @@ pub(super) const MAX_DEFICIT: f64 = 0.03;
 /// in.
 pub(super) fn refine_basins(
     evaluator: &Evaluator<'_>,
+    long: Option<&LongPath>,
     found: &[SearchResult; 2],
     monitor: &Monitor,
 ) -> Option<([Refined; 2], Vec<Refinement>)> {
-    let (chosen, refinements) = refine_side(evaluator, found, monitor);
+    let (chosen, refinements) = refine_side(evaluator, long, found, monitor);
     match chosen {
         // Of two searches that were stopped early either may have met the better placement.
         [Some(best), Some(worst)] if best.solution.objective > worst.solution.objective => {
@@ -48,12 +51,16 @@ pub(super) fn refine_basins(
 }
 
 /// Refines the basins of both searches side by side. The first basin of each search goes ahead, to tell which of the others can
-/// still win.
+/// still win. Those of a long path are refined on its subset.
 pub(super) fn refine_side(
     evaluator: &Evaluator<'_>,
+    long: Option<&LongPath>,
     found: &[SearchResult; 2],
     monitor: &Monitor,
 ) -> ([Option<Refined>; 2], Vec<Refinement>) {
+    if let Some(path) = long {
+        return long_refinement::refine_side(path, evaluator.planner(), found, monitor);
+    }
     let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)

@@ -29,6 +29,7 @@ use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
+use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, turns::Range};
 use stead_numerics::simd::Instructions;
@@ -266,7 +267,7 @@ impl<'a> Planner<'a> {
         let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
         let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
         let choices = self.choices(placement, sense, scheme, workspace, margin)?;
-        let refined = choices.into_iter().enumerate().filter_map(|(segment, classes)| {
+        let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
             let only = scheme.map(|s| s[segment]);
             let plans = classes.into_iter().filter_map(|choice| {
                 let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
@@ -288,8 +289,12 @@ impl<'a> Planner<'a> {
                 again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan))
             });
             Some(driven.collect::<Vec<_>>()).filter(|driven| !driven.is_empty())
-        });
-        Ok(joint_turns::select_joint_paths(self.problem, sense, refined.collect()))
+        };
+        let refined = match self.is_parallel() {
+            true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
+            false => choices.into_iter().enumerate().filter_map(refined).collect(),
+        };
+        Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
     }
 
     /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
@@ -304,9 +309,15 @@ impl<'a> Planner<'a> {
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
         let mut failure = NoFeasiblePlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
         let mut all = Vec::new();
-        for (index, span) in self.problem.task.segments().iter().enumerate() {
-            let only = scheme.map(|s| s[index]);
-            let found = self.segment(span.clone(), placement, sense, only, workspace, Some(margin));
+        let of = |workspace: &mut Workspace, (index, span): (usize, &Span<usize>)| {
+            self.segment(span.clone(), placement, sense, scheme.map(|s| s[index]), workspace, Some(margin))
+        };
+        let spans = self.problem.task.segments();
+        let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
+            true => spans.par_iter().enumerate().map_init(|| self.workspace(), of).collect(),
+            false => spans.iter().enumerate().map(|item| of(workspace, item)).collect(),
+        };
+        for (index, found) in options.into_iter().enumerate() {
             if !found.choices.is_empty() {
                 all.push(found.choices);
             } else if found.blocked.is_empty() {
@@ -316,6 +327,11 @@ impl<'a> Planner<'a> {
             }
         }
         if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
+    }
+
+    /// Whether the segments of one plan are planned side by side.
+    fn is_parallel(&self) -> bool {
+        self.problem.task.segments().len() > 1 && self.problem.task.points().len() >= PARALLEL_POINTS
     }
 }
 
@@ -330,6 +346,9 @@ fn finer(problem: &Problem, grid: Redundancy) -> Redundancy {
 const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
 /// Narrowest step that the limits on beta may ask for. rad
 const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
+
+/// From so many points on, the segments of one plan are planned side by side.
+const PARALLEL_POINTS: usize = 1000;
 
 /// Classes that cost this much (relative) more than the cheapest on the grid are refined beside it.
 const REFINED_EXCESS: f64 = 0.2;

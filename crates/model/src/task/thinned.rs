@@ -1,0 +1,105 @@
+//! A path thinned to some of its points, which stand for the others.
+
+use super::{Task, ToolPath};
+
+/// A point that is kept of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptPoint {
+    /// Its index in the whole path.
+    pub point: usize,
+    /// How many points of the whole path it stands for, itself among them.
+    pub weight: f64,
+}
+
+/// What a thinned path knows of the whole one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Thinned {
+    /// For each point how many points of the whole path it stands for.
+    weights: Vec<f64>,
+    /// Distance along the whole path from the point before, in the same segment. m
+    steps: Vec<f64>,
+}
+
+impl ToolPath {
+    /// The path thinned to some of its points, ascending and at least one of every segment; the distances between them stay those
+    /// along the whole path.
+    fn thinned(&self, kept: &[KeptPoint]) -> Self {
+        let mut segments = Vec::with_capacity(self.segments.len());
+        let mut steps = Vec::with_capacity(kept.len());
+        for (place, KeptPoint { point, .. }) in kept.iter().enumerate() {
+            let segment = self.segment_of(*point);
+            let before = place.checked_sub(1).map(|before| kept[before].point);
+            match before.filter(|before| self.segment_of(*before) == segment) {
+                Some(before) => steps.push((before + 1..=*point).map(|p| self.step_length(p)).sum()),
+                None => {
+                    steps.push(0.0);
+                    segments.push(place..place);
+                }
+            }
+            if let Some(last) = segments.last_mut() {
+                last.end = place + 1;
+            }
+        }
+        Self {
+            points: kept.iter().map(|kept| self.points[kept.point]).collect(),
+            segments,
+            surface_normals: self
+                .surface_normals
+                .as_ref()
+                .map(|normals| kept.iter().map(|kept| normals[kept.point]).collect()),
+            thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps }),
+        }
+    }
+
+    /// Distance along the path to a point from the one before, both in one segment. m
+    pub fn step_length(&self, point: usize) -> f64 {
+        match &self.thinned {
+            Some(thinned) => thinned.steps[point],
+            None => (self.points[point].position - self.points[point - 1].position).norm(),
+        }
+    }
+
+    /// How many points a point stands for: 1 but in a thinned path.
+    pub fn weight(&self, point: usize) -> f64 {
+        self.thinned.as_ref().map_or(1.0, |thinned| thinned.weights[point])
+    }
+
+    /// Whether this is some of the points of a longer path.
+    pub fn is_thinned(&self) -> bool {
+        self.thinned.is_some()
+    }
+}
+
+impl Task {
+    /// The task thinned to some of its points, ascending and at least one of every segment.
+    pub fn thinned(&self, kept: &[KeptPoint]) -> Self {
+        Self { path: self.path.thinned(kept), wrenches: kept.iter().map(|kept| self.wrenches[kept.point]).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::five_segments;
+    use super::*;
+
+    #[test]
+    fn distances_and_weights_are_those_of_the_whole_path() {
+        let task = five_segments();
+        let kept: Vec<KeptPoint> = (0..task.points().len())
+            .filter(|point| point % 4 == 1)
+            .map(|point| KeptPoint { point, weight: 4.0 })
+            .collect();
+        let thinned = task.thinned(&kept);
+        assert_eq!(thinned.segments().len(), task.segments().len());
+        assert!(thinned.path().is_thinned() && !task.path().is_thinned());
+        for (place, kept) in kept.iter().enumerate() {
+            assert_eq!(thinned.points()[place], task.points()[kept.point]);
+            assert_eq!((thinned.path().weight(place), task.path().weight(kept.point)), (4.0, 1.0));
+        }
+        let span = &thinned.segments()[2];
+        let along: f64 = span.clone().skip(1).map(|place| thinned.path().step_length(place)).sum();
+        let whole: f64 =
+            (kept[span.start].point + 1..=kept[span.end - 1].point).map(|p| task.path().step_length(p)).sum();
+        assert!((along - whole).abs() < 1e-12 && along > 0.0);
+    }
+}

@@ -1,0 +1,182 @@
+//! Some points of a long path, by which placements are compared before the whole path is planned.
+//!
+//! The points are spread evenly over what changes along the path: position, tool axis, feed direction and force. Each stands for
+//! the points around it: the score is taken as linear in the distance along the path between two kept points of a segment, and as
+//! constant beyond the first and the last, so that the weights of a segment sum up to the number of its points. Between kept
+//! points beta and the joints may change by what all the steps between them allow together. What the points left out forbid is not
+//! seen: whoever uses a subset checks the whole path, and adds the points that decide ([`PathSubset::add`]).
+
+use super::problem::Problem;
+use stead_model::task::{KeptPoint, Task};
+
+/// Points kept of a path, ascending.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PathSubset {
+    points: Vec<usize>,
+}
+
+/// Changes along the path that count alike: of position (m), of directions (rad), of the force relative to its mean size.
+const UNITS: [f64; 3] = [0.15, 0.5, 1.0];
+/// In segments with fewer kept points than this they are staggered from segment to segment, so that segments side by side are not
+/// all represented at the same place.
+const STAGGERED: usize = 3;
+/// The golden section, by which they are staggered.
+const STAGGER: f64 = 0.618_033_988_749_895;
+
+impl PathSubset {
+    /// About `count` points, at least one of every segment; all points where the path has no more.
+    pub fn new(task: &Task, count: usize) -> Self {
+        let travelled = travelled(task);
+        if count >= task.points().len() {
+            return Self { points: (0..task.points().len()).collect() };
+        }
+        let spans = task.segments();
+        let length = |span: &std::ops::Range<usize>| travelled[span.end - 1] - travelled[span.start];
+        let whole: f64 = spans.iter().map(length).sum();
+        let free = count.saturating_sub(spans.len()) as f64;
+        let mut points = Vec::with_capacity(count + spans.len());
+        // Shares of the free points are rounded so that they sum up.
+        let mut owed = 0.0;
+        for (index, span) in spans.iter().enumerate() {
+            owed += if whole > 0.0 { free * length(span) / whole } else { 0.0 };
+            let more = (owed + 0.5).floor().max(0.0);
+            owed -= more;
+            let cells = 1 + more as usize;
+            let offset = if cells < STAGGERED { (0.5 + index as f64 * STAGGER).fract() } else { 0.5 };
+            points.extend((0..cells).map(|cell| {
+                let at = travelled[span.start] + (cell as f64 + offset) / cells as f64 * length(span);
+                nearest(&travelled[span.clone()], at) + span.start
+            }));
+        }
+        points.dedup();
+        Self { points }
+    }
+
+    /// The points, ascending.
+    pub fn points(&self) -> &[usize] {
+        &self.points
+    }
+
+    /// Adds points; whether any is new.
+    pub fn add(&mut self, points: &[usize]) -> bool {
+        let before = self.points.len();
+        self.points.extend(points);
+        self.points.sort_unstable();
+        self.points.dedup();
+        self.points.len() > before
+    }
+
+    /// The problem on these points alone.
+    pub fn of(&self, problem: &Problem) -> Problem {
+        let kept = self.weighted(&problem.task);
+        Problem {
+            robot: problem.robot.clone(),
+            spindle: problem.spindle.clone(),
+            task: problem.task.thinned(&kept),
+            criterion: problem.criterion.clone(),
+            postures: problem.postures.clone(),
+            ..*problem
+        }
+    }
+
+    /// The points with what they stand for.
+    fn weighted(&self, task: &Task) -> Vec<KeptPoint> {
+        let path = task.path();
+        let mut kept: Vec<KeptPoint> =
+            self.points.iter().map(|point| KeptPoint { point: *point, weight: 0.0 }).collect();
+        let mut next = 0;
+        for span in path.segments() {
+            let first = next;
+            while next < kept.len() && kept[next].point < span.end {
+                next += 1;
+            }
+            let own = &mut kept[first..next];
+            let (Some(head), Some(tail)) = (own.first().map(|k| k.point), own.last().map(|k| k.point)) else {
+                continue;
+            };
+            own[0].weight += (head - span.start) as f64;
+            own[next - first - 1].weight += (span.end - tail) as f64;
+            for place in 1..own.len() {
+                let (from, to) = (own[place - 1].point, own[place].point);
+                let steps: Vec<f64> = (from + 1..=to).map(|point| path.step_length(point)).collect();
+                let whole: f64 = steps.iter().sum();
+                let mut done = 0.0;
+                for (k, step) in steps.iter().enumerate() {
+                    // The share of the point at the start of this step.
+                    let share = if whole > 0.0 { done / whole } else { k as f64 / steps.len() as f64 };
+                    own[place - 1].weight += 1.0 - share;
+                    own[place].weight += share;
+                    done += step;
+                }
+            }
+        }
+        kept
+    }
+}
+
+/// For each point what has changed along its segments up to it, in the units of [`UNITS`].
+fn travelled(task: &Task) -> Vec<f64> {
+    let (points, wrenches) = (task.points(), task.wrenches());
+    let mean = wrenches.iter().map(|wrench| wrench.force.norm()).sum::<f64>() / wrenches.len() as f64;
+    let mut sum = 0.0;
+    let mut travelled = vec![0.0; points.len()];
+    for span in task.segments() {
+        travelled[span.start] = sum;
+        for point in span.clone().skip(1) {
+            let (a, b) = (&points[point - 1], &points[point]);
+            let angle = |u: &nalgebra::Vector3<f64>, v: &nalgebra::Vector3<f64>| {
+                libm::atan2(u.cross(v).norm(), u.dot(v)) / UNITS[1]
+            };
+            sum += task.path().step_length(point) / UNITS[0] + angle(&a.axis, &b.axis) + angle(&a.feed, &b.feed);
+            if mean > 0.0 {
+                sum += (wrenches[point].force - wrenches[point - 1].force).norm() / (mean * UNITS[2]);
+            }
+            travelled[point] = sum;
+        }
+    }
+    travelled
+}
+
+/// The index of the value nearest to `at` in ascending values.
+fn nearest(ascending: &[f64], at: f64) -> usize {
+    let after = ascending.partition_point(|value| *value < at);
+    match after {
+        0 => 0,
+        _ if after == ascending.len() => after - 1,
+        _ if at - ascending[after - 1] <= ascending[after] - at => after - 1,
+        _ => after,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+
+    #[test]
+    fn weights_sum_up_and_linear_scores_keep_their_sum() {
+        let problem = five_segments();
+        let task = &problem.task;
+        for count in [1, 5, 12, 40, 104, 105, 1000] {
+            let mut subset = PathSubset::new(task, count);
+            assert!(subset.points().len() <= count.max(task.segments().len()).min(105));
+            subset.add(&[0, 50, 104]);
+            assert!(!subset.add(&[50]));
+            let kept = subset.weighted(task);
+            for span in task.segments() {
+                let own: Vec<&KeptPoint> = kept.iter().filter(|kept| span.contains(&kept.point)).collect();
+                let sum: f64 = own.iter().map(|kept| kept.weight).sum();
+                assert!((sum - span.len() as f64).abs() < 1e-9, "{count}: {sum}");
+            }
+            let thinned = subset.of(&problem);
+            assert!((thinned.total_weight() - 105.0).abs() < 1e-9);
+            // What is linear along every segment, ends kept, is summed exactly.
+            let ends: Vec<usize> = task.segments().iter().flat_map(|span| [span.start, span.end - 1]).collect();
+            subset.add(&ends);
+            let along = |point: usize| task.points()[point].position.x + 2.0 * task.points()[point].position.y;
+            let whole: f64 = (0..105).map(along).sum();
+            let estimate: f64 = subset.weighted(task).iter().map(|kept| kept.weight * along(kept.point)).sum();
+            assert!((whole - estimate).abs() < 1e-9, "{count}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Refinement of basins of a long path: on a subset, then on the whole path.
+
+use super::basins::{Refined, TIE};
+use super::long_path::{LongPath, WholePath};
+use crate::candidate::Candidate;
+use crate::evaluator::Evaluator;
+use crate::outcome::Refinement;
+use crate::problem::Placement;
+use crate::redundancy::{Planner, off_grid};
+use crate::refine::{found_again, planned, refine};
+use crate::search::SearchResult;
+use crate::sense::Sense;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_numerics::monitor::{Monitor, Progress};
+
+/// How often a refinement is repeated with more points at the most.
+const REPEATS: usize = 5;
+/// Halvings of the way back to the start of a refinement that the whole path does not allow.
+const HALVINGS: usize = 6;
+/// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
+const CLOSE: f64 = 0.01;
+/// On paths longer than this only the best by its estimate is planned.
+const COMPARED: usize = 10_000;
+
+/// A basin refined on a subset.
+struct Estimated<'c> {
+    candidate: &'c Candidate,
+    placement: Placement,
+    /// Its objective on the whole path: that on the subset, corrected by how far the subset is off on the coarse grid. m
+    objective: f64,
+    report: Refinement,
+}
+
+/// Refines the basins of both searches, on the problem of a planner, and returns the best of either with its plan on the whole path.
+pub(super) fn refine_side(
+    path: &LongPath,
+    planner: &Planner<'_>,
+    found: &[SearchResult; 2],
+    monitor: &Monitor,
+) -> ([Option<Refined>; 2], Vec<Refinement>) {
+    let jobs: Vec<(Sense, &Candidate)> = Sense::BOTH
+        .into_iter()
+        .zip(found)
+        .flat_map(|(sense, found)| found.basins.iter().map(move |candidate| (sense, candidate)))
+        .collect();
+    let whole = WholePath::new(planner);
+    let done = AtomicUsize::new(0);
+    let estimate = |job: usize| {
+        let (sense, candidate) = jobs[job];
+        let estimated = estimated(path, &whole, sense, candidate, monitor);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        monitor.report(Progress::Steps { stage: "refining", done, total: jobs.len() });
+        (sense, estimated)
+    };
+    let mut estimates: [Vec<Estimated<'_>>; 2] = [Vec::new(), Vec::new()];
+    for (sense, estimated) in (0..jobs.len()).into_par_iter().map(estimate).collect::<Vec<_>>() {
+        estimates[usize::from(sense == Sense::Max)].extend(estimated);
+    }
+    let mut refinements = Vec::new();
+    let mut chosen = [None, None];
+    for (sense, mut estimates) in Sense::BOTH.into_iter().zip(estimates) {
+        // A stable sort: of equals the one that the search ranked higher.
+        estimates.sort_by(|a, b| sense.compare(a.objective, b.objective));
+        chosen[usize::from(sense == Sense::Max)] = compared(planner, sense, &mut estimates);
+        refinements.extend(estimates.into_iter().map(|estimate| estimate.report));
+    }
+    (chosen, refinements)
+}
+
+/// Refines a candidate on the subset; what the whole path does not allow adds the points that decide, and begins again.
+fn estimated<'c>(
+    path: &LongPath,
+    whole: &WholePath<'_, '_>,
+    sense: Sense,
+    candidate: &'c Candidate,
+    monitor: &Monitor,
+) -> Option<Estimated<'c>> {
+    let problem = whole.problem();
+    let scheme = candidate.scheme.as_deref();
+    let mut subset = path.refinement.clone();
+    let mut repeats = 0;
+    loop {
+        let thinned = subset.of(problem);
+        let planner = Planner::finer(&thinned);
+        let (solution, report) = refine(&Evaluator::new(&planner, None), &candidate.placement, sense, scheme, monitor)?;
+        let solution = found_again(&planner, solution, scheme, monitor);
+        let placement = solution.placement;
+        let mut checked = whole.objective(&placement, scheme);
+        if let Err(points) = &checked
+            && repeats < REPEATS
+            && !monitor.should_stop()
+            && subset.add(points)
+        {
+            repeats += 1;
+            continue;
+        }
+        // The last resort: back towards the start, which the whole path allows.
+        let mut end = placement;
+        for halving in 1..=HALVINGS {
+            if checked.is_ok() {
+                break;
+            }
+            let share = if halving == HALVINGS { 1.0 } else { 1.0 - libm::pow(0.5, halving as f64) };
+            end = problem.cell.between(&placement, &candidate.placement, share);
+            checked = whole.objective(&end, scheme);
+        }
+        let coarse = Planner::new(&thinned);
+        let on_subset = coarse.objective(&end, Sense::Min, scheme, &mut coarse.workspace()).mean();
+        let on_whole = checked.ok()?;
+        let objective = match on_subset {
+            Some(on_subset) if end == placement && on_subset > 0.0 => solution.objective * on_whole / on_subset,
+            _ => on_whole,
+        };
+        let report = Refinement { end, end_mean: objective, ..report };
+        return Some(Estimated { candidate, placement: end, objective, report });
+    }
+}
+
+/// Plans the best of refined basins on the whole path, and those near it; the best of these by their plans.
+fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]) -> Option<Refined> {
+    let first = estimates.first()?.objective;
+    let points = planner.problem().task.points().len();
+    let is_close = |estimate: &Estimated<'_>| points <= COMPARED && (estimate.objective - first).abs() <= CLOSE * first;
+    let spacing = off_grid::Spacing::full(planner.grid());
+    let mut best: Option<Refined> = None;
+    for estimate in estimates {
+        if best.is_some() && !is_close(estimate) {
+            break;
+        }
+        let scheme = estimate.candidate.scheme.as_deref();
+        let Some(solution) = planned(planner, &estimate.placement, scheme, spacing, &mut planner.workspace()) else {
+            continue;
+        };
+        estimate.report.end_mean = solution.objective;
+        let is_better = best.as_ref().is_none_or(|best| match sense {
+            Sense::Min => solution.objective < best.solution.objective * (1.0 - TIE),
+            Sense::Max => solution.objective > best.solution.objective * (1.0 + TIE),
+        });
+        if is_better {
+            best = Some(Refined { solution, scheme: estimate.candidate.scheme.clone() });
+        }
+    }
+    best
+}
