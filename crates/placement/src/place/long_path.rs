@@ -31,7 +31,9 @@ const PAIRS: usize = 39;
 /// Populations drawn for them at the most.
 const DRAWS: u64 = 8;
 /// The relative errors of their means that the subsets for search and refinement may have.
-const TOLERANCES: [f64; 2] = [0.03, 0.01];
+const TOLERANCES: [f64; 2] = [0.05, 0.015];
+/// The share of the placements drawn at which they have to be kept.
+const WITHIN: f64 = 0.8;
 /// How often a search is repeated with more points at the most.
 const REPEATS: usize = 4;
 /// Candidates of a search that are planned on the whole path, for every basin asked for.
@@ -247,8 +249,10 @@ fn accurate(
         let error = |((_, whole), estimate): (&Pair, Objective)| Some((estimate.mean()? - whole).abs() / whole);
         let errors: Vec<f64> = pairs.iter().zip(estimates).filter_map(error).collect();
         let points = subset.points().len();
+        let within = errors.iter().filter(|error| **error <= tolerance).count() as f64;
+        let is_accurate = within >= WITHIN * errors.len() as f64;
         let accuracy = SubsetAccuracy { points, pairs: errors.len(), error: errors.into_iter().reduce(f64::max) };
-        if accuracy.error.is_none_or(|error| error <= tolerance) || 2 * points > largest {
+        if is_accurate || 2 * points > largest {
             return (subset, accuracy);
         }
         subset = PathSubset::new(&problem.task, 2 * points);

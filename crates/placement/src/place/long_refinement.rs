@@ -7,7 +7,7 @@ use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::problem::Placement;
 use crate::redundancy::{Planner, off_grid};
-use crate::refine::{found_again, planned, refine};
+use crate::refine::{planned, refine, solver};
 use crate::search::SearchResult;
 use crate::sense::Sense;
 use rayon::prelude::*;
@@ -18,8 +18,14 @@ use stead_numerics::monitor::{Monitor, Progress};
 const REPEATS: usize = 5;
 /// Halvings of the way back to the start of a refinement that the whole path does not allow.
 const HALVINGS: usize = 6;
+/// Rounds of refinement on the whole path at the most.
+const ROUNDS: usize = 3;
+/// A round that gains less than this share ends it.
+const GAIN: f64 = 1e-4;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
-const CLOSE: f64 = 0.01;
+const CLOSE: f64 = 0.03;
+/// So many of them at the most are refined on the whole path.
+const REFINED: usize = 2;
 /// On paths longer than this only the best by its estimate is planned.
 const COMPARED: usize = 10_000;
 
@@ -57,15 +63,17 @@ pub(super) fn refine_side(
     for (sense, estimated) in (0..jobs.len()).into_par_iter().map(estimate).collect::<Vec<_>>() {
         estimates[usize::from(sense == Sense::Max)].extend(estimated);
     }
-    let mut refinements = Vec::new();
-    let mut chosen = [None, None];
-    for (sense, mut estimates) in Sense::BOTH.into_iter().zip(estimates) {
+    let choose = |sense: Sense, mut estimates: Vec<Estimated<'_>>| {
         // A stable sort: of equals the one that the search ranked higher.
         estimates.sort_by(|a, b| sense.compare(a.objective, b.objective));
-        chosen[usize::from(sense == Sense::Max)] = compared(planner, sense, &mut estimates);
-        refinements.extend(estimates.into_iter().map(|estimate| estimate.report));
-    }
-    (chosen, refinements)
+        let chosen = compared(planner, sense, &mut estimates, monitor);
+        (chosen, estimates.into_iter().map(|estimate| estimate.report).collect::<Vec<_>>())
+    };
+    let [best, worst] = estimates;
+    let ((best, mut refinements), (worst, others)) =
+        rayon::join(|| choose(Sense::Min, best), || choose(Sense::Max, worst));
+    refinements.extend(others);
+    ([best, worst], refinements)
 }
 
 /// Refines a candidate on the subset; what the whole path does not allow adds the points that decide, and begins again.
@@ -84,7 +92,6 @@ fn estimated<'c>(
         let thinned = subset.of(problem);
         let planner = Planner::finer(&thinned);
         let (solution, report) = refine(&Evaluator::new(&planner, None), &candidate.placement, sense, scheme, monitor)?;
-        let solution = found_again(&planner, solution, scheme, monitor);
         let placement = solution.placement;
         let mut checked = whole.objective(&placement, scheme);
         if let Err(points) = &checked
@@ -117,29 +124,80 @@ fn estimated<'c>(
     }
 }
 
-/// Plans the best of refined basins on the whole path, and those near it; the best of these by their plans.
-fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]) -> Option<Refined> {
+/// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by their
+/// plans are refined on the whole path, and the best of all is taken.
+fn compared(
+    planner: &Planner<'_>,
+    sense: Sense,
+    estimates: &mut [Estimated<'_>],
+    monitor: &Monitor,
+) -> Option<Refined> {
     let first = estimates.first()?.objective;
-    let points = planner.problem().task.points().len();
-    let is_close = |estimate: &Estimated<'_>| points <= COMPARED && (estimate.objective - first).abs() <= CLOSE * first;
+    let is_long = planner.problem().task.points().len() > COMPARED;
+    let is_close = |estimate: &Estimated<'_>| !is_long && (estimate.objective - first).abs() <= CLOSE * first;
     let spacing = off_grid::Spacing::full(planner.grid());
-    let mut best: Option<Refined> = None;
-    for estimate in estimates {
-        if best.is_some() && !is_close(estimate) {
-            break;
+    let plan = |(rank, estimate): (usize, &mut Estimated<'_>)| {
+        if rank > 0 && (!is_close(estimate) || monitor.should_stop()) {
+            return None;
         }
-        let scheme = estimate.candidate.scheme.as_deref();
-        let Some(solution) = planned(planner, &estimate.placement, scheme, spacing, &mut planner.workspace()) else {
-            continue;
-        };
+        let scheme = estimate.candidate.scheme.clone();
+        let placement = &estimate.placement;
+        let solution = planned(planner, placement, scheme.as_deref(), spacing, &mut planner.workspace())?;
         estimate.report.end_mean = solution.objective;
+        Some((rank, Refined { solution, scheme }))
+    };
+    let mut planned: Vec<(usize, Refined)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
+    planned.sort_by(|a, b| sense.compare(a.1.solution.objective, b.1.solution.objective));
+    if sense == Sense::Min {
+        planned.truncate(REFINED);
+        let refined = |(rank, mut basin): (usize, Refined)| {
+            let report = refine_whole(planner, &mut basin, estimates[rank].report.clone(), monitor);
+            (rank, basin, report)
+        };
+        let refined: Vec<_> = planned.into_par_iter().map(refined).collect();
+        planned = refined
+            .into_iter()
+            .map(|(rank, basin, report)| {
+                estimates[rank].report = report;
+                (rank, basin)
+            })
+            .collect();
+    }
+    let mut best: Option<Refined> = None;
+    for (_, basin) in planned {
         let is_better = best.as_ref().is_none_or(|best| match sense {
-            Sense::Min => solution.objective < best.solution.objective * (1.0 - TIE),
-            Sense::Max => solution.objective > best.solution.objective * (1.0 + TIE),
+            Sense::Min => basin.solution.objective < best.solution.objective * (1.0 - TIE),
+            Sense::Max => basin.solution.objective > best.solution.objective * (1.0 + TIE),
         });
         if is_better {
-            best = Some(Refined { solution, scheme: estimate.candidate.scheme.clone() });
+            best = Some(basin);
         }
     }
     best
+}
+
+/// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone
+/// gets the same. Returns the report, continued.
+fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
+    let spacing = off_grid::Spacing::full(planner.grid());
+    for _ in 0..ROUNDS {
+        if monitor.should_stop() {
+            break;
+        }
+        let run = solver::run(planner.problem(), &best.solution, monitor);
+        report.rounds += 1;
+        report.iterations += run.iterations;
+        report.statuses.push(run.status);
+        let scheme = best.scheme.as_deref();
+        let before = best.solution.objective;
+        match planned(planner, &run.solution.placement, scheme, spacing, &mut planner.workspace()) {
+            Some(anew) if anew.objective < before => best.solution = anew,
+            _ => break,
+        }
+        if best.solution.objective > before * (1.0 - GAIN) {
+            break;
+        }
+    }
+    (report.end, report.end_mean) = (best.solution.placement, best.solution.objective);
+    report
 }
