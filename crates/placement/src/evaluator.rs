@@ -20,6 +20,8 @@ pub struct Evaluator<'a> {
     /// Decides where the grid of the planner is too coarse to get through a segment.
     finer: Option<&'a Planner<'a>>,
     table: Option<&'a LookupTable<'a>>,
+    /// Tells neighbours of a refined placement apart before they are planned.
+    coarser: Option<&'a Planner<'a>>,
     grid: BetaGrid,
 }
 
@@ -28,6 +30,7 @@ pub struct Evaluator<'a> {
 pub struct Workspace {
     planner: Option<redundancy::Workspace>,
     finer: Option<redundancy::Workspace>,
+    coarser: Option<redundancy::Workspace>,
     table: Option<lookup::Workspace>,
 }
 
@@ -79,7 +82,7 @@ const CANDIDATES: usize = 3;
 impl<'a> Evaluator<'a> {
     /// Scores candidates by the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
-        Self { planner, finer: None, table, grid: BetaGrid::of(planner) }
+        Self { planner, finer: None, table, coarser: None, grid: BetaGrid::of(planner) }
     }
 
     /// The same, reading the table on a grid of beta that many times finer than the planner's.
@@ -95,6 +98,28 @@ impl<'a> Evaluator<'a> {
         self
     }
 
+    /// The same with a planner on a coarser grid, by which neighbours of a refined placement are told apart before they are planned.
+    pub fn with_coarser_planner(mut self, coarser: &'a Planner<'a>) -> Self {
+        self.coarser = Some(coarser);
+        self
+    }
+
+    /// An approximate mean, by which neighbours can be told apart: by the table or on a coarser grid, where there is one. m
+    pub fn approximate(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
+        match self.coarser {
+            Some(coarser) => {
+                let space = workspace.coarser.get_or_insert_with(|| coarser.workspace());
+                coarser.objective(placement, Sense::Min, scheme, space).mean()
+            }
+            None => self.table.and_then(|_| self.objective(placement, scheme, workspace).mean()),
+        }
+    }
+
     /// The planner.
     pub fn planner(&self) -> &'a Planner<'a> {
         self.planner
@@ -108,8 +133,10 @@ impl<'a> Evaluator<'a> {
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
         match self.table {
-            Some(table) => Workspace { planner: None, finer: None, table: Some(table.workspace(&self.grid)) },
-            None => Workspace { planner: Some(self.planner.workspace()), finer: None, table: None },
+            Some(table) => {
+                Workspace { planner: None, finer: None, coarser: None, table: Some(table.workspace(&self.grid)) }
+            }
+            None => Workspace { planner: Some(self.planner.workspace()), finer: None, coarser: None, table: None },
         }
     }
 

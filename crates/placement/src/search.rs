@@ -23,6 +23,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
@@ -64,17 +65,30 @@ const UNEVALUATED: Objective = Objective::Infeasible { points: usize::MAX, segme
 
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> SearchResult {
+    let start = initial(evaluator.planner().problem(), settings, sense);
+    generations(evaluator, settings, sense, start, 0..=settings.generations, monitor).0
+}
+
+/// The generations of a search from a first population on, and the population that they end with.
+pub fn generations(
+    evaluator: &Evaluator<'_>,
+    settings: &SearchSettings,
+    sense: Sense,
+    mut population: Vec<Candidate>,
+    generations: RangeInclusive<usize>,
+    monitor: &Monitor,
+) -> (SearchResult, Vec<Candidate>) {
     let problem = evaluator.planner().problem();
     let cell = &problem.cell;
-    let mut population = initial(problem, settings, sense);
     evaluate(evaluator, &mut population, 0, monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
     let mut archive = Vec::new();
     let mut interrupted = false;
-    for generation in 0..=settings.generations {
-        if generation > 0 {
+    let first = *generations.start();
+    for generation in generations {
+        if generation > first {
             let elite = ((population.len() as f64 * ELITE).ceil() as usize).min(population.len() - 1);
             let children = (elite..settings.population)
                 .map(|index| {
@@ -111,13 +125,14 @@ pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense
     evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
-    SearchResult {
+    let result = SearchResult {
         basins: selected.basins,
         history,
         evaluations,
         lookup_rejected: selected.lookup_rejected,
         interrupted,
-    }
+    };
+    (result, population)
 }
 
 /// In place of a search, the only placement of a cell that leaves no other, on a planner's grid.

@@ -36,6 +36,10 @@ const TOLERANCES: [f64; 2] = [0.05, 0.015];
 const WITHIN: f64 = 0.8;
 /// How often a search is repeated with more points at the most.
 const REPEATS: usize = 4;
+/// Of the generations of a search one in so many is repeated on the subset for the refinement,
+const LAST_GENERATIONS: usize = 5;
+/// with the population divided by this.
+const SHARE: usize = 2;
 /// Candidates of a search that are planned on the whole path, for every basin asked for.
 const PROMOTED: usize = 3;
 /// Of every stretch of points that decide, so many join a subset.
@@ -128,6 +132,7 @@ impl LongPath {
             let searched = search_cell(&Planner::finer(&thinned), &wider, monitor).map_err(nowhere)?;
             evaluations += searched.evaluations;
             let (mut found, lookup_summary) = (searched.found, searched.lookup_summary);
+            evaluations += self.search_on(problem, &wider, &mut found, monitor);
             let nearest = found[0].basins[0].clone();
             let mut deciding = Vec::new();
             let promoted = Sense::BOTH
@@ -153,6 +158,36 @@ impl LongPath {
             self.levels.subsets[0].points = self.search.points().len();
             return Ok(Searched { found, table: None, lookup_summary, evaluations });
         }
+    }
+
+    /// Goes on searching from the basins that a search found, by last generations on the subset for the refinement; returns how
+    /// many placements were evaluated.
+    fn search_on(
+        &self,
+        problem: &Problem,
+        settings: &SearchSettings,
+        found: &mut [SearchResult; 2],
+        monitor: &Monitor,
+    ) -> usize {
+        let thinned = self.refinement.of(problem);
+        let (planner, finer) = (Planner::new(&thinned), Planner::finer(&thinned));
+        let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
+        let settings =
+            SearchSettings { population: settings.population.div_ceil(SHARE).max(settings.basins), ..*settings };
+        let first = settings.generations - settings.generations / LAST_GENERATIONS;
+        let mut evaluations = 0;
+        for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+            if monitor.should_stop() {
+                break;
+            }
+            let start = std::mem::take(&mut found.basins);
+            let (again, _) =
+                search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
+            evaluations += again.evaluations;
+            found.basins = again.basins;
+            found.interrupted |= again.interrupted;
+        }
+        evaluations
     }
 
     /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct basins, at most

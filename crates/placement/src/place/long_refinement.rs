@@ -24,8 +24,10 @@ const ROUNDS: usize = 3;
 const GAIN: f64 = 1e-4;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
 const CLOSE: f64 = 0.03;
-/// So many of them at the most are refined on the whole path.
+/// Of these, so many at the most that are this near (relative) to the best are refined on the whole path.
 const REFINED: usize = 2;
+/// See [`REFINED`].
+const TIED: f64 = 0.004;
 /// On paths longer than this only the best by its estimate is planned.
 const COMPARED: usize = 10_000;
 
@@ -91,7 +93,9 @@ fn estimated<'c>(
     loop {
         let thinned = subset.of(problem);
         let planner = Planner::finer(&thinned);
-        let (solution, report) = refine(&Evaluator::new(&planner, None), &candidate.placement, sense, scheme, monitor)?;
+        let coarse = Planner::new(&thinned);
+        let evaluator = Evaluator::new(&planner, None).with_coarser_planner(&coarse);
+        let (solution, report) = refine(&evaluator, &candidate.placement, sense, scheme, monitor)?;
         let placement = solution.placement;
         let mut checked = whole.objective(&placement, scheme);
         if let Err(points) = &checked
@@ -112,7 +116,6 @@ fn estimated<'c>(
             end = problem.cell.between(&placement, &candidate.placement, share);
             checked = whole.objective(&end, scheme);
         }
-        let coarse = Planner::new(&thinned);
         let on_subset = coarse.objective(&end, Sense::Min, scheme, &mut coarse.workspace()).mean();
         let on_whole = checked.ok()?;
         let objective = match on_subset {
@@ -149,6 +152,8 @@ fn compared(
     let mut planned: Vec<(usize, Refined)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
     planned.sort_by(|a, b| sense.compare(a.1.solution.objective, b.1.solution.objective));
     if sense == Sense::Min {
+        let limit = planned.first().map_or(0.0, |(_, best)| best.solution.objective * (1.0 + TIED));
+        planned.retain(|(_, basin)| basin.solution.objective <= limit);
         planned.truncate(REFINED);
         let refined = |(rank, mut basin): (usize, Refined)| {
             let report = refine_whole(planner, &mut basin, estimates[rank].report.clone(), monitor);

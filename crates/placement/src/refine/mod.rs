@@ -173,8 +173,7 @@ fn poll(
         Sense::Min => 1.0,
         Sense::Max => -1.0,
     };
-    let mut look =
-        |placement: &Placement| evaluator.table().and_then(|_| evaluator.objective(placement, scheme, space).mean());
+    let mut look = |placement: &Placement| evaluator.approximate(placement, scheme, space);
     let here = look(&centre.placement);
     let mut best: Option<Solution> = None;
     for distance in POLLS {
@@ -183,8 +182,8 @@ fn poll(
                 let mut placement = centre.placement;
                 placement[k] += side * distance * linearise::UNITS[k];
                 let placement = problem.cell.clamp(&placement);
-                // A neighbour that the cell does not allow, or that the table, which errs far less from one neighbour to the
-                // next, sees to be no better.
+                // A neighbour that the cell does not allow, or that an approximation, which errs far less from one neighbour to
+                // the next, sees to be no better.
                 let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
                 if monitor.should_stop() {
                     return best;
