@@ -84,6 +84,11 @@ impl Bench {
         Ended::from(self.command(arguments).output().unwrap())
     }
 
+    /// The names of everything below a folder.
+    pub fn names(&self, below: &str) -> Vec<String> {
+        self.tree(below).into_keys().collect()
+    }
+
     /// Every file and folder below a folder of this one, by its path from there; folders have no content.
     pub fn tree(&self, below: &str) -> BTreeMap<String, Option<Vec<u8>>> {
         let root = self.path(below);

@@ -6,7 +6,8 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-const FILES: [&str; 15] = [
+/// What a placement leaves.
+pub const FILES: [&str; 15] = [
     "best-worst-plan.csv",
     "best.csv",
     "cell.svg",
@@ -39,14 +40,14 @@ fn placed() -> &'static (Bench, Ended) {
 }
 
 /// A CSV file: its rows by column.
-struct Rows(Vec<BTreeMap<String, String>>);
+pub struct Rows(Vec<BTreeMap<String, String>>);
 
 impl Rows {
-    fn of(text: &str) -> Self {
+    pub fn of(text: &str) -> Self {
         Self(csv::Reader::from_reader(text.as_bytes()).deserialize().map(Result::unwrap).collect())
     }
 
-    fn column(&self, name: &str) -> Vec<f64> {
+    pub fn column(&self, name: &str) -> Vec<f64> {
         self.0.iter().map(|row| number(row, name)).collect()
     }
 }
@@ -60,20 +61,16 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} and not {expected}");
 }
 
-fn names(bench: &Bench, folder: &str) -> Vec<String> {
-    bench.tree(folder).into_keys().collect()
-}
-
 #[test]
 fn all_files_are_there_and_nothing_else() {
     let (bench, ended) = placed();
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     // In particular no temporary file.
-    assert_eq!(names(bench, "out"), FILES);
+    assert_eq!(bench.names("out"), FILES);
     let mut all: Vec<String> = FILES.map(|file| format!("out/{file}")).to_vec();
     all.extend(["out", "configs", RUN, "configs/robots", ROBOT, "tasks", TASK].map(str::to_owned));
     all.sort();
-    assert_eq!(names(bench, ""), all);
+    assert_eq!(bench.names(""), all);
     for file in FILES {
         assert!(bench.read(&format!("out/{file}")).len() > 100, "{file}");
     }
@@ -339,7 +336,7 @@ fn postures_may_be_part_of_the_genome() {
     bench.replace(RUN, "basins = 2", "basins = 1");
     let ended = bench.stead(&["place", RUN, "--out", "out", "--json"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(names(&bench, "out"), FILES);
+    assert_eq!(bench.names("out"), FILES);
     let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
     assert_eq!(summary["search"]["postures"], "genetic");
     let mean = Rows::of(&bench.read("out/placements.csv")).column("mean_mm");
@@ -347,85 +344,4 @@ fn postures_may_be_part_of_the_genome() {
     // The scheme is held: the best and the worst plan of a placement have the same postures.
     let cases = ended.json()["cases"].clone();
     assert_eq!((&cases[0]["postures"], &cases[2]["postures"]), (&cases[1]["postures"], &cases[3]["postures"]));
-}
-
-/// Ctrl-C while the search runs.
-#[cfg(unix)]
-mod interrupt {
-    use super::*;
-    use std::process::{Child, Command, Stdio};
-    use std::time::{Duration, Instant};
-
-    /// Starts a search that would take hours, and waits until it is well under way.
-    fn started(bench: &Bench, population: usize) -> Child {
-        bench.replace(RUN, "population = 16", &format!("population = {population}"));
-        bench.replace(RUN, "generations = 3", "generations = 2000");
-        let mut command = bench.command(&["place", RUN, "--out", "out", "--threads", "2", "--json"]);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // The folder is made before the search begins.
-        let begun = Instant::now();
-        while !bench.path("out").is_dir() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "the search does not begin");
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        child
-    }
-
-    fn interrupt(child: &Child) {
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    }
-
-    #[test]
-    fn once_leaves_the_best_so_far_and_says_so() {
-        let bench = Bench::new();
-        let child = started(&bench, 200);
-        std::thread::sleep(Duration::from_millis(1500));
-        interrupt(&child);
-        let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-        let said = "interrupted: ending with what there is; Ctrl-C again ends at once\n\
-                    warning: interrupted: the results are the best found so far, not the end of the search\n";
-        assert_eq!(ended.said(), said);
-        assert_eq!(names(&bench, "out"), FILES);
-        let document = ended.json();
-        assert_eq!(document["interrupted"], true);
-        let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
-        assert_eq!(summary["interrupted"], true);
-        for case in document["cases"].as_array().unwrap() {
-            assert_eq!(case["plan"].as_array().unwrap().len(), 105);
-        }
-        let mean = Rows::of(&bench.read("out/placements.csv")).column("mean_mm");
-        assert!(mean[0] <= mean[1] && mean[2] <= mean[3] && mean[0] <= mean[2], "{mean:?}");
-    }
-
-    #[test]
-    fn once_with_nothing_found_says_so_too() {
-        let bench = Bench::new();
-        bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-9240.0, -8640.0]");
-        let child = started(&bench, 2000);
-        std::thread::sleep(Duration::from_millis(300));
-        interrupt(&child);
-        let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(130), Some(false)), "{}", ended.stderr);
-        assert_eq!(ended.json()["interrupted"], true);
-        ended.assert_says(&["interrupted: ", "error: no feasible placement was found", "segment 1, points 0 to 20"]);
-    }
-
-    #[test]
-    fn twice_ends_at_once_and_leaves_earlier_results_alone() {
-        let bench = Bench::new();
-        bench.write("out/best.csv", "an earlier result\n");
-        let child = started(&bench, 100_000);
-        std::thread::sleep(Duration::from_millis(500));
-        interrupt(&child);
-        // So soon that the two plans that are still made are not there yet.
-        std::thread::sleep(Duration::from_millis(20));
-        interrupt(&child);
-        let begun = Instant::now();
-        let ended = Ended::from(child.wait_with_output().unwrap());
-        assert_eq!((ended.code, ended.stdout.as_str()), (Some(130), ""), "{}", ended.stderr);
-        assert!(begun.elapsed() < Duration::from_secs(5));
-        assert_eq!(bench.read("out/best.csv"), "an earlier result\n");
-        assert_eq!(names(&bench, "out"), ["best.csv"]);
-    }
 }

@@ -1,28 +1,16 @@
 //! Ctrl-C on long paths, what is left out then, results without maps, and `stead score` on the placement of a result.
 
 use crate::common::{Bench, Ended, RUN};
+use crate::place::{FILES, Rows};
 use serde_json::Value;
 use std::fmt::Write;
 
-/// What a placement leaves, maps apart.
-const FILES: [&str; 11] = [
-    "best-worst-plan.csv",
-    "best.csv",
-    "cell.svg",
-    "convergence.csv",
-    "convergence.svg",
-    "placements.csv",
-    "refinements.csv",
-    "summary.json",
-    "transfers.csv",
-    "worst-worst-plan.csv",
-    "worst.csv",
-];
 const MAPS: [&str; 4] =
     ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
 
-fn names(bench: &Bench, folder: &str) -> Vec<String> {
-    bench.tree(folder).into_keys().collect()
+/// What a placement leaves, maps apart.
+fn files_without_maps() -> Vec<&'static str> {
+    FILES.into_iter().filter(|file| !MAPS.contains(file)).collect()
 }
 
 fn json_in(bench: &Bench, file: &str) -> Value {
@@ -62,7 +50,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     bench.write(RUN, &format!("{text}\n[output]\nmaps = false\n"));
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(names(&bench, "out"), FILES);
+    assert_eq!(bench.names("out"), files_without_maps());
     for (name, bytes) in bench.tree("out") {
         // The summary names the run file's digest.
         assert!(name == "summary.json" || bytes == before[&name], "{name}");
@@ -71,7 +59,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
 
     let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(names(&bench, "scored"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+    assert_eq!(bench.names("scored"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
 }
 
 #[test]
@@ -90,7 +78,7 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
     let scored = with(&["--out", "scored"]);
     let files =
         ["best-plan.csv", "deflection-map.csv", "deflection-map.svg", "placement.svg", "score.json", "worst-plan.csv"];
-    assert_eq!(names(&bench, "scored"), files);
+    assert_eq!(bench.names("scored"), files);
     assert_eq!(json_in(&bench, "scored/score.json"), scored.json());
     let header = |file: &str| bench.read(file).lines().next().unwrap().to_owned();
     assert_eq!(header("scored/best-plan.csv"), header("out/best.csv"));
@@ -130,22 +118,83 @@ mod interrupt {
     use std::process::{Child, Command, Stdio};
     use std::time::{Duration, Instant};
 
-    /// Starts a command, waits until its folder is made and for some time more, and interrupts it.
-    fn interrupted(bench: &Bench, arguments: &[&str], after: Duration) -> Ended {
+    /// Starts a command and waits until it has made its folder, which it does before anything that takes long.
+    fn started(bench: &Bench, arguments: &[&str]) -> Child {
         let mut command = bench.command(arguments);
-        let child: Child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let begun = Instant::now();
         while !bench.path("out").is_dir() {
             assert!(begun.elapsed() < Duration::from_secs(30), "it does not begin");
             std::thread::sleep(Duration::from_millis(20));
         }
-        std::thread::sleep(after);
+        child
+    }
+
+    /// Starts a search that would take hours.
+    fn search(bench: &Bench, population: usize) -> Child {
+        bench.replace(RUN, "population = 16", &format!("population = {population}"));
+        bench.replace(RUN, "generations = 3", "generations = 2000");
+        started(bench, &["place", RUN, "--out", "out", "--threads", "2", "--json"])
+    }
+
+    fn interrupt(child: &Child) {
         assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    }
+
+    /// Interrupts a command some time after it has started, once.
+    fn interrupted(child: Child, after: Duration) -> Ended {
+        std::thread::sleep(after);
+        interrupt(&child);
         Ended::from(child.wait_with_output().unwrap())
     }
 
     const STOPPED: &str = "interrupted: ending with what there is; Ctrl-C again ends at once\n";
 
+    #[test]
+    fn once_leaves_the_best_so_far_and_says_so() {
+        let bench = Bench::new();
+        let ended = interrupted(search(&bench, 200), Duration::from_millis(1500));
+        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+        let warning = "warning: interrupted: the results are the best found so far, not the end of the search\n";
+        assert_eq!(ended.said(), format!("{STOPPED}{warning}"));
+        assert_eq!(bench.names("out"), FILES);
+        let document = ended.json();
+        assert_eq!(document["interrupted"], true);
+        assert_eq!(json_in(&bench, "out/summary.json")["interrupted"], true);
+        for case in document["cases"].as_array().unwrap() {
+            assert_eq!(case["plan"].as_array().unwrap().len(), 105);
+        }
+        let mean = Rows::of(&bench.read("out/placements.csv")).column("mean_mm");
+        assert!(mean[0] <= mean[1] && mean[2] <= mean[3] && mean[0] <= mean[2], "{mean:?}");
+    }
+
+    #[test]
+    fn once_with_nothing_found_says_so_too() {
+        let bench = Bench::new();
+        bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-9240.0, -8640.0]");
+        let ended = interrupted(search(&bench, 2000), Duration::from_millis(300));
+        assert_eq!((ended.code, ended.json()["feasible"].as_bool()), (Some(130), Some(false)), "{}", ended.stderr);
+        assert_eq!(ended.json()["interrupted"], true);
+        ended.assert_says(&["interrupted: ", "error: no feasible placement was found", "segment 1, points 0 to 20"]);
+    }
+
+    #[test]
+    fn twice_ends_at_once_and_leaves_earlier_results_alone() {
+        let bench = Bench::new();
+        bench.write("out/best.csv", "an earlier result\n");
+        let child = search(&bench, 100_000);
+        std::thread::sleep(Duration::from_millis(500));
+        interrupt(&child);
+        // So soon that the two plans that are still made are not there yet.
+        std::thread::sleep(Duration::from_millis(20));
+        interrupt(&child);
+        let begun = Instant::now();
+        let ended = Ended::from(child.wait_with_output().unwrap());
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(130), ""), "{}", ended.stderr);
+        assert!(begun.elapsed() < Duration::from_secs(5));
+        assert_eq!(bench.read("out/best.csv"), "an earlier result\n");
+        assert_eq!(bench.names("out"), ["best.csv"]);
+    }
     #[test]
     fn a_long_path_is_placed_with_what_there_is_and_without_maps() {
         for tables in ["auto", "never"] {
@@ -154,7 +203,7 @@ mod interrupt {
             bench.replace(RUN, "generations = 3", "generations = 2000");
             bench.replace(RUN, "seed = 1", &format!("tables = \"{tables}\"\nseed = 1"));
             let arguments = ["place", RUN, "--out", "out", "--json", "--certify", "1"];
-            let ended = interrupted(&bench, &arguments, Duration::from_millis(4000));
+            let ended = interrupted(started(&bench, &arguments), Duration::from_millis(4000));
             assert_eq!(ended.code, Some(130), "{}", ended.stderr);
             assert!(ended.stderr.contains(STOPPED), "{}", ended.stderr);
             ended.assert_says(&["the best found so far", "warning: interrupted: the deflection maps are left out\n"]);
@@ -162,7 +211,7 @@ mod interrupt {
                 (&ended.json()["interrupted"], &json_in(&bench, "out/summary.json")["interrupted"]),
                 (&true.into(), &true.into())
             );
-            assert!(FILES.iter().all(|file| bench.path(&format!("out/{file}")).exists()));
+            assert!(files_without_maps().iter().all(|file| bench.path(&format!("out/{file}")).exists()));
             assert!(!MAPS.iter().any(|file| bench.path(&format!("out/{file}")).exists()));
             for case in ended.json()["cases"].as_array().unwrap() {
                 assert_eq!(case["plan"].as_array().unwrap().len(), 3000);
@@ -183,7 +232,7 @@ mod interrupt {
         bench.replace(RUN, "beta_step_deg = 7.2", "beta_step_deg = 0.25");
         let place = ["--x-mm", "0", "--y-mm", "-1800", "--z-mm", "-400", "--yaw-deg", "0"];
         let arguments = [&["score", RUN, "--out", "out", "--json"], &place[..]].concat();
-        let ended = interrupted(&bench, &arguments, Duration::from_millis(400));
+        let ended = interrupted(started(&bench, &arguments), Duration::from_millis(400));
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
         let said = ended.stderr.lines().filter(|line| !line.starts_with("note: the scored part"));
         let said: String = said.map(|line| format!("{line}\n")).collect();
@@ -191,6 +240,6 @@ mod interrupt {
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
-        assert_eq!(names(&bench, "out"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+        assert_eq!(bench.names("out"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
     }
 }

@@ -12,8 +12,8 @@
 //! spindle turns no more than its axis has to: for a tool with a constant axis, the turn of the feed in the opposite sense.
 
 use crate::constraints::{Measured, STEP_ROUNDING};
+use crate::limit::Limit;
 use crate::problem::{Problem, Redundancy};
-use crate::refine::active::Limit;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 use stead_model::robot::angles::wrap;

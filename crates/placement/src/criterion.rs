@@ -9,7 +9,6 @@ mod force_error;
 pub use force_error::worst_force_error;
 pub(crate) use force_error::worst_gain;
 
-use super::problem::Problem;
 use super::sense::Sense;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Robot;
@@ -210,6 +209,35 @@ pub struct ScoredDirections<T: Scalar = f64> {
 }
 
 impl<T: Scalar> ScoredDirections<T> {
+    /// Those of a path point with these axes (feed, left of the feed, tool axis) as columns, where the surface has this normal
+    /// in the frame of the point.
+    pub fn new(weights: &Weights, normal: Option<Vector3<f64>>, axes: &Matrix3<T>) -> Self {
+        let Weights { feed, wall, axis, surface } = *weights;
+        let normal = normal.filter(|_| surface > 0.0).map(|normal| normal * libm::sqrt(surface));
+        let mut directions = Self { vectors: [Vector3::zeros(); 3], count: 0 };
+        let mut add = |coefficients: [f64; 3]| {
+            let mut vector = Vector3::zeros();
+            for k in (0..3).filter(|k| coefficients[*k] != 0.0) {
+                vector += axes.column(k).map(|entry| entry.scale(coefficients[k]));
+            }
+            directions.vectors[directions.count] = vector;
+            directions.count += 1;
+        };
+        match normal {
+            Some(normal) if weights.is_single() => add(normal.into()),
+            Some(normal) => {
+                let metric = Matrix3::from_diagonal(&Vector3::new(feed, wall, axis)) + normal * normal.transpose();
+                factor(metric).into_iter().filter(|column| column.iter().any(|entry| *entry != 0.0)).for_each(add);
+            }
+            None => {
+                for (k, weight) in [feed, wall, axis].into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
+                    add(std::array::from_fn(|j| if j == k { libm::sqrt(weight) } else { 0.0 }));
+                }
+            }
+        }
+        directions
+    }
+
     /// The directions, from one to three.
     pub fn vectors(&self) -> &[Vector3<T>] {
         &self.vectors[..self.count]
@@ -236,96 +264,6 @@ impl<T: Scalar> ScoredDirections<T> {
     }
 }
 
-impl Problem {
-    /// The arm with each set of compliances that a score covers: the robot itself where no others are given.
-    pub fn scored_robots(&self) -> &[Robot] {
-        match &self.criterion.stiffness {
-            Some(sets) => &sets.robots,
-            None => std::slice::from_ref(&self.robot),
-        }
-    }
-
-    /// Whether a score is the largest over the sets of compliances.
-    pub fn is_over_worst(&self) -> bool {
-        self.criterion.stiffness.as_ref().is_some_and(|sets| sets.over == Over::Worst)
-    }
-
-    /// The directions that are scored at a path point, in the frame in which its axes (feed, left of the feed, tool axis) are
-    /// given as columns.
-    pub fn scored_directions<T: Scalar>(&self, point: usize, axes: &Matrix3<T>) -> ScoredDirections<T> {
-        let Weights { feed, wall, axis, surface } = self.criterion.weights;
-        let normal = self.task.path().surface_normals().filter(|_| surface > 0.0).map(|normals| {
-            self.task.points()[point].workpiece_from_point().tr_mul(&normals[point]) * libm::sqrt(surface)
-        });
-        let mut directions = ScoredDirections { vectors: [Vector3::zeros(); 3], count: 0 };
-        let mut add = |coefficients: [f64; 3]| {
-            let mut vector = Vector3::zeros();
-            for k in (0..3).filter(|k| coefficients[*k] != 0.0) {
-                vector += axes.column(k).map(|entry| entry.scale(coefficients[k]));
-            }
-            directions.vectors[directions.count] = vector;
-            directions.count += 1;
-        };
-        match normal {
-            Some(normal) if self.criterion.weights.is_single() => add(normal.into()),
-            Some(normal) => {
-                let metric = Matrix3::from_diagonal(&Vector3::new(feed, wall, axis)) + normal * normal.transpose();
-                factor(metric).into_iter().filter(|column| column.iter().any(|entry| *entry != 0.0)).for_each(add);
-            }
-            None => {
-                for (k, weight) in [feed, wall, axis].into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
-                    add(std::array::from_fn(|j| if j == k { libm::sqrt(weight) } else { 0.0 }));
-                }
-            }
-        }
-        directions
-    }
-
-    /// The weight of a segment, from 0.
-    pub fn segment_weight(&self, segment: usize) -> f64 {
-        self.criterion.segment_weights.get(segment).copied().unwrap_or(1.0)
-    }
-
-    /// The weight of a path point: that of its segment and, where points make up a mean, the number of points it stands for.
-    pub fn point_weight(&self, point: usize) -> f64 {
-        let path = self.task.path();
-        let segment =
-            if self.criterion.segment_weights.is_empty() { 1.0 } else { self.segment_weight(path.segment_of(point)) };
-        match self.criterion.aggregate {
-            Aggregate::Mean | Aggregate::Rms => segment * path.weight(point),
-            Aggregate::Max => segment,
-        }
-    }
-
-    /// What a path point of this score (m) adds to the cost of a plan.
-    pub fn point_cost(&self, point: usize, score: f64) -> f64 {
-        self.criterion.aggregate.point_cost(self.point_weight(point), score)
-    }
-
-    /// The figure that is minimised, from the costs of plans that together cover the whole path. m
-    pub fn objective(&self, costs: impl IntoIterator<Item = f64>) -> f64 {
-        let aggregate = self.criterion.aggregate;
-        let cost = costs.into_iter().fold(0.0, |sum, cost| aggregate.join(sum, cost));
-        match aggregate {
-            Aggregate::Mean => cost / self.total_weight(),
-            Aggregate::Rms => libm::sqrt(cost / self.total_weight()),
-            Aggregate::Max => cost,
-        }
-    }
-
-    /// Sum of the weights of all points.
-    pub fn total_weight(&self) -> f64 {
-        if self.task.path().is_thinned() {
-            return (0..self.task.points().len()).map(|point| self.point_weight(point)).sum();
-        }
-        let points = |(weight, span): (&f64, &std::ops::Range<usize>)| weight * span.len() as f64;
-        match &self.criterion.segment_weights[..] {
-            [] => self.task.points().len() as f64,
-            weights => weights.iter().zip(self.task.segments()).map(points).sum(),
-        }
-    }
-}
-
 /// Columns whose products with themselves sum up to a positive semidefinite matrix (Cholesky).
 fn factor(mut matrix: Matrix3<f64>) -> [[f64; 3]; 3] {
     let mut columns = [[0.0; 3]; 3];
@@ -339,6 +277,3 @@ fn factor(mut matrix: Matrix3<f64>) -> [[f64; 3]; 3] {
     }
     columns
 }
-
-#[cfg(test)]
-mod tests;

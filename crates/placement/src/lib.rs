@@ -2,8 +2,8 @@
 //!
 //! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
-//! - [`criterion`]: which part of the deflection is scored, and how points make up one figure.
-//! - [`constraints`]: what a plan must satisfy, by kind, with signed margins.
+//! - [`criterion`]: which part of the deflection is scored, and how points make up one figure; [`objective`]: that of a problem.
+//! - [`constraints`]: what a plan must satisfy, by kind, with signed margins; [`limit`]: which limits can hold an optimum.
 //! - [`redundancy`]: the free angle beta along the path, the posture of each segment, and the turns of the joints.
 //! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by table or
 //!   planner.
@@ -25,7 +25,9 @@ pub mod criterion;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
+pub mod limit;
 pub mod lookup;
+pub mod objective;
 pub mod outcome;
 pub mod path_subset;
 pub mod place;

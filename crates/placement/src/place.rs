@@ -1,13 +1,13 @@
 //! The placement job: search, refine, plan, map.
 
 use super::evaluator::Evaluator;
-use super::outcome::{Case, Cases, Outcome};
+use super::outcome::{Case, Cases, ForceSensitivity, Outcome, SetOutcome};
 use super::problem::Problem;
 use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
 use super::sense::Sense;
-use super::sensitivity::{ForceSensitivity, SetOutcome, mean_by, objective_with_force_errors, with_set_alone};
+use super::sensitivity::{mean_by, objective_with_force_errors, with_set_alone};
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{Refined, refine_basins, refine_side};

@@ -1,6 +1,5 @@
 //! Which postures segments may be driven in, and how one plan is taken of several that are as good.
 
-use crate::problem::Problem;
 use stead_model::robot::{Posture, PostureClass};
 
 /// Rules for the postures of segments and the moves between them.
@@ -44,38 +43,5 @@ impl PostureRules {
     /// Whether the best plan of a segment is always taken.
     pub(crate) fn takes_the_best(&self) -> bool {
         self.move_weight == 0.0 && self.tie == 0.0
-    }
-}
-
-/// Steps of the angles of joints 2 and 3 in [`Problem::has_posture`].
-const STEPS: usize = 60;
-
-impl Problem {
-    /// The schemes to choose from where the posture may not change: each allowed posture, for every segment; nothing where each
-    /// segment has its own, or a scheme is given.
-    pub(crate) fn unchanging_schemes(&self, scheme: Option<&[Posture]>) -> Vec<Vec<Posture>> {
-        let segments = self.task.segments().len();
-        match scheme {
-            None if !self.postures.may_change => self.postures.allowed().map(|one| vec![one; segments]).collect(),
-            _ => Vec::new(),
-        }
-    }
-
-    /// Whether some joint angles inside the limits are in a posture, on a grid over joints 2, 3 and 5, which decide.
-    pub fn has_posture(&self, posture: Posture) -> bool {
-        let at = |j: usize, share: f64| {
-            let joint = &self.robot.joints()[j];
-            joint.min + (joint.max - joint.min) * share
-        };
-        let shares = || (0..=STEPS).map(|step| step as f64 / STEPS as f64);
-        shares().any(|second| {
-            shares().any(|third| {
-                [0.0, 1.0].into_iter().any(|fifth| {
-                    let mut angles = [0.0; 6];
-                    (angles[1], angles[2], angles[4]) = (at(1, second), at(2, third), at(4, fifth));
-                    Posture::of(&self.robot, &angles) == posture
-                })
-            })
-        })
     }
 }

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
 use stead_model::plausibility;
 use stead_model::robot::{
-    Pose, Robot, Spindle,
+    Pose, Posture, Robot, Spindle,
     angles::{q4_from_yaw, wrap},
     cast, point_from_tool,
 };
@@ -346,6 +346,16 @@ impl Problem {
         std::array::from_fn(|j| {
             self.robot.joints()[j].max_speed.map_or(MAX_JOINT_STEP, |speed| MAX_JOINT_STEP.min(speed * time))
         })
+    }
+
+    /// The schemes to choose from where the posture may not change: each allowed posture, for every segment; nothing where each
+    /// segment has its own, or a scheme is given.
+    pub(crate) fn unchanging_schemes(&self, scheme: Option<&[Posture]>) -> Vec<Vec<Posture>> {
+        let segments = self.task.segments().len();
+        match scheme {
+            None if !self.postures.may_change => self.postures.allowed().map(|one| vec![one; segments]).collect(),
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -6,7 +6,6 @@ use super::outcome::{Plan, PlanPoint};
 use super::problem::{Placement, Problem};
 use super::redundancy::SegmentPlan;
 use rayon::prelude::*;
-use serde::Serialize;
 use stead_model::robot::{Compliance, Robot};
 
 /// Relative step of the central differences of stiffness.
@@ -50,39 +49,6 @@ fn stiffened(robot: &Robot, joint: usize, factor: f64) -> Option<Robot> {
     match robot.uncertainty() {
         Some(known) => changed.with_uncertainty(known.clone()).ok(),
         None => Some(changed),
-    }
-}
-
-/// A best placement beside the one that would be best if forces were a little off.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ForceSensitivity {
-    /// Relative size of the force error, in any direction.
-    pub force_uncertainty: f64,
-    /// At the optimum found: the objective, and the objective if it has to cover the errors under the same plan. m
-    pub nominal: [f64; 2],
-    /// At the placement that is best where scores cover the errors: the same two figures. m
-    pub robust: [f64; 2],
-    /// That placement.
-    pub placement: Placement,
-    /// How far it is from the optimum found. m
-    pub distance: f64,
-    /// How far it is turned from that. rad
-    pub turn: f64,
-}
-
-/// What one set of compliances makes of a best placement that was found for several.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SetOutcome {
-    /// The mean score under this set, of the plan found for all. m
-    pub mean: f64,
-    /// The mean score of the best placement for this set alone, refined from the same basins; `None` where none has a plan. m
-    pub alone: Option<f64>,
-}
-
-impl SetOutcome {
-    /// How much larger the mean is than it could be for this set alone, relative to that.
-    pub fn regret(&self) -> Option<f64> {
-        self.alone.filter(|alone| *alone > 0.0).map(|alone| self.mean / alone - 1.0)
     }
 }
 

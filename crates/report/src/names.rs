@@ -2,8 +2,8 @@
 
 use stead_model::robot::Posture;
 use stead_placement::constraints::{ConstraintKind, describe};
+use stead_placement::limit::{ActiveBound, Limit};
 use stead_placement::outcome::RefinementStatus;
-use stead_placement::refine::active::{ActiveBound, Limit};
 use stead_placement::sense::Sense;
 
 /// `best` or `worst`.

@@ -98,11 +98,11 @@ impl Profile {
     pub fn roughness(&self) -> Option<Roughness> {
         let count = self.heights.len() as f64;
         let mean = self.heights.iter().sum::<f64>() / count;
-        let [least, most] = self.heights.iter().fold([f64::MAX, f64::MIN], |[a, b], &h| [a.min(h), b.max(h)]);
+        let [min, max] = self.heights.iter().fold([f64::MAX, f64::MIN], |[a, b], &h| [a.min(h), b.max(h)]);
         (count > 0.0).then(|| Roughness {
             mean: self.heights.iter().map(|height| (height - mean).abs()).sum::<f64>() / count,
             root_mean_square: (self.heights.iter().map(|h| (h - mean) * (h - mean)).sum::<f64>() / count).sqrt(),
-            total: most - least,
+            total: max - min,
         })
     }
 }
@@ -111,7 +111,7 @@ impl Profile {
 fn cut_advance(trail: &Trail, cut: &PassCut) -> f64 {
     let nodes = trail.nodes();
     let pairs = nodes.iter().zip(nodes.iter().skip(cut.steps_per_turn));
-    pairs.fold(0.0, |most: f64, (before, after)| most.max((after.place[0] - before.place[0]).abs()))
+    pairs.map(|(before, after)| (after.place[0] - before.place[0]).abs()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -200,7 +200,7 @@ mod tests {
             let heights = (0..4000).map(|index| 1e-6 * libm::sin(TAU * f64::from(index) * 10e-6 / length)).collect();
             let profile = Profile { start: 0.0, spacing: 10e-6, heights }.filtered(2.5e-3);
             let inside = &profile.heights[1000..3000];
-            inside.iter().fold(0.0, |most: f64, height| most.max(height.abs()))
+            inside.iter().map(|height| height.abs()).fold(0.0, f64::max)
         };
         for (length, left) in [(2.5e-3, 0.5), (0.25e-3, 1.0), (5e-3, 1.0 - libm::pow(0.5, 0.25))] {
             assert!((wave(length) / 1e-6 - left).abs() < 2e-3, "{length} {}", wave(length));

@@ -5,7 +5,7 @@
 //! diagonal matrix C of the compliances and tau = J^T w. From there `d theta = (1 - C H)^-1 diag(tau) dc`, with H the derivative of
 //! the torques by the angles ([`load_hessian`]).
 
-use super::model::Response;
+use super::response::{Response, torque};
 use super::sheet::Configuration;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use stead_model::robot::{Frames, Robot};
@@ -110,18 +110,6 @@ impl<'a> Deflected<'a> {
         let slope = Matrix3::identity() - turned / 2.0 + turned * turned / 12.0;
         Response { linear: jacobian.fixed_rows::<3>(0).into_owned(), angular: slope * jacobian.fixed_rows::<3>(3) }
     }
-}
-
-/// The torque of a wrench at a place (m, base frame) about a joint (from 0). N m
-pub(super) fn torque(
-    frames: &Frames<f64>,
-    joint: usize,
-    place: &Vector3<f64>,
-    force: &Vector3<f64>,
-    moment: &Vector3<f64>,
-) -> f64 {
-    let (velocity, axis) = frames.twist(joint, place);
-    velocity.dot(force) + axis.dot(moment)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! on the exact static equilibria.
 
 use super::error::IdentifyError;
-use super::model::{Layout, Noise, Observation, observations_about};
+use super::model::{Layout, Noise, Observation, ObservationModel};
 use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::outliers::{OutlierSearch, ROUNDING, RobustEstimate};
 use super::problem::Problem;
@@ -46,7 +46,7 @@ impl Equilibria<'_> {
     pub fn about(&self, setup: &Setup, solution: &Solution) -> (Vec<Observation>, Vec<usize>) {
         let Problem { robot, sheet, load_point, .. } = self.problem;
         let compliances = |configuration| solution.compliances(self.layout.varying, self.layout.group(configuration));
-        observations_about(robot, sheet, setup, load_point, &self.noise, self.hold, compliances)
+        ObservationModel { robot, sheet, setup, load_point, noise: self.noise, hold: self.hold }.about(compliances)
     }
 
     /// From equations about another arm to those about the arm that they describe, by the readings that are kept. Where these do not

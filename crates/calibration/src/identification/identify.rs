@@ -3,10 +3,11 @@
 use super::assemble::Assembly;
 use super::equilibria::Equilibria;
 use super::error::IdentifyError;
-use super::model::{Layout, Noise, Observation, Parameter, Response, observations};
+use super::model::{Layout, Noise, Observation, ObservationModel, Parameter};
 use super::normal_equations::{FreeParameters, NormalEquations};
 use super::outcome::Identified;
 use super::problem::Problem;
+use super::response::Response;
 use super::setup::{Setup, check, estimate};
 use super::warnings::warnings;
 use nalgebra::Vector6;
@@ -40,7 +41,8 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     check_lengths(problem, &setup)?;
     let held = starting_values(problem, &layout);
     let noise = Noise { position: problem.noise.unwrap_or(1.0), orientation: problem.orientation_noise.unwrap_or(1.0) };
-    let unloaded = observations(&problem.robot, sheet, &setup, &problem.load_point, &noise, problem.hold);
+    let Problem { robot, load_point, hold, .. } = problem;
+    let unloaded = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: *hold }.linear();
     let (free, dropped) = free_parameters(problem, &layout, &unloaded)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
         // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.

@@ -4,8 +4,8 @@
 //! displacement of some reference points. [`identify`] takes such a [`Sheet`] through these steps:
 //!
 //! 1. [`setup`]: poses of tracker and reference points, from the unloaded readings alone (eq. 24);
-//! 2. [`model`]: deflections as linear functions of the compliances (eq. 16, 20) about the arm as it rests under its loads
-//!    ([`deflected`]), the joint beside a compensator having one for each distinct angle;
+//! 2. [`model`], [`response`]: deflections as linear functions of the compliances (eq. 16, 20) about the arm as it rests under
+//!    its loads ([`deflected`]), the joint beside a compensator having one for each distinct angle;
 //! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters are identifiable;
 //! 4. [`outliers`]: a robust estimate, and readings that deviate from the others by more than noise;
 //! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21, 22);
@@ -28,6 +28,7 @@ pub mod normal_equations;
 pub mod outcome;
 pub mod outliers;
 mod problem;
+pub mod response;
 pub mod setup;
 pub mod sheet;
 pub mod spring;

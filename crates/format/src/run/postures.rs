@@ -87,8 +87,8 @@ pub(super) fn check_postures(
     }
     for (number, place) in table.allowed.iter().flatten().zip(1..) {
         let posture = u8::try_from(number.count()).ok().and_then(Posture::from_number);
-        if posture.is_some_and(|posture| !problem.has_posture(posture)) {
-            let possible = Posture::ALL.into_iter().filter(|posture| problem.has_posture(*posture));
+        if posture.is_some_and(|posture| !problem.robot.has_posture(posture)) {
+            let possible = Posture::ALL.into_iter().filter(|posture| problem.robot.has_posture(*posture));
             let possible: Vec<String> = possible.map(|posture| posture.to_string()).collect();
             let why = format!("no segment can take posture {}: the limits of the joints leave it out", number.count());
             return Err(at.key("allowed").element(place).error(why, possible.join(", ")));

@@ -66,6 +66,29 @@ impl Posture {
     }
 }
 
+/// Steps of the angles of joints 2 and 3 in [`Robot::has_posture`].
+const STEPS: usize = 60;
+
+impl Robot {
+    /// Whether some joint angles inside the limits are in a posture, on a grid over joints 2, 3 and 5, which decide.
+    pub fn has_posture(&self, posture: Posture) -> bool {
+        let at = |j: usize, share: f64| {
+            let joint = &self.joints()[j];
+            joint.min + (joint.max - joint.min) * share
+        };
+        let shares = || (0..=STEPS).map(|step| step as f64 / STEPS as f64);
+        shares().any(|second| {
+            shares().any(|third| {
+                [0.0, 1.0].into_iter().any(|fifth| {
+                    let mut angles = [0.0; 6];
+                    (angles[1], angles[2], angles[4]) = (at(1, second), at(2, third), at(4, fifth));
+                    Posture::of(self, &angles) == posture
+                })
+            })
+        })
+    }
+}
+
 impl PostureClass {
     /// All four, in the order of their indices.
     pub const ALL: [PostureClass; 4] = [PostureClass(0), PostureClass(1), PostureClass(2), PostureClass(3)];

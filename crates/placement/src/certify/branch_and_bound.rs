@@ -74,7 +74,7 @@ const ROUNDING: f64 = 1e-9;
 /// The side to cut a box at, and its half width in terms of the start.
 pub(super) fn widest(region: &Region) -> (usize, f64) {
     let size = |k: usize| region.half[k] / START[k];
-    (1..3).fold((0, size(0)), |(side, most), k| if size(k) > most { (k, size(k)) } else { (side, most) })
+    (1..3).fold((0, size(0)), |(side, max), k| if size(k) > max { (k, size(k)) } else { (side, max) })
 }
 
 /// The halves of a box; `None` where it is not to be cut further.

@@ -56,12 +56,12 @@ pub(super) fn whole(problem: &Problem) -> Region {
 pub(super) fn extent(problem: &Problem) -> Extent {
     let region = whole(problem);
     let points = points_of(problem);
-    let most = points.iter().map(|p| p.distance).fold(0.0, f64::max);
+    let max_distance = points.iter().map(|p| p.distance).fold(0.0, f64::max);
     let low = points.iter().map(|p| p.height).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.height).fold(f64::NEG_INFINITY, f64::max);
     let [(near, far), (bottom, top)] =
         [0, 1].map(|k| (region.middle[k] - region.half[k], region.middle[k] + region.half[k]));
-    Extent { radius: ((near - most).max(NEAREST), far + most), height: (bottom + low, top + high) }
+    Extent { radius: ((near - max_distance).max(NEAREST), far + max_distance), height: (bottom + low, top + high) }
 }
 
 /// Azimuths tried about axis 1.

@@ -243,13 +243,13 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     });
-    let most = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
+    let max_second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
     let mut remainder = [0.0; 3];
     for (p, (i, j)) in PAIR.iter().enumerate() {
         let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
-        remainder[0] += most(0, p) * factor;
-        remainder[1] += libm::hypot(most(1, p), most(2, p)) * factor;
-        remainder[2] += libm::hypot(most(3, p), most(4, p)) * factor;
+        remainder[0] += max_second(0, p) * factor;
+        remainder[1] += libm::hypot(max_second(1, p), max_second(2, p)) * factor;
+        remainder[2] += libm::hypot(max_second(3, p), max_second(4, p)) * factor;
     }
     // And what is lost by writing the values with fewer digits.
     let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();

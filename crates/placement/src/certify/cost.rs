@@ -86,14 +86,14 @@ impl PointCost {
     /// Least costs at the corners of the box, in a cell of heading of that half width (rad): `off` is where the point is
     /// from the node, in radius and height. m
     #[inline]
-    pub fn least(&self, known: &AffineModel, off: [f64; 2], half_cell: f64, region: &Region) -> [f64; CORNERS] {
+    pub fn min_cost(&self, known: &AffineModel, off: [f64; 2], half_cell: f64, region: &Region) -> [f64; CORNERS] {
         let NormalPart { value, by_heading, slope, remainder } = self.model(known, off, half_cell);
-        let least = value.abs() - remainder - by_heading.abs() * half_cell;
-        if least <= 0.0 {
+        let min = value.abs() - remainder - by_heading.abs() * half_cell;
+        if min <= 0.0 {
             return [0.0; CORNERS];
         }
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        corners(least, [0, 1, 2].map(|k| sign * slope[k] * region.half[k]))
+        corners(min, [0, 1, 2].map(|k| sign * slope[k] * region.half[k]))
     }
 
     /// Values at the corners of the box of a convex function of the placement that is above the cost: above the least of the
@@ -102,7 +102,7 @@ impl PointCost {
     /// With the heading h from the middle of the cell, |c| is at most |affine(placement) + slope h| + remainder; the least of that
     /// over |h| <= `half_cell` and the greatest are both convex.
     #[inline]
-    pub fn most(
+    pub fn max_cost(
         &self,
         known: &AffineModel,
         off: [f64; 2],

@@ -56,11 +56,11 @@ impl Enclosure {
     #[inline]
     fn tightened(mut self) -> Self {
         let h = self.half;
-        let most = self.second.map(Interval::magnitude);
+        let max_second = self.second.map(Interval::magnitude);
         for k in 0..VARIABLES {
             let radius = (0..PAIRS).fold(ZERO, |sum, p| match PAIR[p] {
-                (i, j) if i == k => sum + most[p] * h[j],
-                (i, j) if j == k => sum + most[p] * h[i],
+                (i, j) if i == k => sum + max_second[p] * h[j],
+                (i, j) if j == k => sum + max_second[p] * h[i],
                 _ => sum,
             });
             self.gradient[k] = self.gradient[k].cut(Interval { middle: self.middle.gradient[k], radius });
@@ -70,7 +70,7 @@ impl Enclosure {
             radius = radius + self.middle.gradient[k].abs() * h[k];
         }
         for (p, (i, j)) in PAIR.iter().enumerate() {
-            radius = radius + most[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
+            radius = radius + max_second[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
         }
         self.value = self.value.cut(Interval { middle: self.middle.value, radius });
         self
@@ -263,20 +263,25 @@ impl Number for Enclosure {
         // Convex, least at zero, and so is the second derivative where it is not continued; there it is zero.
         let zero = Lanes::splat(0.0);
         let holds_zero = low.at_most(zero) & zero.at_most(high);
-        let least = holds_zero.select(Lanes::splat(1.0), v0.min(v1));
+        let min_value = holds_zero.select(Lanes::splat(1.0), v0.min(v1));
         let limit = Lanes::splat(bend.limit);
         let beyond = limit.less(high) | low.less(-limit);
-        let least_second = beyond.select(zero, holds_zero.select(Lanes::splat(2.0), c0.min(c1)));
-        let second = Interval::between(least_second, c0.max(c1));
-        self.through(self.middle.wrist(bend), Interval::between(least, v0.max(v1)), Interval::between(d0, d1), second)
+        let min_second = beyond.select(zero, holds_zero.select(Lanes::splat(2.0), c0.min(c1)));
+        let second = Interval::between(min_second, c0.max(c1));
+        self.through(
+            self.middle.wrist(bend),
+            Interval::between(min_value, v0.max(v1)),
+            Interval::between(d0, d1),
+            second,
+        )
     }
     #[inline(always)]
     fn is_negative(self) -> Mask {
         self.value.high().less(ZERO)
     }
     #[inline(always)]
-    fn assume_above(self, least: f64, sure: &mut Mask) -> Self {
-        let floor = Lanes::splat(least);
+    fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {
+        let floor = Lanes::splat(floor);
         let fine = floor.less(self.value.low());
         *sure = *sure & fine;
         // Elsewhere some number that does no harm.

@@ -71,8 +71,8 @@ impl Interval {
     pub fn square(self) -> Self {
         let m = self.middle.abs();
         let high = (m + self.radius) * (m + self.radius);
-        let least = (m - self.radius).max(ZERO);
-        Self::between(least * least, high)
+        let low = (m - self.radius).max(ZERO);
+        Self::between(low * low, high)
     }
 
     #[inline(always)]

@@ -80,12 +80,12 @@ impl Model {
             + before.remainder_chi;
         let turned = here.chi - before.chi;
         let turned = turned - TAU * (turned / TAU).round();
-        let most = (self.rates[point] + unsure) / width + 1.0 + 1e-6;
-        if most >= 1e6 {
+        let max_step = (self.rates[point] + unsure) / width + 1.0 + 1e-6;
+        if max_step >= 1e6 {
             return ANYWHERE;
         }
         let shift = turned / width;
-        ((shift - most).ceil() as isize, (shift + most).floor() as isize)
+        ((shift - max_step).ceil() as isize, (shift + max_step).floor() as isize)
     }
 }
 
@@ -116,7 +116,7 @@ struct Row {
     costs: Vec<[f64; CORNERS]>,
     sums: Vec<[f64; CORNERS]>,
     /// The least of the sums.
-    least: [f64; CORNERS],
+    min: [f64; CORNERS],
 }
 
 /// A point with its node, and how far the point is from it in radius and height (m).
@@ -130,7 +130,7 @@ impl Pass<'_> {
         let mut end = INFINITE;
         for point in span.clone() {
             let row = self.row(point, class, rows.last());
-            end = row.least;
+            end = row.min;
             if end[0] == f64::INFINITY {
                 span.clone().for_each(|point| self.active.clear_all(point, class.index()));
                 return None;
@@ -147,7 +147,7 @@ impl Pass<'_> {
             self.neighbours.compute(&before.sums, -high, -low);
         }
         let sums = vec![INFINITE; self.active.count()];
-        let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums, least: INFINITE };
+        let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums, min: INFINITE };
         let answer = self.answer(point);
         let cells: Vec<usize> = self.active.cells(point, class.index()).collect();
         for cell in cells {
@@ -161,7 +161,7 @@ impl Pass<'_> {
             row.sums[cell] = sum;
             row.cells.push(cell);
             row.costs.push(cost);
-            min_into(&mut row.least, &sum);
+            min_into(&mut row.min, &sum);
         }
         row
     }
@@ -181,7 +181,7 @@ impl Pass<'_> {
         match self.model.table.node(&self.model.arm, self.active.level, *at, cell, class) {
             Node::Empty => None,
             Node::Unknown => Some([0.0; CORNERS]),
-            Node::Known(known) => Some(point.least(known, *off, 0.5 * self.width, self.region)),
+            Node::Known(known) => Some(point.min_cost(known, *off, 0.5 * self.width, self.region)),
         }
     }
 

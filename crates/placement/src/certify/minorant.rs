@@ -97,7 +97,7 @@ pub(super) struct ModelledRegion {
     values: [[f64; 4]; FUNCTIONS],
     remainder: [f64; 3],
     /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
-    most: [f64; 2],
+    max_size: [f64; 2],
     moved: [f64; 2],
     half: [f64; 3],
     r: f64,
@@ -117,7 +117,7 @@ impl ModelledRegion {
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
-        Self { values, remainder, most: [d.0, v.0], moved: [d.1, v.1], half, r, off }
+        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], half, r, off }
     }
 }
 
@@ -154,7 +154,7 @@ pub(super) fn minorant(
             - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
         let remainder = s.remainder[0] * f2.abs() + s.remainder[1] * length + s.remainder[2] * f3.abs()
             + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
-            + h_chi * h_chi * (2.0 * length * s.most[0] + 0.5 * f3.abs() * s.most[1])
+            + h_chi * h_chi * (2.0 * length * s.max_size[0] + 0.5 * f3.abs() * s.max_size[1])
             + joint1
             // The heading is free within its cell.
             + of(3).abs() * s.half[2];

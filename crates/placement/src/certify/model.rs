@@ -65,8 +65,8 @@ impl Model {
         let placed = self.points[point].over(region)?;
         // A point is never nearer to axis 1 than the workpiece origin less its distance from there.
         let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
-        let least = nearest.max(placed.r - placed.reach[0]);
-        if least < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
+        let min_r = nearest.max(placed.r - placed.reach[0]);
+        if min_r < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
     }
 
     /// Every point over a box, where something is known of it.

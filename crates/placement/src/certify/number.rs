@@ -40,8 +40,8 @@ pub(super) trait Number:
     fn wrist(self, bend: &Bend) -> Self;
     /// Where it is sure to be below zero.
     fn is_negative(self) -> Mask;
-    /// The same, where it is sure to be above `least`; elsewhere the lane leaves `sure`, and anything may come out.
-    fn assume_above(self, least: f64, sure: &mut Mask) -> Self;
+    /// The same, where it is sure to be above `floor`; elsewhere the lane leaves `sure`, and anything may come out.
+    fn assume_above(self, floor: f64, sure: &mut Mask) -> Self;
 }
 
 /// A value and its gradient.
@@ -175,8 +175,8 @@ impl Number for Slope {
         self.value.less(ZERO)
     }
     #[inline(always)]
-    fn assume_above(self, least: f64, sure: &mut Mask) -> Self {
-        *sure = *sure & Lanes::splat(least).less(self.value);
+    fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {
+        *sure = *sure & Lanes::splat(floor).less(self.value);
         self
     }
 }

@@ -69,8 +69,8 @@ impl Point {
         let r = libm::hypot(x, y);
         // Bounds over the box: x and y move with the radius, and along the circle about the workpiece origin.
         let moved = a + self.distance * g;
-        let least = r - moved;
-        if least <= 1e-3 {
+        let min_r = r - moved;
+        if min_r <= 1e-3 {
             return None;
         }
         let (cos_azimuth, sin_azimuth) = (x / r, y / r);
@@ -78,18 +78,18 @@ impl Point {
         let slope_r = [cos_azimuth, -radius * sin_azimuth];
         let slope_chi = [sin_azimuth / r, radius * cos_azimuth / r];
         // Second derivatives, each bounded over the box by its middle value and how far that can move.
-        let swing = (moved / least).min(2.0);
-        let sine_most = (sin_azimuth.abs() + swing).min(1.0);
-        let cosine_most = (cos_azimuth.abs() + swing).min(1.0);
-        let turn_most =
-            turn_of_azimuth.abs() + (a / least + (radius + a) * (moved / (least * least) + swing / least)).max(0.0);
+        let swing = (moved / min_r).min(2.0);
+        let max_sine = (sin_azimuth.abs() + swing).min(1.0);
+        let max_cosine = (cos_azimuth.abs() + swing).min(1.0);
+        let max_turn =
+            turn_of_azimuth.abs() + (a / min_r + (radius + a) * (moved / (min_r * min_r) + swing / min_r)).max(0.0);
         let far = radius + a;
-        let r_rr = sine_most * sine_most / least;
-        let r_rt = sine_most * turn_most;
-        let r_tt = far * cosine_most * turn_most;
-        let c_rr = 2.0 * sine_most * cosine_most / (least * least);
-        let c_rt = cosine_most * turn_most / least + far * sine_most * sine_most / (least * least);
-        let c_tt = far * (sine_most * turn_most / least + far * sine_most * cosine_most / (least * least));
+        let r_rr = max_sine * max_sine / min_r;
+        let r_rt = max_sine * max_turn;
+        let r_tt = far * max_cosine * max_turn;
+        let c_rr = 2.0 * max_sine * max_cosine / (min_r * min_r);
+        let c_rt = max_cosine * max_turn / min_r + far * max_sine * max_sine / (min_r * min_r);
+        let c_tt = far * (max_sine * max_turn / min_r + far * max_sine * max_cosine / (min_r * min_r));
         let remainder = |rr: f64, rt: f64, tt: f64| 0.5 * rr * a * a + rt * a * g + 0.5 * tt * g * g;
         let (remainder_r, remainder_chi) = (remainder(r_rr, r_rt, r_tt), remainder(c_rr, c_rt, c_tt));
         let linear = |slope: [f64; 2]| slope[0].abs() * a + slope[1].abs() * g;

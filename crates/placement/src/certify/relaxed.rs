@@ -22,7 +22,7 @@ pub fn relaxed_value(problem: &Problem, placement: &Placement) -> Option<f64> {
     let points = problem.task.points().len();
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
-        .map(|point| PostureClass::ALL.map(|class| least(&|beta| score(problem, placement, point, class, beta))))
+        .map(|point| PostureClass::ALL.map(|class| minimum(&|beta| score(problem, placement, point, class, beta))))
         .collect();
     let mut sum = 0.0;
     for span in problem.task.segments() {
@@ -44,7 +44,7 @@ pub(super) fn score(problem: &Problem, placement: &Placement, point: usize, clas
 }
 
 /// The least of a function over a turn.
-fn least(of: &dyn Fn(f64) -> f64) -> f64 {
+fn minimum(of: &dyn Fn(f64) -> f64) -> f64 {
     let step = TAU / BETAS as f64;
     let values: Vec<f64> = (0..BETAS).map(|k| of(step * k as f64)).collect();
     let mut best = f64::INFINITY;

@@ -84,32 +84,32 @@ impl<'a> BoxBounds<'a> {
     /// Bounds cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
     fn bound_cells(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> CellBounds {
         let Model { table, arm, .. } = self.model;
-        let mut bounds = CellBounds { best: None, most: NOTHING };
+        let mut bounds = CellBounds { best: None, max: NOTHING };
         let half_cell = 0.5 * TAU / table.headings(self.level) as f64;
         let placed = self.points[point].as_ref();
         let found = placed.and_then(|p| Some((p, table.nearest(self.level, p.placed.r, p.placed.z)?)));
         let Some((pointwise, (at, off))) = found else {
-            bounds.most = ANYTHING;
+            bounds.max = ANYTHING;
             return bounds;
         };
-        let mut least = f64::INFINITY;
+        let mut min_size = f64::INFINITY;
         for cell in cells {
             match table.node(arm, self.level, at, cell, class) {
                 Node::Empty => {}
-                Node::Unknown => bounds.most = ANYTHING,
+                Node::Unknown => bounds.max = ANYTHING,
                 Node::Known(known) => {
-                    let of = |choice: bool| pointwise.most(known, off, half_cell, self.region, choice);
+                    let of = |choice: bool| pointwise.max_cost(known, off, half_cell, self.region, choice);
                     if known.sure {
                         let costs = of(true);
                         let size: f64 = costs.iter().sum();
-                        if size < least {
-                            least = size;
+                        if size < min_size {
+                            min_size = size;
                             bounds.best = Some((cell, costs));
                         }
                     }
                     if bounds.best.is_none() {
                         let costs = of(false);
-                        bounds.most = std::array::from_fn(|k| bounds.most[k].max(costs[k]));
+                        bounds.max = std::array::from_fn(|k| bounds.max[k].max(costs[k]));
                     }
                 }
             }
@@ -186,13 +186,13 @@ impl<'a> BoxBounds<'a> {
                     seen.cells[point * 4 + way.class.index()] = cell as u16;
                     way.sum = plus(&way.sum, &costs);
                 }
-                None if bounds.most == NOTHING => {
+                None if bounds.max == NOTHING => {
                     seen.out[segment][way.class.index()] = true;
                     return false;
                 }
                 None => {
                     way.sure = false;
-                    way.sum = plus(&way.sum, &bounds.most);
+                    way.sum = plus(&way.sum, &bounds.max);
                 }
             }
         }
@@ -235,7 +235,7 @@ struct CellBounds {
     /// The best surely allowed cell with what it costs.
     best: Option<(usize, [f64; CORNERS])>,
     /// Where there is none: the greatest costs of all cells that may be allowed.
-    most: [f64; CORNERS],
+    max: [f64; CORNERS],
 }
 
 /// What a segment costs at most, by its ways: the best sure one, or else the greatest.
@@ -244,8 +244,8 @@ fn total<'a>(ways: impl Iterator<Item = &'a ClassBound> + Clone) -> [f64; CORNER
     match ways.clone().filter(|way| way.sure).min_by(|a, b| size(a).total_cmp(&size(b))) {
         Some(way) => way.sum,
         None => {
-            let most = ways.fold(NOTHING, |most, way| std::array::from_fn(|k| f64::max(most[k], way.sum[k])));
-            if most == NOTHING { ANYTHING } else { most }
+            let max = ways.fold(NOTHING, |max, way| std::array::from_fn(|k| f64::max(max[k], way.sum[k])));
+            if max == NOTHING { ANYTHING } else { max }
         }
     }
 }

@@ -6,7 +6,7 @@
 use crate::criterion::{Over, ScoredDirections, worst_force_error};
 use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::{Frames, Posture, Robot, Uncertainty, Unreachable, conditioning::inverse_condition};
+use stead_model::robot::{Frames, Posture, Robot, Unreachable, conditioning::inverse_condition};
 use stead_model::stiffness::displacement;
 use stead_numerics::scalar::Scalar;
 
@@ -76,17 +76,14 @@ pub fn state<T: Scalar>(
     posture: Posture,
 ) -> Result<State<T>, Unreachable> {
     let joints = problem.robot.inverse(&problem.base_from_flange(point, placement, beta), posture)?;
-    let frames = Frames::new(&problem.robot, &joints);
-    let placed = problem.placed(point, placement);
-    let PlacedPoint { tip, axes, force, moment } = &placed;
-    let compliances = problem.robot.compliances_at(&joints);
-    let deflection = displacement(&frames, tip, &compliances, force, moment).linear;
-    let own = set_score(problem, &problem.robot, point, &frames, &placed, &joints);
+    let arm = PlacedArm::new(problem, point, placement, &joints);
+    let PlacedPoint { tip, axes, .. } = &arm.placed;
+    let deflected = arm.under(&problem.robot);
+    let (deflection, own) = (deflected.deflection, deflected.score());
     let score = match &problem.criterion.stiffness {
         None => own.score(),
         Some(sets) => {
-            let scores =
-                sets.robots.iter().map(|set| set_score(problem, set, point, &frames, &placed, &joints).score());
+            let scores = sets.robots.iter().map(|set| arm.under(set).score().score());
             match sets.over {
                 Over::Mean => scores.fold(T::zero(), |sum, score| sum + score).scale(1.0 / sets.robots.len() as f64),
                 Over::Worst => {
@@ -95,9 +92,10 @@ pub fn state<T: Scalar>(
             }
         }
     };
+    let inverse_condition = inverse_condition(&arm.frames, tip, problem.constraints.characteristic_length);
     Ok(State {
         joints,
-        inverse_condition: inverse_condition(&frames, tip, problem.constraints.characteristic_length),
+        inverse_condition,
         base_distance: problem.base_distance(tip),
         deflection,
         feed_part: deflection.dot(&axes.column(0)),
@@ -109,46 +107,102 @@ pub fn state<T: Scalar>(
     })
 }
 
-/// What is scored under the compliances of a robot, at joint angles that [`state`] found for path point `point`.
-fn set_score<T: Scalar>(
-    problem: &Problem,
-    robot: &Robot,
+/// The arm at a path point, the workpiece placed: what does not depend on the compliances.
+struct PlacedArm<'a, T: Scalar> {
+    problem: &'a Problem,
     point: usize,
-    frames: &Frames<T>,
-    placed: &PlacedPoint<T>,
-    joints: &[T; 6],
-) -> SetScore<T> {
-    let PlacedPoint { tip, axes, force, moment } = placed;
-    let compliances = robot.compliances_at(joints);
-    let deflection = displacement(frames, tip, &compliances, force, moment).linear;
-    let moved_by = |force: &Vector3<T>| displacement(frames, tip, &compliances, force, &Vector3::zeros()).linear;
-    let directions = problem.scored_directions(point, axes);
-    let scored = Scored::new(&directions, &deflection);
-    let size = problem.criterion.force_uncertainty * problem.task.wrenches()[point].force.norm();
-    let uncertainty = match directions.single() {
-        _ if problem.criterion.force_uncertainty == 0.0 => T::zero(),
-        Some(direction) => {
+    joints: &'a [T; 6],
+    frames: Frames<T>,
+    placed: PlacedPoint<T>,
+    directions: ScoredDirections<T>,
+}
+
+impl<'a, T: Scalar> PlacedArm<'a, T> {
+    /// At joint angles that [`state`] found.
+    fn new(problem: &'a Problem, point: usize, placement: &Placement<T>, joints: &'a [T; 6]) -> Self {
+        let frames = Frames::new(&problem.robot, joints);
+        let placed = problem.placed(point, placement);
+        let directions = problem.scored_directions(point, &placed.axes);
+        Self { problem, point, joints, frames, placed, directions }
+    }
+
+    /// Under its load, with the compliances of a robot.
+    fn under(&self, robot: &'a Robot) -> DeflectedArm<'_, T> {
+        let PlacedPoint { tip, force, moment, .. } = &self.placed;
+        let compliances = robot.compliances_at(self.joints);
+        let deflection = displacement(&self.frames, tip, &compliances, force, moment).linear;
+        DeflectedArm { arm: self, robot, compliances, deflection }
+    }
+
+    /// What each joint adds to the part of the deflection along a direction per compliance: `(J_j . n) (J_j . w)`, in m per
+    /// rad/(N m).
+    fn parts_per_compliance(&self, direction: &Vector3<T>) -> [T; 6] {
+        let PlacedPoint { tip, force, moment, .. } = &self.placed;
+        std::array::from_fn(|j| {
+            let (velocity, axis) = self.frames.twist(j, tip);
+            velocity.dot(direction) * (velocity.dot(force) + axis.dot(moment))
+        })
+    }
+}
+
+/// The arm at a path point under its load, with one set of compliances.
+struct DeflectedArm<'a, T: Scalar> {
+    arm: &'a PlacedArm<'a, T>,
+    robot: &'a Robot,
+    /// rad/(N m)
+    compliances: [T; 6],
+    /// Displacement of the tool centre point. m
+    deflection: Vector3<T>,
+}
+
+impl<T: Scalar> DeflectedArm<'_, T> {
+    /// What is scored.
+    fn score(&self) -> SetScore<T> {
+        let scored = Scored::new(&self.arm.directions, &self.deflection);
+        let deviation =
+            self.robot.uncertainty().map(|known| known.standard_deviation(&self.by_parameters(&scored.direction)));
+        let confidence = self.arm.problem.criterion.confidence;
+        let margin = match deviation {
+            Some(deviation) if confidence > 0.0 => deviation.scale(confidence),
+            _ => T::zero(),
+        };
+        SetScore { scored: scored.part, uncertainty: self.force_margin(scored.part), deviation, margin }
+    }
+
+    /// What force errors can add to the scored part. m
+    fn force_margin(&self, scored_part: T) -> T {
+        let PlacedArm { problem, point, frames, placed, directions, .. } = self.arm;
+        if problem.criterion.force_uncertainty == 0.0 {
+            return T::zero();
+        }
+        let size = problem.criterion.force_uncertainty * problem.task.wrenches()[*point].force.norm();
+        let moved_by =
+            |force: &Vector3<T>| displacement(frames, &placed.tip, &self.compliances, force, &Vector3::zeros()).linear;
+        if let Some(direction) = directions.single() {
             let response = moved_by(direction);
-            response.dot(&response).sqrt().scale(size)
+            return response.dot(&response).sqrt().scale(size);
         }
-        None => {
-            // The worst error is held while derivatives are taken, since at a maximum it does not matter how it moves.
-            let gain =
-                directions.rows() * Matrix3::from_columns(&[0, 1, 2].map(|k| moved_by(&Vector3::ith(k, T::one()))));
-            let error = worst_force_error(&gain.map(T::value), &directions.parts(&deflection).map(T::value), size);
-            let parts = directions.parts(&deflection) + gain * error.map(T::constant);
-            parts.dot(&parts).sqrt() - scored.part
-        }
-    };
-    let deviation = robot.uncertainty().map(|known| {
-        let parts = parts_per_compliance(frames, placed, &scored.direction);
-        known.standard_deviation(&by_parameters(robot, joints, &parts))
-    });
-    let margin = match deviation {
-        Some(deviation) if problem.criterion.confidence > 0.0 => deviation.scale(problem.criterion.confidence),
-        _ => T::zero(),
-    };
-    SetScore { scored: scored.part, uncertainty, deviation, margin }
+        // The worst error is held while derivatives are taken, since at a maximum it does not matter how it moves.
+        let gain = directions.rows() * Matrix3::from_columns(&[0, 1, 2].map(|k| moved_by(&Vector3::ith(k, T::one()))));
+        let parts = directions.parts(&self.deflection);
+        let error = worst_force_error(&gain.map(T::value), &parts.map(T::value), size);
+        let parts = parts + gain * error.map(T::constant);
+        parts.dot(&parts).sqrt() - scored_part
+    }
+
+    /// Derivatives of the scored part by the uncertain parameters of the robot.
+    fn scored_slopes(&self) -> Vec<T> {
+        self.by_parameters(&Scored::new(&self.arm.directions, &self.deflection).direction)
+    }
+
+    /// Derivatives of the part along a direction by the uncertain parameters of the robot: the chain rule from what each joint
+    /// adds per compliance to the parameters of the joints' laws.
+    fn by_parameters(&self, direction: &Vector3<T>) -> Vec<T> {
+        let Some(known) = self.robot.uncertainty() else { return Vec::new() };
+        let parts = self.arm.parts_per_compliance(direction);
+        let slopes = self.robot.compliance_gradient_at(self.arm.joints);
+        known.parameters().iter().zip(slopes).map(|(parameter, slope)| parts[parameter.joint()] * slope).collect()
+    }
 }
 
 /// What is scored under every set of compliances ([`Problem::scored_robots`]), at joint angles that [`state`] found for path point
@@ -160,11 +214,10 @@ pub fn set_scores<T: Scalar>(
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<(SetScore<T>, Vec<T>)> {
-    let frames = Frames::new(&problem.robot, joints);
-    let placed = problem.placed(point, placement);
-    let of = |robot: &Robot| {
-        let slopes = scored_slopes(problem, robot, point, &frames, &placed, joints);
-        (set_score(problem, robot, point, &frames, &placed, joints), slopes)
+    let arm = PlacedArm::new(problem, point, placement, joints);
+    let of = |robot| {
+        let deflected = arm.under(robot);
+        (deflected.score(), deflected.scored_slopes())
     };
     problem.scored_robots().iter().map(of).collect()
 }
@@ -177,15 +230,26 @@ pub fn scored_parts<T: Scalar>(
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<Vec<T>> {
-    let frames = Frames::new(&problem.robot, joints);
-    let placed = problem.placed(point, placement);
-    let directions = problem.scored_directions(point, &placed.axes);
-    let of = |robot: &Robot| {
-        let compliances = robot.compliances_at(joints);
-        let moved = displacement(&frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
-        directions.vectors().iter().map(|direction| direction.dot(&moved)).collect()
+    let arm = PlacedArm::new(problem, point, placement, joints);
+    let of = |robot| {
+        let moved = arm.under(robot).deflection;
+        arm.directions.vectors().iter().map(|direction| direction.dot(&moved)).collect()
     };
     problem.scored_robots().iter().map(of).collect()
+}
+
+/// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
+/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `placement`. m per SI unit of each
+/// parameter; empty where no uncertainty is known.
+///
+/// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
+pub fn scored_part_by_parameters<T: Scalar>(
+    problem: &Problem,
+    point: usize,
+    placement: &Placement<T>,
+    joints: &[T; 6],
+) -> Vec<T> {
+    PlacedArm::new(problem, point, placement, joints).under(&problem.robot).scored_slopes()
 }
 
 /// The scored part of a deflection, and the direction along which it grows fastest, as long as it grows.
@@ -206,60 +270,6 @@ impl<T: Scalar> Scored<T> {
             directions.vectors().iter().zip(&parts).fold(Vector3::zeros(), |sum, (d, part)| sum + d * *part);
         Self { part, direction: direction * inverse }
     }
-}
-
-/// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]), in
-/// their order, at joint angles that [`state`] found for path point `point` and a workpiece at `placement`. m per SI unit of each
-/// parameter; empty where no uncertainty is known.
-///
-/// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
-pub fn scored_part_by_parameters<T: Scalar>(
-    problem: &Problem,
-    point: usize,
-    placement: &Placement<T>,
-    joints: &[T; 6],
-) -> Vec<T> {
-    let frames = Frames::new(&problem.robot, joints);
-    scored_slopes(problem, &problem.robot, point, &frames, &problem.placed(point, placement), joints)
-}
-
-fn scored_slopes<T: Scalar>(
-    problem: &Problem,
-    robot: &Robot,
-    point: usize,
-    frames: &Frames<T>,
-    placed: &PlacedPoint<T>,
-    joints: &[T; 6],
-) -> Vec<T> {
-    if robot.uncertainty().is_none() {
-        return Vec::new();
-    }
-    let directions = problem.scored_directions(point, &placed.axes);
-    let direction = match directions.single() {
-        Some(direction) => *direction,
-        None => {
-            let compliances = robot.compliances_at(joints);
-            let moved = displacement(frames, &placed.tip, &compliances, &placed.force, &placed.moment).linear;
-            Scored::new(&directions, &moved).direction
-        }
-    };
-    by_parameters(robot, joints, &parts_per_compliance(frames, placed, &direction))
-}
-
-/// What each joint adds to the part of the deflection along a direction per compliance: `(J_j . n) (J_j . w)`, in m per
-/// rad/(N m).
-fn parts_per_compliance<T: Scalar>(frames: &Frames<T>, placed: &PlacedPoint<T>, direction: &Vector3<T>) -> [T; 6] {
-    std::array::from_fn(|j| {
-        let (velocity, axis) = frames.twist(j, &placed.tip);
-        velocity.dot(direction) * (velocity.dot(&placed.force) + axis.dot(&placed.moment))
-    })
-}
-
-/// The chain rule from what each joint adds per compliance to the parameters of the joints' laws.
-fn by_parameters<T: Scalar>(robot: &Robot, joints: &[T; 6], parts: &[T; 6]) -> Vec<T> {
-    let parameters = robot.uncertainty().map(Uncertainty::parameters).unwrap_or_default();
-    let slopes = robot.compliance_gradient_at(joints);
-    parameters.iter().zip(slopes).map(|(parameter, slope)| parts[parameter.joint()] * slope).collect()
 }
 
 #[cfg(test)]

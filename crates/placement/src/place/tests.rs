@@ -14,6 +14,7 @@ use crate::redundancy::Planner;
 use crate::search;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use stead_model::robot::angles::yaw_from_q4;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
@@ -121,25 +122,26 @@ fn mean_with(problem: &Problem, placement: &Placement, plan: &Plan, compliances:
     plan.points.iter().map(|p| normal_part(p).abs()).sum::<f64>() / plan.points.len() as f64
 }
 
+fn published_optimum() -> Placement {
+    [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
+}
+
+fn scored_at_published_optimum(problem: &Problem) -> Score {
+    score(problem, &published_optimum(), &TransferSettings::default(), &Monitor::silent()).unwrap()
+}
+
 #[test]
 fn the_mean_errs_as_all_its_points_together() {
     let mut problem = with_uncertainty(five_segments(), 0.1);
     problem.redundancy.beta_count = 40;
-    let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(
-        &problem,
-        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
-        &TransferSettings::default(),
-        &Monitor::silent(),
-    )
-    .unwrap();
+    let scored = scored_at_published_optimum(&problem);
     let nominal = problem.robot.constant_compliances().unwrap();
     for plan in [&scored.best, &scored.worst] {
         // The mean moved along each independent error; small steps, so that no normal part changes its sign.
         let h = 1e-4;
         let changes = problem.robot.uncertainty().unwrap().directions().iter().map(|direction| {
             let at = |h: f64| std::array::from_fn(|j| nominal[j] + h * direction[j]);
-            let placement = Placement::from([2.2e-3, -1.6435, -0.5564, yaw]);
+            let placement = published_optimum();
             (mean_with(&problem, &placement, plan, at(h)) - mean_with(&problem, &placement, plan, at(-h))) / (2.0 * h)
         });
         let expected = libm::sqrt(changes.map(|change| change * change).sum());
@@ -156,14 +158,7 @@ fn the_mean_errs_as_all_its_points_together() {
 #[test]
 fn score_agrees_with_the_prototype() {
     let problem = five_segments();
-    let yaw = stead_model::robot::angles::yaw_from_q4(0.9258);
-    let scored = score(
-        &problem,
-        &Placement { x: 2.2e-3, y: -1.6435, z: -0.5564, yaw },
-        &TransferSettings::default(),
-        &Monitor::silent(),
-    )
-    .unwrap();
+    let scored = scored_at_published_optimum(&problem);
     assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
     assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
 }

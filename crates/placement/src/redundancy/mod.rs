@@ -211,7 +211,7 @@ impl<'a> Planner<'a> {
     /// The best or worst plan with beta off the grid, one entry per segment.
     ///
     /// Beta is refined in every posture class that comes within a fifth of the best one on the grid, so that a coarse grid
-    /// does not select_joint_paths the posture.
+    /// does not decide the posture.
     ///
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
@@ -223,7 +223,21 @@ impl<'a> Planner<'a> {
         spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        self.unchanging(scheme, sense, |scheme| self.refined(placement, sense, scheme, spacing, workspace))
+        let rules = &self.problem.postures;
+        let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
+        let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
+        self.unchanging(scheme, sense, |scheme| {
+            let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+            let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
+                let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), spacing, classes);
+                Some(driven).filter(|driven| !driven.is_empty())
+            };
+            let refined = match self.is_parallel() {
+                true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
+                false => choices.into_iter().enumerate().filter_map(refined).collect(),
+            };
+            Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
+        })
     }
 
     /// What `plan` finds for a scheme, or where the posture may not change, the best of what it finds for each posture: of those
@@ -255,46 +269,37 @@ impl<'a> Planner<'a> {
         joint_turns::best_of(self.problem, sense, found).ok_or_else(|| failure.unwrap_or_else(nothing))
     }
 
+    /// The plans of a segment's posture classes with beta off the grid, the best first, or the best alone where that is taken
+    /// anyway; each in the flips and turns in which it is driven best, or in the posture given.
     fn refined(
         &self,
         placement: &Placement,
         sense: Sense,
-        scheme: Option<&[Posture]>,
+        only: Option<Posture>,
         spacing: off_grid::Spacing,
-        workspace: &mut Workspace,
-    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        classes: Vec<joint_turns::SegmentChoice>,
+    ) -> Vec<joint_turns::SegmentChoice> {
         let (rules, sign) = (&self.problem.postures, sense.sign());
-        let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
-        let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
-        let choices = self.choices(placement, sense, scheme, workspace, margin)?;
-        let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
-            let only = scheme.map(|s| s[segment]);
-            let plans = classes.into_iter().filter_map(|choice| {
-                let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
-                off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
-                Some(plan)
-            });
-            let mut plans: Vec<SegmentPlan> = plans.collect();
-            plans.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
-            plans.truncate(if rules.takes_the_best() { 1 } else { plans.len() });
-            // The refined betas may be driven in other flips and turns just as well.
-            let driven = plans.into_iter().map(|plan| {
-                let postures = match only {
-                    Some(posture) => vec![posture],
-                    None => self.equivalent_postures(plan.posture),
-                };
-                let span = plan.points.clone();
-                let again =
-                    joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
-                again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan))
-            });
-            Some(driven.collect::<Vec<_>>()).filter(|driven| !driven.is_empty())
-        };
-        let refined = match self.is_parallel() {
-            true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
-            false => choices.into_iter().enumerate().filter_map(refined).collect(),
-        };
-        Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
+        let refined = classes.into_iter().filter_map(|choice| {
+            let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
+            off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
+            Some(plan)
+        });
+        let mut plans: Vec<SegmentPlan> = refined.collect();
+        plans.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
+        plans.truncate(if rules.takes_the_best() { 1 } else { plans.len() });
+        // The refined betas may be driven in other flips and turns just as well.
+        let driven = plans.into_iter().map(|plan| {
+            let postures = match only {
+                Some(posture) => vec![posture],
+                None => self.equivalent_postures(plan.posture),
+            };
+            let span = plan.points.clone();
+            let again =
+                joint_turns::unwind(self.problem, &span, placement, &plan.betas, &postures, plan.cost, &self.steps);
+            again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan))
+        });
+        driven.collect()
     }
 
     /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the

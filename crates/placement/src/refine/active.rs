@@ -8,63 +8,10 @@ use super::linearise::{Curvature, UNITS, linearise};
 use super::programme::pose_bounds;
 use super::subproblem::{Answer, Question, solve};
 use super::{LENGTH_UNIT, Solution, planned};
+use crate::limit::{ActiveBound, Limit, Side};
 use crate::problem::Problem;
 use crate::redundancy::{Planner, off_grid};
-use serde::Serialize;
 use stead_model::robot::Posture;
-
-/// A limit that can hold an optimum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Limit {
-    /// A wall of the cell in x.
-    CellX,
-    /// A wall of the cell in y.
-    CellY,
-    /// A wall of the cell in z.
-    CellZ,
-    /// A bound of the cell on the yaw.
-    CellYaw,
-    /// A limit of a joint, from 1.
-    Joint(u8),
-    /// The step of a joint (from 1) between path points, by its speed.
-    JointStep(u8),
-    /// The bound on 1/kappa_F.
-    Conditioning,
-    /// The rate of beta along the path.
-    BetaRate,
-    /// The turn of the spindle in space along the path.
-    SpindleTurn,
-    /// The largest score of a point.
-    MaxDeflection,
-    /// The smallest distance of the path from axis 1.
-    BaseDistance,
-}
-
-impl Limit {
-    /// The walls of the cell: x, y, z, yaw.
-    pub const ALL_WALLS: [Self; 4] = [Self::CellX, Self::CellY, Self::CellZ, Self::CellYaw];
-}
-
-/// One side of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub struct Side {
-    /// The limit.
-    pub limit: Limit,
-    /// Whether it is the upper one.
-    pub is_upper: bool,
-}
-
-/// A bound that holds an optimum.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ActiveBound {
-    /// Which.
-    pub side: Side,
-    /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
-    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),
-    /// m per unit of 1/kappa_F.
-    pub gain: f64,
-}
 
 /// Half width of the neighbourhood in which bounds are seen, in scaled variables.
 const NEIGHBOURHOOD: f64 = 1e-3;

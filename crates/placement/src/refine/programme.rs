@@ -2,7 +2,6 @@
 
 use super::LENGTH_UNIT;
 use super::rows::Rows;
-use super::subproblem::Unsolved;
 use crate::problem::{Interval, Placement, Problem};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -11,6 +10,11 @@ use clarabel::solver::{
 };
 use nalgebra::{Matrix4, Vector4};
 use stead_model::robot::angles::wrap;
+
+/// clarabel refused a programme or found no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the subproblem could not be solved")]
+pub struct Unsolved;
 
 /// Minimises `x^T quadratic x / 2 + linear . x` subject to `bound - matrix x` in the cones: quiet, on one thread.
 pub(super) fn programme(

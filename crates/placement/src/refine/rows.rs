@@ -1,7 +1,7 @@
 //! Matrices of a convex programme, as they are being built.
 
-use super::active::{Limit, Side};
 use super::linearise::Local;
+use crate::limit::{Limit, Side};
 use clarabel::algebra::CscMatrix;
 
 /// Coefficients of inequalities `row . x <= bound`.

@@ -9,14 +9,14 @@
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
 //! likewise for the norm of the parts where several directions are scored.
 
-use super::super::criterion::Aggregate;
-use super::super::problem::Problem;
-use super::super::redundancy::SegmentPlan;
 use super::Solution;
-use super::active::{Limit, Side};
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
-use super::programme::{pose_bounds, programme};
+use super::programme::{Unsolved, pose_bounds, programme};
 use super::rows::{Rows, Triplets, curvature};
+use crate::criterion::Aggregate;
+use crate::limit::{Limit, Side};
+use crate::problem::Problem;
+use crate::redundancy::SegmentPlan;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
 use std::ops::Range;
@@ -48,11 +48,6 @@ pub struct Answer {
     /// point it holds at. m per scaled unit, or per unit of the constraint
     pub multipliers: Vec<(Side, f64)>,
 }
-
-/// clarabel refused a subproblem or found no solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the subproblem could not be solved")]
-pub struct Unsolved;
 
 /// Solves the subproblem at a solution with its linearisation.
 ///

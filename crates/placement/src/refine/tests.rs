@@ -11,6 +11,11 @@ fn published_optimum() -> Placement {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
 }
 
+/// Refines from a start with the planner alone, the posture scheme being free.
+fn refined(planner: &Planner<'_>, start: &Placement, sense: Sense) -> Option<(Solution, Refinement)> {
+    refine(&Evaluator::new(planner, None), start, sense, None, &Monitor::silent())
+}
+
 /// Every point of a solution is allowed, with joints and betas within their steps.
 fn assert_allowed(problem: &Problem, solution: &Solution) {
     assert!(problem.cell.contains(&solution.placement), "{:?}", solution.placement);
@@ -29,8 +34,7 @@ fn best_gets_better_and_stays_allowed() {
         [(five_segments(), published_optimum()), (five_segments_compensated(), [0.0, -1.7, -0.4, 0.7].into())]
     {
         let planner = Planner::finer(&problem);
-        let (solution, report) =
-            refine(&Evaluator::new(&planner, None), &start, Sense::Min, None, &Monitor::silent()).unwrap();
+        let (solution, report) = refined(&planner, &start, Sense::Min).unwrap();
         assert_allowed(&problem, &solution);
         assert!(report.end_mean < 0.6 * report.start_mean, "{report:?}");
         assert!(report.kkt_residual.unwrap() < 1e-3 * report.end_mean, "{report:?}");
@@ -60,8 +64,7 @@ fn margins_may_be_driven_to_their_kink() {
     let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
     problem.robot = problem.robot.with_uncertainty(known).unwrap();
     let planner = Planner::new(&problem);
-    let (solution, report) =
-        refine(&Evaluator::new(&planner, None), &published_optimum(), Sense::Min, None, &Monitor::silent()).unwrap();
+    let (solution, report) = refined(&planner, &published_optimum(), Sense::Min).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
     let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
@@ -78,14 +81,7 @@ fn margins_may_be_driven_to_their_kink() {
 fn worst_gets_worse_and_stays_allowed() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(
-        &Evaluator::new(&planner, None),
-        &Placement::from([0.2, -2.1, -0.3, -2.2]),
-        Sense::Max,
-        None,
-        &Monitor::silent(),
-    )
-    .unwrap();
+    let (solution, report) = refined(&planner, &Placement::from([0.2, -2.1, -0.3, -2.2]), Sense::Max).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean > 1.2 * report.start_mean, "{report:?}");
 }
@@ -94,16 +90,7 @@ fn worst_gets_worse_and_stays_allowed() {
 fn a_start_without_a_plan_is_refused() {
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    assert_eq!(
-        refine(
-            &Evaluator::new(&planner, None),
-            &Placement::from([0.0, -4.0, -0.4, 0.0]),
-            Sense::Min,
-            None,
-            &Monitor::silent()
-        ),
-        None
-    );
+    assert_eq!(refined(&planner, &Placement::from([0.0, -4.0, -0.4, 0.0]), Sense::Min), None);
 }
 
 #[test]
@@ -113,14 +100,7 @@ fn constraints_bind_and_hold() {
     problem.constraints.min_inverse_condition = 0.4;
     problem.constraints.max_deflection = Some(1.5e-3);
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(
-        &Evaluator::new(&planner, None),
-        &Placement::from([0.0, -1.7, -0.4, 0.7]),
-        Sense::Min,
-        None,
-        &Monitor::silent(),
-    )
-    .unwrap();
+    let (solution, report) = refined(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), Sense::Min).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
 }
@@ -132,14 +112,7 @@ fn joint_speeds_bind_and_hold() {
     joints.iter_mut().for_each(|j| j.max_speed = Some(0.25));
     problem.robot = stead_model::robot::Robot::new("slow", joints).unwrap();
     let planner = Planner::finer(&problem);
-    let (solution, report) = refine(
-        &Evaluator::new(&planner, None),
-        &Placement::from([0.0, -1.7, -0.4, 0.7]),
-        Sense::Min,
-        None,
-        &Monitor::silent(),
-    )
-    .unwrap();
+    let (solution, report) = refined(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), Sense::Min).unwrap();
     assert_allowed(&problem, &solution);
     assert!(report.end_mean <= report.start_mean);
     let used = solution.plans.iter().flat_map(|plan| {

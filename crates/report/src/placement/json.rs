@@ -10,12 +10,13 @@ use crate::units::Unit;
 use serde_json::{Map, Value, json};
 use stead_format::input::InputFile;
 use stead_placement::criterion::{Criterion, Direction};
+use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
-use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan, PlanPoint, Refinement, Transfer};
+use stead_placement::outcome::{
+    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, Plan, PlanPoint, Refinement, SetOutcome, Transfer,
+};
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
-use stead_placement::refine::active::ActiveBound;
-use stead_placement::sensitivity::{ForceSensitivity, SetOutcome};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 

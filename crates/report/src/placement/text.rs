@@ -5,9 +5,8 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::outcome::{CANCELLATION, Case, Outcome, Plan};
+use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, Plan};
 use stead_placement::problem::Problem;
-use stead_placement::sensitivity::ForceSensitivity;
 use stead_placement::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.

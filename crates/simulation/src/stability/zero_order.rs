@@ -57,8 +57,8 @@ impl ZeroOrder {
     pub fn new(plant: &Plant) -> Self {
         let poles = plant.poles();
         let swinging = poles.iter().filter(|pole| pole.im > 0.0);
-        let most = (BEYOND * poles.iter().fold(1.0_f64, |most, pole| most.max(pole.norm()))).min(FASTEST);
-        let mut frequencies: Vec<f64> = (1..=EVENLY).map(|k| most * k as f64 / EVENLY as f64).collect();
+        let max_frequency = (BEYOND * poles.iter().map(|pole| pole.norm()).fold(1.0, f64::max)).min(FASTEST);
+        let mut frequencies: Vec<f64> = (1..=EVENLY).map(|k| max_frequency * k as f64 / EVENLY as f64).collect();
         for pole in swinging {
             let step = (pole.re.abs() / IN_RESONANCE).max(1e-6 * pole.im);
             let count = (AROUND * IN_RESONANCE) as i32;
@@ -84,7 +84,7 @@ impl ZeroOrder {
         let teeth = cutter.teeth();
         let coefficients = mean(cutter, cut, exit(cutter, cut)?).map(Complex::from);
         let delays: Vec<f64> = teeth.iter().map(|tooth| tooth.pitch / cut.spindle_speed).collect();
-        let longest = delays.iter().fold(0.0_f64, |most, delay| most.max(*delay));
+        let longest = delays.iter().copied().fold(0.0, f64::max);
         let fastest = self.responses.last().map_or(0.0, |(omega, _)| *omega);
         if fastest * longest / STEP > MAX_STEPS {
             let rpm = cut.spindle_speed / TAU * 60.0;

@@ -1,6 +1,6 @@
 //! Random configurations under random loads, as many as a user could take.
 
-use super::super::model::Response;
+use super::super::response::Response;
 use super::super::sheet::LoadCase;
 use super::request::{LoadDirections, Request, Volume};
 use nalgebra::{Vector3, Vector6};

@@ -1,7 +1,7 @@
 //! The standard deviations that an identification from a set will report, predicted by its own normal equations.
 
 use super::super::law::{ArmParameter, Law, Quantity};
-use super::super::model::{Layout, Noise, Parameter, observations};
+use super::super::model::{Layout, Noise, ObservationModel, Parameter};
 use super::super::normal_equations::{NormalEquations, Unidentifiable};
 use super::super::setup::Setup;
 use super::super::sheet::{LoadCase, Sheet};
@@ -65,7 +65,8 @@ pub fn sheet_of(request: &Request, load_cases: &[LoadCase]) -> Sheet {
 pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) {
     let setup = Setup { tracker_from_base: Pose::identity(), points: request.points.clone(), residual_rms: 0.0 };
     let noise = Noise { position: request.noise, orientation: 1.0 };
-    let equations = observations(&request.robot, sheet, &setup, &request.load_point, &noise, request.hold);
+    let Request { robot, load_point, hold, .. } = request;
+    let equations = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: *hold }.linear();
     let layout = Layout::new(sheet, request.varying.map(|(joint, _)| joint), request.angle_tolerance);
     let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     (layout, normal)

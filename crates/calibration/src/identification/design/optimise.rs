@@ -1,7 +1,8 @@
 //! The choice of measurements as a whole.
 
 use super::super::law::{Law, LawError};
-use super::super::model::{Layout, Parameter, Response};
+use super::super::model::{Layout, Parameter};
+use super::super::response::Response;
 use super::super::setup::{SetupError, estimate};
 use super::super::sheet::{LoadCase, Sheet};
 use super::candidates::{Candidates, draw_candidates, test_cases};

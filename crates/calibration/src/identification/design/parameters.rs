@@ -6,8 +6,9 @@
 //! plan or not, follows from the law that `fit` uses.
 
 use super::super::law::Law;
-use super::super::model::{Noise, Response};
+use super::super::model::Noise;
 use super::super::normal_equations::FreeParameters;
+use super::super::response::Response;
 use super::super::sheet::LoadCase;
 use super::request::Request;
 use nalgebra::{SMatrix, SVector};

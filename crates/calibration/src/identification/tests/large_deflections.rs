@@ -1,6 +1,6 @@
 //! Deflections at which the load turns its own levers, and springs that the readings do not tell of.
 
-use super::model::{Layout, Noise, observations};
+use super::model::{Layout, Noise, ObservationModel};
 use super::normal_equations::NormalEquations;
 use super::setup::Setup;
 use super::*;
@@ -25,7 +25,7 @@ fn off_by_linear_equations(problem: &Problem) -> f64 {
     let (cell, noise) = (cell(3), Noise { position: 1.0, orientation: 1.0 });
     let setup = Setup { tracker_from_base: cell.tracker_from_base, points: cell.points, residual_rms: 0.0 };
     let Problem { robot, sheet, load_point, .. } = problem;
-    let equations = observations(robot, sheet, &setup, load_point, &noise, [false; 6]);
+    let equations = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: [false; 6] }.linear();
     let layout = Layout::new(sheet, Some(1), problem.angle_tolerance);
     let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     let held = vec![0.0; layout.angles.len()];

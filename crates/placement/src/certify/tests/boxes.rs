@@ -116,14 +116,14 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         (mutation.known)(&mut known);
         (mutation.placed)(&mut placed);
         let one = PointCost::new(&setting.model.points[point], placed, setting.model.first * mutation.joint1);
-        let least = one.least(&known, off, cell * mutation.cell, &region);
+        let min = one.min_cost(&known, off, cell * mutation.cell, &region);
         for _ in 0..8 {
             let s = shares(&mut random);
             // The affine function that has those values at the corners.
             let weight = |corner: usize| {
                 (0..3).map(|k| if corner >> k & 1 == 1 { 1.0 + s[k] } else { 1.0 - s[k] } / 2.0).product::<f64>()
             };
-            let below: f64 = (0..8).map(|corner| weight(corner) * least[corner]).sum();
+            let below: f64 = (0..8).map(|corner| weight(corner) * min[corner]).sum();
             let at = setting.place(inside(&region, s), point);
             let Some(truth) = setting.truth(point, at, heading + share(&mut random) * cell, class) else { continue };
             compared += 1;

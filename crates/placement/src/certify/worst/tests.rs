@@ -61,7 +61,7 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
         looked += 1;
         let half_cell = PI / model.table.headings(over.level) as f64;
         let heading = model.table.heading(over.level, cell);
-        let [chosen, all] = [true, false].map(|choice| pointwise.most(&known, off, half_cell, &region, choice));
+        let [chosen, all] = [true, false].map(|choice| pointwise.max_cost(&known, off, half_cell, &region, choice));
         for k in 0..CORNERS {
             let place = corner(&region, k);
             let p = placed(&problem, place);
@@ -70,10 +70,10 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
                 .map(|k| heading + half_cell * (f64::from(k) / 20.0 - 1.0) - chi)
                 .map(|beta| score(&problem, &p, point, class, beta))
                 .collect();
-            let (least, most) = costs.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(*c), b.max(*c)));
+            let (min, max) = costs.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), c| (a.min(*c), b.max(*c)));
             // A zero between two of the headings is not met: what neighbours differ by.
             let missed = costs.windows(2).map(|c| (c[0] - c[1]).abs()).filter(|d| d.is_finite()).fold(0.0, f64::max);
-            wrong += usize::from(least - missed > chosen[k] || most > all[k] * (1.0 + 1e-9));
+            wrong += usize::from(min - missed > chosen[k] || max > all[k] * (1.0 + 1e-9));
         }
     }
     (looked, wrong)

@@ -1,10 +1,11 @@
 //! Scores against their definition: parts of the deflection, and errors of the force drawn at random.
 
 use super::*;
+use crate::criterion::{StiffnessSets, Weights, worst_force_error, worst_gain};
 use crate::evaluate::reference::{State, state};
 use crate::problem::{Placement, Problem};
 use crate::testing::{slanted, with_uncertainty};
-use nalgebra::{Rotation3, Unit};
+use nalgebra::{Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
