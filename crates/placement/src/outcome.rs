@@ -5,7 +5,7 @@ use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
 use super::refine::active::ActiveBound;
 use super::sense::Sense;
-use super::sensitivity::{ForceSensitivity, SetOutcome};
+use super::sensitivity::{ForceSensitivity, SetBasin, SetOutcome};
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -291,6 +291,8 @@ pub struct Outcome {
     pub sensitivity: Option<ForceSensitivity>,
     /// What each stiffness set of the criterion makes of the best placement; empty where there are none.
     pub sets: Vec<SetOutcome>,
+    /// The refined basins of the best placement, where there are stiffness sets.
+    pub set_basins: Vec<SetBasin>,
     /// What should be known about the result though nothing is wrong, in sentences.
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.

@@ -86,6 +86,17 @@ impl SetOutcome {
     }
 }
 
+/// A refined basin of the best placement under several stiffness sets.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SetBasin {
+    /// Where it ended.
+    pub placement: Placement,
+    /// The figure that is minimised. m
+    pub objective: f64,
+    /// The largest regret over the sets ([`SetOutcome::regret`]).
+    pub regret: Option<f64>,
+}
+
 /// The same problem with one set of compliances alone.
 pub fn with_set_alone(problem: &Problem, set: &Robot) -> Problem {
     let criterion = Criterion { stiffness: None, ..problem.criterion.clone() };

@@ -15,6 +15,8 @@ use crate::search;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+mod choice;
+
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
 }

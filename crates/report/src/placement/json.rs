@@ -15,7 +15,7 @@ use stead_placement::outcome::{CANCELLATION, Case, LookupSummary, Outcome, Plan,
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
 use stead_placement::refine::active::ActiveBound;
-use stead_placement::sensitivity::{ForceSensitivity, SetOutcome};
+use stead_placement::sensitivity::{ForceSensitivity, SetBasin, SetOutcome};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
@@ -187,11 +187,19 @@ fn stiffness_sets(outcome: &Outcome, context: &Context) -> Value {
             "regret": optional(Unit::PLAIN, set.regret()),
         })
     };
+    let basin = |basin: &SetBasin| {
+        json!({
+            "placement": placement(&basin.placement),
+            "objective_mm": number(Unit::DEFLECTION_MM, basin.objective),
+            "regret": optional(Unit::PLAIN, basin.regret),
+        })
+    };
     let largest = |of: fn(&SetOutcome) -> Option<f64>| outcome.sets.iter().filter_map(of).reduce(f64::max);
     json!({
         "sets": outcome.sets.iter().zip(files).map(set).collect::<Vec<_>>(),
         "worst_mean_mm": optional(Unit::DEFLECTION_MM, largest(|set| Some(set.mean))),
         "largest_regret": optional(Unit::PLAIN, largest(SetOutcome::regret)),
+        "basins": outcome.set_basins.iter().map(basin).collect::<Vec<_>>(),
     })
 }
 
@@ -297,7 +305,7 @@ fn constraints(problem: &Problem) -> Value {
 /// The rules for postures, where there are some.
 fn postures(problem: &Problem) -> Option<Value> {
     let rules = &problem.postures;
-    (*rules != PostureRules::default()).then(|| {
+    (*rules != PostureRules::NONE).then(|| {
         json!({
             "allowed": rules.allowed().map(|posture| posture.number()).collect::<Vec<_>>(),
             "changes": if rules.may_change { "free" } else { "never" },
