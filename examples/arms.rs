@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         rows.push((name, plain, whole));
     }
     rows.sort_by(|a, b| a.2.total.mean.total_cmp(&b.2.total.mean));
-    println!("| arm | placed by the run: wall | total | placed by the total: wall | total |");
+    println!("| arm | placed by the run: wall | total | placed by the whole: wall | total |");
     println!("|---|---|---|---|---|");
     for (name, plain, whole) in rows {
         let [plain, whole] = [plain, whole].map(|of| format!("{:.4} | {:.4}", of.wall.mean * 1e3, of.total.mean * 1e3));

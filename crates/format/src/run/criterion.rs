@@ -244,6 +244,8 @@ mod tests {
         assert_eq!((sets.over, sets.robots.len(), run.inputs.len()), (Over::Worst, 2, 5));
         assert_eq!(sets.robots[0].joints(), run.problem.robot.joints());
         assert_eq!(sets.robots[1].joints()[0].compliance, (1e-6 / 0.2).into());
+        let run = read("robots = ['arm.toml', 'softer.toml']\nover = 'regret'").unwrap();
+        assert_eq!(run.problem.criterion.stiffness.unwrap().over, Over::Regret);
         for (table, parts) in [
             (
                 "robots = ['arm.toml', 'longer.toml']\nover = 'mean'",
