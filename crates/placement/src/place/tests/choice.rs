@@ -2,7 +2,7 @@
 
 use super::{Over, small, with_first_springs};
 use crate::outcome::Case;
-use crate::place::{Score, place, score};
+use crate::place::{place, score};
 use crate::postures::PostureRules;
 use crate::problem::{Interval, Placement, Problem};
 use crate::settings::{LookupUse, SearchSettings, TransferSettings};
