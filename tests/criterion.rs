@@ -50,17 +50,53 @@ const PLACE: [&str; 8] = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.
 #[test]
 fn postures_are_kept_where_they_may_not_change() {
     let bench = Bench::new();
-    bench.replace(RUN, "[constraints]", "[postures]\nallowed = [4, 3]\nchanges = \"never\"\n\n[constraints]");
+    bench.replace(RUN, "tie_percent = 0.0", "tie_percent = 0.0\nallowed = [4, 3]\nchanges = \"never\"");
     let score = bench.stead(&[&["score", RUN, "--json"], &PLACE[..]].concat()).json();
     for plan in ["best", "worst"] {
         let postures = score[plan]["postures"].as_array().unwrap();
         assert!(postures.iter().all(|posture| posture == &postures[0]), "{postures:?}");
         assert!([3, 4].contains(&postures[0].as_u64().unwrap()), "{postures:?}");
     }
+    assert!(bench.read(RUN).contains("tie_percent = 0.0"));
     bench.replace(RUN, "allowed = [4, 3]", "allowed = [4, 9]");
     let refused = bench.stead(&[&["score", RUN], &PLACE[..]].concat());
     assert_eq!(refused.code, Some(2));
     refused.assert_says(&["postures.allowed[2]: ", "found 9", "from 1 to 8"]);
+}
+
+#[test]
+fn a_posture_that_no_segment_can_take_is_refused_by_its_number() {
+    let bench = Bench::new();
+    let line = bench.replace(RUN, "tie_percent = 0.0", "allowed = [3, 4]");
+    // Joint 5 turns to one side alone, so that one flip of the wrist is left.
+    bench.replace("configs/robots/kuka-kr270-2.toml", "min_deg = -125.0", "min_deg = 5.0");
+    let before = bench.tree("");
+    let refused = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""));
+    let place = format!("run.toml:{line}: postures.allowed[");
+    refused.assert_says(&[
+        &place,
+        "no segment can take posture",
+        "the limits of the joints leave it out",
+        "; allowed: ",
+    ]);
+    assert_eq!(bench.tree(""), before);
+    let (_, said) = refused.stderr.split_once("allowed: ").unwrap();
+    let possible: Vec<u8> = said.trim().split(", ").map(|number| number.parse().unwrap()).collect();
+    assert!(possible.len() == 4 && possible.iter().filter(|number| [3, 4].contains(*number)).count() == 1, "{said}");
+}
+
+#[test]
+fn a_tie_of_a_thousandth_is_the_default() {
+    let bench = Bench::new();
+    let score = || bench.stead(&[&["score", RUN, "--json"], &PLACE[..]].concat()).json();
+    let free = number(&score()["best"]["mean_mm"]);
+    bench.replace(RUN, "[postures]\ntie_percent = 0.0", "");
+    let default = score();
+    bench.replace(RUN, "[search]", "[postures]\ntie_percent = 0.1\n\n[search]");
+    assert_eq!(score()["best"], default["best"]);
+    let tied = number(&default["best"]["mean_mm"]);
+    assert!(free <= tied && tied <= free * 1.001 + 1e-7, "{free} {tied}");
 }
 
 #[test]

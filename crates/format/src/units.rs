@@ -26,7 +26,7 @@ macro_rules! units {
 
 units! {
     /// A number without a unit.
-    One Number "1" up to f64::INFINITY, = |value| value;
+    One Number "1" up to 1e12, = |value| value;
     /// A length. mm
     Millimetre Mm "mm" up to 1e6, = |value| value / 1e3;
     /// A length. um

@@ -138,6 +138,9 @@ pub enum Over {
     Mean,
     /// The largest.
     Worst,
+    /// Their mean; of the refined basins that of the least regret is taken
+    /// ([`SetOutcome::regret`](super::sensitivity::SetOutcome::regret)).
+    Regret,
 }
 
 impl Over {
@@ -146,6 +149,7 @@ impl Over {
         match self {
             Self::Mean => "mean",
             Self::Worst => "worst",
+            Self::Regret => "regret",
         }
     }
 }

@@ -79,7 +79,7 @@ pub mod testing {
                 max_spindle_turn: None,
                 max_spindle_speed: None,
             },
-            postures: PostureRules::default(),
+            postures: PostureRules::NONE,
         }
     }
 

@@ -350,6 +350,8 @@ pub struct Outcome {
     pub sensitivity: Option<ForceSensitivity>,
     /// What each stiffness set of the criterion makes of the best placement; empty where there are none.
     pub sets: Vec<SetOutcome>,
+    /// The refined basins of the best placement, where there are stiffness sets.
+    pub set_basins: Vec<SetBasin>,
     /// What should be known about the result though nothing is wrong, in sentences.
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
@@ -371,4 +373,15 @@ impl Outcome {
 /// The warning that the caller's stop left something out.
 pub fn left_out(what: &str) -> Warning {
     Warning::new("interrupted", format!("interrupted: {what} left out"))
+}
+
+/// A refined basin of the best placement under several stiffness sets.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SetBasin {
+    /// Where it ended.
+    pub placement: Placement,
+    /// The figure that is minimised. m
+    pub objective: f64,
+    /// The largest regret over the sets ([`SetOutcome::regret`]).
+    pub regret: Option<f64>,
 }

@@ -1,20 +1,22 @@
 //! The placement job: search, refine, plan, map.
 
 use super::evaluator::Evaluator;
-use super::outcome::{Case, Cases, ForceSensitivity, Outcome, SetOutcome};
+use super::outcome::{Case, Cases, ForceSensitivity, Outcome};
 use super::problem::Problem;
-use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
+use super::redundancy::Planner;
+use super::refine::Solution;
 use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
 use super::sense::Sense;
-use super::sensitivity::{mean_by, objective_with_force_errors, with_set_alone};
+use super::sensitivity::objective_with_force_errors;
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
-use basins::{Refined, refine_basins, refine_side};
+use basins::{Refined, best_alone, choose, leading, refine_basins};
 use long_path::LongPath;
 use notes::{cancellation, interruption};
-use plan::{detailed, worst_plan};
+use plan::{StatedPlans, detailed};
 use searched::{Searched, search_cell};
+use sets::Sets;
 use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -26,6 +28,7 @@ mod notes;
 mod plan;
 mod score;
 mod searched;
+mod sets;
 
 pub use infeasible::Infeasible;
 use infeasible::infeasible;
@@ -45,7 +48,9 @@ pub fn place(
     transfer: &TransferSettings,
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
-    let planner = Planner::finer(problem);
+    // Placements are compared by their best plans; only what is stated at the end may be worse by the tie.
+    let untied = problem.untied();
+    let planner = Planner::finer(&untied);
     let mut long = LongPath::new(&planner, settings, monitor);
     let searched = match &mut long {
         Some(path) => path.search(&planner, settings, monitor)?,
@@ -58,22 +63,21 @@ pub fn place(
         infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
     };
     let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
-    let (solutions, refinements) = refine_basins(&evaluator, long, &found, monitor).ok_or_else(refused)?;
+    let (basins, refinements) = refine_basins(&evaluator, long, &found, monitor);
+    let sets = Sets::of(&untied, (&found, long), &basins[0], monitor);
+    let [best, worst] = choose(&basins, sets.regrets().as_deref()).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
-    let [best, worst] = &solutions;
-    let worst_plan_of =
-        |refined: &Refined| worst_plan(&planner, &refined.solution.placement, refined.scheme.as_deref());
-    let (of_best, of_worst) = rayon::join(|| worst_plan_of(best), || worst_plan_of(worst));
-    let case = |placement_sense, solution: &Refined, plan_sense, worst: &Result<Vec<SegmentPlan>, NoFeasiblePlan>| {
-        let best = &solution.solution.plans;
+    let stated_planner = Planner::finer(problem);
+    let stated = |refined: &Refined| StatedPlans::of(&stated_planner, refined, monitor);
+    let (of_best, of_worst) = rayon::join(|| stated(&best), || stated(&worst));
+    let case = |placement_sense, solution: &Refined, plan_sense, stated: &StatedPlans| {
         let plans = match plan_sense {
-            Sense::Min => best,
-            // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
-            Sense::Max => worst.as_ref().unwrap_or(best),
+            Sense::Min => &stated.best,
+            Sense::Max => &stated.worst,
         };
         let active_bounds = match plan_sense {
             Sense::Min if monitor.should_stop() => Vec::new(),
-            Sense::Min if placement_sense == Sense::Min => active_bounds(problem, &solution.solution),
+            Sense::Min if placement_sense == Sense::Min => active_bounds(&untied, &solution.solution),
             Sense::Min => active_walls(&planner, &solution.solution, solution.scheme.as_deref()),
             Sense::Max => Vec::new(),
         };
@@ -87,21 +91,21 @@ pub fn place(
         }
     };
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
-    let best_case = case(Sense::Min, best, Sense::Min, &of_best);
+    let best_case = case(Sense::Min, &best, Sense::Min, &of_best);
     let sensitivity = match settings.sensitivity {
-        Some(size) if !interrupted => force_sensitivity(problem, &best_case, (&found, long), size, monitor),
+        Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
         _ => None,
     };
-    let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, (&found, long), monitor) };
     Ok(Outcome {
-        sets,
+        sets: sets.outcomes(&best_case),
+        set_basins: sets.basins,
         notes: notes::of(problem, &best_case.plan),
         sensitivity,
         cases: Cases {
             best: best_case,
-            best_worst_plan: case(Sense::Min, best, Sense::Max, &of_best),
-            worst: case(Sense::Max, worst, Sense::Min, &of_worst),
-            worst_worst_plan: case(Sense::Max, worst, Sense::Max, &of_worst),
+            best_worst_plan: case(Sense::Min, &best, Sense::Max, &of_best),
+            worst: case(Sense::Max, &worst, Sense::Min, &of_worst),
+            worst_worst_plan: case(Sense::Max, &worst, Sense::Max, &of_worst),
         },
         lookup_summary,
         path_levels: long.map(|path| path.levels),
@@ -123,7 +127,7 @@ pub fn place(
 /// Refines the basins of the best placement once more, with scores that cover force errors of this relative size.
 fn force_sensitivity(
     problem: &Problem,
-    best: &Case,
+    best: &Solution,
     (found, long): (&[SearchResult; 2], Option<&LongPath>),
     size: f64,
     monitor: &Monitor,
@@ -132,40 +136,18 @@ fn force_sensitivity(
     robust.criterion.force_uncertainty = size;
     let planner = Planner::finer(&robust);
     let evaluator = Evaluator::new(&planner, None);
-    let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
-    let (solutions, _) = refine_side(&evaluator, long, &basins, monitor);
-    let Refined { solution, .. } = solutions.into_iter().flatten().next()?;
-    let plan = detailed(problem, &solution.placement, &solution.plans);
+    let ([refined, _], _) = refine_basins(&evaluator, long, &best_alone(found), monitor);
+    let solution = &leading(Sense::Min, &refined)?.solution;
+    let [plan, nominal] = [solution, best].map(|solution| detailed(problem, &solution.placement, &solution.plans));
     let (from, to) = (&best.placement, &solution.placement);
     Some(ForceSensitivity {
         force_uncertainty: size,
-        nominal: [best.plan.objective, objective_with_force_errors(problem, from, &best.plan, size)],
+        nominal: [nominal.objective, objective_with_force_errors(problem, from, &nominal, size)],
         robust: [plan.objective, solution.objective],
         placement: *to,
         distance: (0..3).map(|k| (to[k] - from[k]) * (to[k] - from[k])).sum::<f64>().sqrt(),
         turn: wrap(to.yaw - from.yaw).abs(),
     })
-}
-
-/// What each stiffness set of the criterion makes of the best placement, beside the best for that set alone.
-fn set_outcomes(
-    problem: &Problem,
-    best: &Case,
-    (found, long): (&[SearchResult; 2], Option<&LongPath>),
-    monitor: &Monitor,
-) -> Vec<SetOutcome> {
-    let Some(sets) = &problem.criterion.stiffness else { return Vec::new() };
-    let basins = [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }];
-    let outcome = |set| {
-        let alone = with_set_alone(problem, set);
-        let planner = Planner::finer(&alone);
-        let (solutions, _) = refine_side(&Evaluator::new(&planner, None), long, &basins, monitor);
-        let best_alone = solutions.into_iter().flatten().next().map(|Refined { solution, .. }| {
-            mean_by(&alone, &solution.placement, &detailed(&alone, &solution.placement, &solution.plans))
-        });
-        SetOutcome { mean: mean_by(&alone, &best.placement, &best.plan), alone: best_alone }
-    };
-    sets.robots.iter().map(outcome).collect()
 }
 
 #[cfg(test)]

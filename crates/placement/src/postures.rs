@@ -1,5 +1,7 @@
 //! Which postures segments may be driven in, and how one plan is taken of several that are as good.
 
+use crate::problem::Problem;
+use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
 
 /// Rules for the postures of segments and the moves between them.
@@ -17,13 +19,16 @@ pub struct PostureRules {
 }
 
 impl Default for PostureRules {
-    /// Every posture, changes at will, and always the best plan.
+    /// Every posture, changes at will, and plans up to 0.1 % worse than the best where that makes the moves shorter.
     fn default() -> Self {
-        Self { allowed: [true; 8], may_change: true, move_weight: 0.0, tie: 0.0 }
+        Self { tie: 1e-3, ..Self::NONE }
     }
 }
 
 impl PostureRules {
+    /// No rules: every posture, changes at will, and always the best plan.
+    pub const NONE: Self = Self { allowed: [true; 8], may_change: true, move_weight: 0.0, tie: 0.0 };
+
     /// Whether a posture is allowed.
     pub fn allows(&self, posture: Posture) -> bool {
         self.allowed[usize::from(posture.number()) - 1]
@@ -43,5 +48,15 @@ impl PostureRules {
     /// Whether the best plan of a segment is always taken.
     pub(crate) fn takes_the_best(&self) -> bool {
         self.move_weight == 0.0 && self.tie == 0.0
+    }
+}
+
+impl Problem {
+    /// The same problem where the best plan of a segment is taken whatever the moves: what placements are compared by.
+    pub(crate) fn untied(&self) -> Cow<'_, Self> {
+        if self.postures.tie == 0.0 {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { postures: PostureRules { tie: 0.0, ..self.postures }, ..self.clone() })
     }
 }

@@ -64,6 +64,7 @@ pub fn outcome() -> &'static Outcome {
             interrupted: false,
             sensitivity: None,
             sets: Vec::new(),
+            set_basins: Vec::new(),
             notes: Vec::new(),
             warnings: Vec::new(),
         }

@@ -23,7 +23,7 @@ ranges! {
 
 words!(Direction: "wall" => Direction::Wall, "surface" => Direction::Surface, "axis" => Direction::Axis,
     "total" => Direction::Total);
-words!(Over: "mean" => Over::Mean, "worst" => Over::Worst);
+words!(Over: "mean" => Over::Mean, "worst" => Over::Worst, "regret" => Over::Regret);
 words!(Aggregate: "mean" => Aggregate::Mean, "rms" => Aggregate::Rms, "max" => Aggregate::Max);
 
 /// By what a placement is scored.
@@ -45,7 +45,8 @@ pub struct CriterionTable {
     pub confidence: Option<Number<ZeroToTen>>,
     /// Robot files of the same geometry, relative to the folder of this file: the sets of joint stiffness that a score covers.
     pub robots: Option<Vec<String>>,
-    /// With `robots`, what is scored: the `mean` over the sets, or the `worst` of them at each point.
+    /// With `robots`, what is scored: the `mean` over the sets, or the `worst` of them at each point; with `regret` the mean, and
+    /// of the refined basins that one is taken whose mean exceeds the best mean of a set alone the least.
     pub over: Option<Word<Over>>,
 }
 
@@ -107,7 +108,7 @@ impl CriterionTable {
                 return Err(at.key("over").error("is there without criterion.robots", "both or neither"));
             }
             (None, false) => {
-                let allowed = "criterion.over = \"mean\" or \"worst\" beside them";
+                let allowed = "criterion.over = \"mean\", \"worst\" or \"regret\" beside them";
                 return Err(at.key("robots").error("do not say what is scored over them", allowed));
             }
         };
@@ -243,6 +244,8 @@ mod tests {
         assert_eq!((sets.over, sets.robots.len(), run.inputs.len()), (Over::Worst, 2, 5));
         assert_eq!(sets.robots[0].joints(), run.problem.robot.joints());
         assert_eq!(sets.robots[1].joints()[0].compliance, (1e-6 / 0.2).into());
+        let run = read("robots = ['arm.toml', 'softer.toml']\nover = 'regret'").unwrap();
+        assert_eq!(run.problem.criterion.stiffness.unwrap().over, Over::Regret);
         for (table, parts) in [
             (
                 "robots = ['arm.toml', 'longer.toml']\nover = 'mean'",

@@ -35,7 +35,6 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_model::published::Published;
 use stead_model::task::Task;
-use stead_placement::postures::PostureRules;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
@@ -167,14 +166,10 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     inputs.extend(files);
     let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
-    let postures = match &run.postures {
-        Some(table) => table.rules(&at.key("postures"))?,
-        None => PostureRules::default(),
-    };
-    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures };
-    if let Some(table) = &run.postures {
-        check_postures(table, &problem, &search, &at.key("postures"))?;
-    }
+    let postures = run.postures.unwrap_or_default();
+    let rules = postures.rules(&at.key("postures"))?;
+    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules };
+    check_postures(&postures, &problem, &search, &at.key("postures"))?;
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     notes.extend(problem.notes());

@@ -42,20 +42,17 @@ pub struct PosturesTable {
     /// choice of postures and turns; 0 where left out.
     pub move_weight_mm_per_s: Option<MmPerS<NotNegative>>,
     /// How much worse than its best plan the plan of a segment may be to make the moves between segments shorter; 0.1 where left
-    /// out, and 0 where the table is left out.
+    /// out.
     pub tie_percent: Option<Percent<UpToTwenty>>,
 }
-
-/// The tie where the table does not state it. Per cent
-const TIE: f64 = 0.1;
 
 impl PosturesTable {
     pub(super) fn rules(&self, at: &Place<'_>) -> Result<PostureRules, InputError> {
         let mut rules = PostureRules {
             may_change: self.changes.is_none_or(|word| word.0 == Changes::Free),
             move_weight: self.move_weight_mm_per_s.map_or(0.0, Quantity::si),
-            tie: self.tie_percent.map_or(TIE / 100.0, Quantity::si),
-            ..PostureRules::default()
+            tie: self.tie_percent.map_or(PostureRules::default().tie, Quantity::si),
+            ..PostureRules::NONE
         };
         let Some(numbers) = &self.allowed else { return Ok(rules) };
         let at = at.key("allowed");
@@ -117,11 +114,11 @@ mod tests {
     }
 
     #[test]
-    fn a_table_is_read_and_none_changes_nothing() {
+    fn a_table_is_read_and_an_empty_one_is_none() {
         assert_eq!(read(RUN).unwrap().problem.postures, PostureRules::default());
         let rules = |table: &str| read(&RUN.replace("[cell]", &with(table))).unwrap().problem.postures;
-        assert_eq!(rules(""), PostureRules { tie: 0.1 / 100.0, ..PostureRules::default() });
-        assert_eq!(rules("tie_percent = 0"), PostureRules::default());
+        assert_eq!(rules(""), PostureRules { tie: 0.1 / 100.0, ..PostureRules::NONE });
+        assert_eq!(rules("tie_percent = 0"), PostureRules::NONE);
         let read = rules("allowed = [3, 4]\nchanges = 'never'\nmove_weight_mm_per_s = 0.002\ntie_percent = 2");
         assert!(!read.may_change && read.move_weight == 0.002 / 1e3 && read.tie == 0.02);
         assert_eq!(read.allowed().map(|posture| posture.number()).collect::<Vec<_>>(), [3, 4]);

@@ -111,7 +111,7 @@ fn forces_come_from_one_place() {
     let text = format!("{RUN}{CUTTING}").replace("task.csv", "path.csv");
     assert!(read(&text).unwrap().problem.task.wrenches().iter().all(|wrench| wrench.force.norm() > 50.0));
     let message = read(&text.replace("kr = 0.4", "kr = 1e305")).unwrap_err().to_string();
-    assert!(message.contains("run.toml:20: tool.kt_mpa: makes no cutter: "), "{message}");
+    assert!(message.contains("run.toml:21: tool.kr: is out of range, found 1e305; "), "{message}");
 }
 
 #[test]

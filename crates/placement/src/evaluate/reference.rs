@@ -85,7 +85,9 @@ pub fn state<T: Scalar>(
         Some(sets) => {
             let scores = sets.robots.iter().map(|set| arm.under(set).score().score());
             match sets.over {
-                Over::Mean => scores.fold(T::zero(), |sum, score| sum + score).scale(1.0 / sets.robots.len() as f64),
+                Over::Mean | Over::Regret => {
+                    scores.fold(T::zero(), |sum, score| sum + score).scale(1.0 / sets.robots.len() as f64)
+                }
                 Over::Worst => {
                     scores.fold(T::zero(), |worst, score| if score.value() > worst.value() { score } else { worst })
                 }

@@ -29,37 +29,57 @@ pub(super) const TIE: f64 = 1e-5;
 /// improved on a lookup table: refinement gains less from there.
 pub(super) const MAX_DEFICIT: f64 = 0.03;
 
-/// Refines the basins of both searches, and takes the best and the worst of what comes out; `None` when nothing feasible went
-/// in.
+/// The best and the worst of the refined basins of both searches, the best by its regret where regrets are given; `None` when
+/// there is none.
+pub(super) fn choose(basins: &[Vec<Refined>; 2], regrets: Option<&[Option<f64>]>) -> Option<[Refined; 2]> {
+    let by_regret = regrets.and_then(least_regret).and_then(|place| basins[0].get(place));
+    let best = by_regret.or_else(|| leading(Sense::Min, &basins[0]));
+    match [best, leading(Sense::Max, &basins[1])] {
+        // Of two searches that were stopped early either may have met the better placement.
+        [Some(best), Some(worst)] if by_regret.is_none() && best.solution.objective > worst.solution.objective => {
+            Some([worst.clone(), best.clone()])
+        }
+        [Some(best), Some(worst)] => Some([best.clone(), worst.clone()]),
+        // A search whose basins have no plan on the finer grid takes the other's.
+        [Some(only), None] | [None, Some(only)] => Some([only.clone(), only.clone()]),
+        [None, None] => None,
+    }
+}
+
+/// The first of the basins whose objective is the best in a sense.
+pub(super) fn leading(sense: Sense, basins: &[Refined]) -> Option<&Refined> {
+    basins.iter().reduce(|known, next| {
+        let (known_objective, objective) = (known.solution.objective, next.solution.objective);
+        let is_better = match sense {
+            Sense::Min => objective < known_objective * (1.0 - TIE),
+            Sense::Max => objective > known_objective * (1.0 + TIE),
+        };
+        if is_better { next } else { known }
+    })
+}
+
+/// The first of the least regrets.
+fn least_regret(regrets: &[Option<f64>]) -> Option<usize> {
+    let known = regrets.iter().enumerate().filter_map(|(place, regret)| Some((place, (*regret)?)));
+    let least = known.reduce(|known, next| if 1.0 + next.1 < (1.0 + known.1) * (1.0 - TIE) { next } else { known });
+    least.map(|(place, _)| place)
+}
+
+/// What was found without the basins of the worst placement.
+pub(super) fn best_alone(found: &[SearchResult; 2]) -> [SearchResult; 2] {
+    [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }]
+}
+
+/// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first basin of
+/// each search goes ahead, to tell which of the others can still win.
 pub(super) fn refine_basins(
     evaluator: &Evaluator<'_>,
     long: Option<&LongPath>,
     found: &[SearchResult; 2],
     monitor: &Monitor,
-) -> Option<([Refined; 2], Vec<Refinement>)> {
-    let (chosen, refinements) = refine_side(evaluator, long, found, monitor);
-    match chosen {
-        // Of two searches that were stopped early either may have met the better placement.
-        [Some(best), Some(worst)] if best.solution.objective > worst.solution.objective => {
-            Some(([worst, best], refinements))
-        }
-        [Some(best), Some(worst)] => Some(([best, worst], refinements)),
-        // A search whose basins have no plan on the finer grid takes the other's.
-        [Some(only), None] | [None, Some(only)] => Some(([only.clone(), only], refinements)),
-        [None, None] => None,
-    }
-}
-
-/// Refines the basins of both searches side by side. The first basin of each search goes ahead, to tell which of the others can
-/// still win. Those of a long path are refined on its subset.
-pub(super) fn refine_side(
-    evaluator: &Evaluator<'_>,
-    long: Option<&LongPath>,
-    found: &[SearchResult; 2],
-    monitor: &Monitor,
-) -> ([Option<Refined>; 2], Vec<Refinement>) {
+) -> ([Vec<Refined>; 2], Vec<Refinement>) {
     if let Some(path) = long {
-        return long_refinement::refine_side(path, evaluator.planner(), found, monitor);
+        return long_refinement::refine_basins(path, evaluator.planner(), found, monitor);
     }
     let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
@@ -104,19 +124,12 @@ pub(super) fn refine_side(
     // In the order of the searches: a stable sort.
     results.sort_by_key(|(sense, ..)| usize::from(*sense == Sense::Max));
     let mut refinements = Vec::new();
-    let mut chosen: [Option<Refined>; 2] = [None, None];
+    let mut basins = [Vec::new(), Vec::new()];
     for (sense, refined, report) in results {
         refinements.extend(report);
-        let slot = &mut chosen[usize::from(sense == Sense::Max)];
-        let better = slot.as_ref().is_none_or(|known| match sense {
-            Sense::Min => refined.solution.objective < known.solution.objective * (1.0 - TIE),
-            Sense::Max => refined.solution.objective > known.solution.objective * (1.0 + TIE),
-        });
-        if better {
-            *slot = Some(refined);
-        }
+        basins[usize::from(sense == Sense::Max)].push(refined);
     }
-    (chosen, refinements)
+    (basins, refinements)
 }
 
 /// Refines one basin, or only plans it where the job is to stop.

@@ -1,6 +1,6 @@
 //! Refinement of basins of a long path: on a subset, then on the whole path.
 
-use super::basins::{Refined, TIE};
+use super::basins::Refined;
 use super::long_path::{LongPath, WholePath};
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
@@ -40,13 +40,14 @@ struct Estimated<'c> {
     report: Refinement,
 }
 
-/// Refines the basins of both searches, on the problem of a planner, and returns the best of either with its plan on the whole path.
-pub(super) fn refine_side(
+/// Refines the basins of both searches, on the problem of a planner, and returns those that can be the best of either with their
+/// plans on the whole path.
+pub(super) fn refine_basins(
     path: &LongPath,
     planner: &Planner<'_>,
     found: &[SearchResult; 2],
     monitor: &Monitor,
-) -> ([Option<Refined>; 2], Vec<Refinement>) {
+) -> ([Vec<Refined>; 2], Vec<Refinement>) {
     let jobs: Vec<(Sense, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
@@ -129,13 +130,8 @@ fn estimated<'c>(
 
 /// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by their
 /// plans are refined on the whole path, and the best of all is taken.
-fn compared(
-    planner: &Planner<'_>,
-    sense: Sense,
-    estimates: &mut [Estimated<'_>],
-    monitor: &Monitor,
-) -> Option<Refined> {
-    let first = estimates.first()?.objective;
+fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Refined> {
+    let Some(first) = estimates.first().map(|first| first.objective) else { return Vec::new() };
     let is_long = planner.problem().task.points().len() > COMPARED;
     let is_close = |estimate: &Estimated<'_>| !is_long && (estimate.objective - first).abs() <= CLOSE * first;
     let spacing = off_grid::Spacing::full(planner.grid());
@@ -168,17 +164,7 @@ fn compared(
             })
             .collect();
     }
-    let mut best: Option<Refined> = None;
-    for (_, basin) in planned {
-        let is_better = best.as_ref().is_none_or(|best| match sense {
-            Sense::Min => basin.solution.objective < best.solution.objective * (1.0 - TIE),
-            Sense::Max => basin.solution.objective > best.solution.objective * (1.0 + TIE),
-        });
-        if is_better {
-            best = Some(basin);
-        }
-    }
-    best
+    planned.into_iter().map(|(_, basin)| basin).collect()
 }
 
 /// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone

@@ -1,13 +1,46 @@
 //! Plans with everything that there is to say of them.
 
+use super::basins::Refined;
 use crate::evaluate::reference::{scored_part_by_parameters, state};
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::problem::{Placement, Problem};
 use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
+use crate::refine::planned;
 use crate::sense::Sense;
 use crate::sensitivity::mean_by_stiffness;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
+use stead_numerics::monitor::Monitor;
+
+/// What is stated at a refined placement: its best plan, or one within the tie whose moves are shorter, and its worst.
+pub(super) struct StatedPlans {
+    pub best: Vec<SegmentPlan>,
+    pub worst: Vec<SegmentPlan>,
+}
+
+impl StatedPlans {
+    /// Plans a refined placement; once the caller asks to stop, its refined plan is stated as it is.
+    pub fn of(planner: &Planner<'_>, refined: &Refined, monitor: &Monitor) -> Self {
+        let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
+        let tie = planner.problem().postures.tie;
+        let within_tie = || {
+            if tie == 0.0 || monitor.should_stop() {
+                return None;
+            }
+            let spacing = off_grid::Spacing::full(planner.grid());
+            let found = planned(planner, &solution.placement, scheme, spacing, &mut planner.workspace());
+            found.filter(|found| found.objective <= solution.objective * (1.0 + tie + ROUNDING))
+        };
+        let worst = || worst_plan(planner, &solution.placement, scheme);
+        let (best, worst) = rayon::join(within_tie, worst);
+        let best = best.map_or_else(|| solution.plans.clone(), |found| found.plans);
+        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+        Self { worst: worst.unwrap_or_else(|_| best.clone()), best }
+    }
+}
+
+/// Objectives that differ by less (relative) are the same.
+const ROUNDING: f64 = 1e-9;
 
 /// The worst plan at a placement.
 pub(super) fn worst_plan(

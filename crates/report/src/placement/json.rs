@@ -188,11 +188,19 @@ fn stiffness_sets(outcome: &Outcome, context: &Context) -> Value {
             "regret": optional(Unit::PLAIN, set.regret()),
         })
     };
+    let basin = |basin: &SetBasin| {
+        json!({
+            "placement": placement(&basin.placement),
+            "objective_mm": number(Unit::DEFLECTION_MM, basin.objective),
+            "regret": optional(Unit::PLAIN, basin.regret),
+        })
+    };
     let largest = |of: fn(&SetOutcome) -> Option<f64>| outcome.sets.iter().filter_map(of).reduce(f64::max);
     json!({
         "sets": outcome.sets.iter().zip(files).map(set).collect::<Vec<_>>(),
         "worst_mean_mm": optional(Unit::DEFLECTION_MM, largest(|set| Some(set.mean))),
         "largest_regret": optional(Unit::PLAIN, largest(SetOutcome::regret)),
+        "basins": outcome.set_basins.iter().map(basin).collect::<Vec<_>>(),
     })
 }
 
@@ -298,7 +306,7 @@ fn constraints(problem: &Problem) -> Value {
 /// The rules for postures, where there are some.
 fn postures(problem: &Problem) -> Option<Value> {
     let rules = &problem.postures;
-    (*rules != PostureRules::default()).then(|| {
+    (*rules != PostureRules::NONE).then(|| {
         json!({
             "allowed": rules.allowed().map(|posture| posture.number()).collect::<Vec<_>>(),
             "changes": if rules.may_change { "free" } else { "never" },

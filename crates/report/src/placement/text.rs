@@ -5,7 +5,8 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, Plan};
+use stead_placement::criterion::Over;
+use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, Plan, SetBasin};
 use stead_placement::problem::Problem;
 use stead_placement::symmetry::Unsupported;
 
@@ -34,6 +35,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
         text.push_str(&aligned(&set_rows(outcome, context), &[0]));
+        choice_by_regret(problem, outcome).iter().for_each(|row| line(&mut text, row));
     }
     if let Some(found) = &outcome.sensitivity {
         sensitivity(found).iter().for_each(|row| line(&mut text, row));
@@ -109,6 +111,19 @@ fn set_rows(outcome: &Outcome, context: &Context) -> Vec<Vec<String>> {
         vec![file.name.clone(), fixed(set.mean * 1e3, 4), or_dash(alone), or_dash(regret)]
     }));
     rows
+}
+
+/// Which of the refined basins was taken, where their regrets decide.
+fn choice_by_regret(problem: &Problem, outcome: &Outcome) -> Option<String> {
+    problem.criterion.stiffness.as_ref().filter(|sets| sets.over == Over::Regret)?;
+    let of_least = |of: fn(&SetBasin) -> f64| outcome.set_basins.iter().min_by(|a, b| of(a).total_cmp(&of(b)));
+    let taken = of_least(|basin| basin.regret.unwrap_or(f64::INFINITY))?.regret?;
+    let by_mean = of_least(|basin| basin.objective)?.regret?;
+    let [taken, by_mean] = [taken, by_mean].map(|regret| fixed(regret * 100.0, 1));
+    let count = outcome.set_basins.len();
+    Some(format!(
+        "of {count} refined basins the one of least regret is taken: {taken} %; the least objective has {by_mean} %"
+    ))
 }
 
 /// What force errors do to the best placement.

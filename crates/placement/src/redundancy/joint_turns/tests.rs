@@ -73,7 +73,7 @@ fn the_choice_is_the_best_of_all_combinations() {
         let best: Vec<f64> = plans.iter().map(|options| options[0].cost).collect();
         // Nothing but the best; within a tie the shortest moves.
         for tie in [0.0, 0.005, 0.2] {
-            problem.postures = PostureRules { tie, ..PostureRules::default() };
+            problem.postures = PostureRules { tie, ..PostureRules::NONE };
             let found = select_joint_paths(&problem, Sense::Min, plans.clone());
             let is_tied = |costs: &[f64]| costs.iter().zip(&best).all(|(cost, best)| *cost <= best * (1.0 + tie));
             let expected = all.iter().filter(|(costs, _)| is_tied(costs)).map(|(_, moved)| *moved).min();
@@ -82,7 +82,7 @@ fn the_choice_is_the_best_of_all_combinations() {
         }
         // With a weight, the least of both together.
         let move_weight = [1e-7, 1e-5, 1e-3][number % 3];
-        problem.postures = PostureRules { move_weight, ..PostureRules::default() };
+        problem.postures = PostureRules { move_weight, ..PostureRules::NONE };
         let found = select_joint_paths(&problem, Sense::Min, plans.clone());
         let total =
             |costs: &[f64], moved: i64| problem.objective(costs.iter().copied()) + move_weight * moved as f64 * 1e-6;
@@ -120,7 +120,7 @@ fn a_zigzag_does_not_turn_the_arm_over_for_nothing() {
     for k in 0..6 {
         let placement = Placement::from([-0.1, -1.9 + 0.05 * f64::from(k), -0.4, 0.9 * f64::from(k)]);
         let mut plan = |tie: f64| {
-            problem.postures = PostureRules { tie, ..PostureRules::default() };
+            problem.postures = PostureRules { tie, ..PostureRules::NONE };
             let planner = Planner::new(&problem);
             let spacing = off_grid::Spacing::full(planner.grid());
             let found = planner.plan_fine(&placement, Sense::Min, None, spacing, &mut planner.workspace()).ok()?;
@@ -153,7 +153,7 @@ fn postures_are_kept_to() {
     let (free, _) = best(&problem);
     let mut feasible = Vec::new();
     for posture in Posture::ALL {
-        problem.postures = PostureRules::default();
+        problem.postures = PostureRules::NONE;
         problem.postures.allowed = std::array::from_fn(|k| k + 1 == usize::from(posture.number()));
         let (objective, plans) = best(&problem);
         assert!(plans.iter().flatten().all(|plan| plan.posture == posture));
@@ -163,7 +163,7 @@ fn postures_are_kept_to() {
     }
     assert!(feasible.len() > 1);
     // One posture for all: the best of these.
-    problem.postures = PostureRules { may_change: false, ..PostureRules::default() };
+    problem.postures = PostureRules { may_change: false, ..PostureRules::NONE };
     let (Objective::Feasible(never), Some(plans)) = best(&problem) else { panic!("no plan") };
     assert!(plans.iter().all(|plan| plan.posture == plans[0].posture));
     let expected = feasible.into_iter().fold(f64::INFINITY, f64::min);

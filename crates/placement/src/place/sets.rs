@@ -1,0 +1,78 @@
+//! What each stiffness set of the criterion makes of the refined basins.
+
+use super::basins::{Refined, best_alone, leading, refine_basins};
+use super::long_path::LongPath;
+use super::plan::detailed;
+use crate::criterion::Over;
+use crate::evaluator::Evaluator;
+use crate::outcome::{Case, SetBasin, SetOutcome};
+use crate::problem::Problem;
+use crate::redundancy::Planner;
+use crate::search::SearchResult;
+use crate::sense::Sense;
+use crate::sensitivity::{mean_by, with_set_alone};
+use stead_numerics::monitor::Monitor;
+
+/// The stiffness sets of a criterion, each with what is best for it alone.
+pub(super) struct Sets {
+    /// The problem with one set alone, and the mean score of its best placement. m
+    alone: Vec<(Problem, Option<f64>)>,
+    /// Every refined basin of the best placement.
+    pub basins: Vec<SetBasin>,
+    is_by_regret: bool,
+}
+
+impl Sets {
+    /// Refines the basins of the best placement for each set alone, and holds those refined for all sets together, `refined`,
+    /// against it. Nothing where the criterion has no sets, or once the caller asks to stop.
+    pub fn of(
+        problem: &Problem,
+        (found, long): (&[SearchResult; 2], Option<&LongPath>),
+        refined: &[Refined],
+        monitor: &Monitor,
+    ) -> Self {
+        let nothing = Self { alone: Vec::new(), basins: Vec::new(), is_by_regret: false };
+        let Some(stiffness) = problem.criterion.stiffness.as_ref().filter(|_| !monitor.should_stop()) else {
+            return nothing;
+        };
+        let basins = best_alone(found);
+        let alone = |set| {
+            let alone = with_set_alone(problem, set);
+            let planner = Planner::finer(&alone);
+            let ([refined, _], _) = refine_basins(&Evaluator::new(&planner, None), long, &basins, monitor);
+            let best = leading(Sense::Min, &refined).map(|Refined { solution, .. }| {
+                mean_by(&alone, &solution.placement, &detailed(&alone, &solution.placement, &solution.plans))
+            });
+            (alone, best)
+        };
+        let alone = stiffness.robots.iter().map(alone).collect();
+        if monitor.should_stop() {
+            return nothing;
+        }
+        let mut sets = Self { alone, is_by_regret: stiffness.over == Over::Regret, ..nothing };
+        sets.basins = refined.iter().map(|refined| sets.basin(problem, refined)).collect();
+        sets
+    }
+
+    fn basin(&self, problem: &Problem, Refined { solution, .. }: &Refined) -> SetBasin {
+        let plan = detailed(problem, &solution.placement, &solution.plans);
+        let regrets = self.alone.iter().filter_map(|(alone, best)| {
+            SetOutcome { mean: mean_by(alone, &solution.placement, &plan), alone: *best }.regret()
+        });
+        SetBasin { placement: solution.placement, objective: solution.objective, regret: regrets.reduce(f64::max) }
+    }
+
+    /// The largest regret of each basin, where that decides.
+    pub fn regrets(&self) -> Option<Vec<Option<f64>>> {
+        self.is_by_regret.then(|| self.basins.iter().map(|basin| basin.regret).collect())
+    }
+
+    /// What each set makes of the best placement.
+    pub fn outcomes(&self, best: &Case) -> Vec<SetOutcome> {
+        let outcome = |(alone, of_best): &(Problem, Option<f64>)| SetOutcome {
+            mean: mean_by(alone, &best.placement, &best.plan),
+            alone: *of_best,
+        };
+        self.alone.iter().map(outcome).collect()
+    }
+}
