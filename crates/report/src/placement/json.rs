@@ -13,7 +13,8 @@ use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
-    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, Plan, PlanPoint, Refinement, SetOutcome, Transfer,
+    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, Plan, PlanPoint, Refinement, SetBasin, SetOutcome,
+    Transfer,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
