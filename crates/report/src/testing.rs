@@ -56,6 +56,7 @@ pub fn outcome() -> &'static Outcome {
         Outcome {
             cases,
             lookup_summary: None,
+            path_levels: None,
             convergence,
             refinements,
             maps: Some([best.map(), worst.map()]),

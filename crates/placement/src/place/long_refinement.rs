@@ -21,15 +21,17 @@ const HALVINGS: usize = 6;
 /// Rounds of refinement on the whole path at the most.
 const ROUNDS: usize = 3;
 /// A round that gains less than this share ends it.
-const GAIN: f64 = 1e-4;
+const GAIN: f64 = 1e-3;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
 const CLOSE: f64 = 0.03;
 /// Of these, so many at the most that are this near (relative) to the best are refined on the whole path.
 const REFINED: usize = 2;
 /// See [`REFINED`].
 const TIED: f64 = 0.004;
-/// On paths longer than this only the best by its estimate is planned.
-const COMPARED: usize = 10_000;
+/// On paths longer than [`MAX_REFINED`].
+const CLOSE_LONG: f64 = 0.01;
+/// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
+const MAX_REFINED: usize = 10_000;
 
 /// A basin refined on a subset.
 struct Estimated<'c> {
@@ -132,11 +134,12 @@ fn estimated<'c>(
 /// plans are refined on the whole path, and the best of all is taken.
 fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Refined> {
     let Some(first) = estimates.first().map(|first| first.objective) else { return Vec::new() };
-    let is_long = planner.problem().task.points().len() > COMPARED;
-    let is_close = |estimate: &Estimated<'_>| !is_long && (estimate.objective - first).abs() <= CLOSE * first;
+    let is_long = planner.problem().task.points().len() > MAX_REFINED;
+    let close = if is_long { CLOSE_LONG } else { CLOSE };
+    let is_close = |estimate: &Estimated<'_>| (estimate.objective - first).abs() <= close * first;
     let spacing = off_grid::Spacing::full(planner.grid());
     let plan = |(rank, estimate): (usize, &mut Estimated<'_>)| {
-        if rank > 0 && (!is_close(estimate) || monitor.should_stop()) {
+        if rank > 0 && (!is_close(estimate) || (is_long && rank >= REFINED) || monitor.should_stop()) {
             return None;
         }
         let scheme = estimate.candidate.scheme.clone();
@@ -147,7 +150,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
     };
     let mut planned: Vec<(usize, Refined)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
     planned.sort_by(|a, b| sense.compare(a.1.solution.objective, b.1.solution.objective));
-    if sense == Sense::Min {
+    if sense == Sense::Min && !is_long {
         let limit = planned.first().map_or(0.0, |(_, best)| best.solution.objective * (1.0 + TIED));
         planned.retain(|(_, basin)| basin.solution.objective <= limit);
         planned.truncate(REFINED);
