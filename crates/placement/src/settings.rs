@@ -35,6 +35,9 @@ pub struct SearchSettings {
     pub basins: usize,
     /// Whether to use a lookup table.
     pub tables: LookupUse,
+    /// Points of a long path by which candidates are compared; chosen where none is given. With all points of the path or more, it
+    /// is searched and refined whole.
+    pub path_points: Option<usize>,
     /// The relative size of a force error for which the basins are refined once more, to see how far the optimum moves; none
     /// where that is not asked.
     pub sensitivity: Option<f64>,
@@ -55,6 +58,7 @@ impl Default for SearchSettings {
             postures: PostureSearch::Exact,
             basins: 4,
             tables: LookupUse::Auto,
+            path_points: None,
             sensitivity: None,
         }
     }

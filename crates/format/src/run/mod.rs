@@ -40,7 +40,7 @@ use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSet
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
-use tables::check_tables;
+use tables::{check_path_points, check_tables};
 
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which its
 /// workpiece may stand.
@@ -129,7 +129,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
         None => run.spindle.spindle(&at.key("spindle"))?,
     };
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
-    let search = run.search.unwrap_or_default().settings();
+    let search_table = run.search.unwrap_or_default();
+    let search = search_table.settings();
     let transfer = run.transfer.unwrap_or_default().settings();
     let maps = run.output.unwrap_or_default().maps();
     let certificate = run.certificate.map(|table| table.settings());
@@ -172,6 +173,8 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     check_postures(&postures, &problem, &search, &at.key("postures"))?;
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
+    check_path_points(&search, &problem, &at.key("search"))?;
+    search_table.check_memory(&problem, &at.key("search"))?;
     notes.extend(problem.notes());
     notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));

@@ -1,17 +1,20 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
+use super::certificate::Memory;
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::{Array, Interval};
-use crate::units::{Deg, Mm, NotNegative, Number, Positive, S, ranges};
+use crate::units::{Deg, Gb, Mm, NotNegative, Number, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_model::published::Published;
 use stead_model::robot::{Robot, angles::yaw_from_q4};
+use stead_numerics::digits::figures;
 use stead_placement::lookup::LookupTable;
+use stead_placement::place::planning_memory;
 use stead_placement::problem::{self, Cell, Constraints, Problem};
 use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
 
@@ -108,6 +111,11 @@ pub struct SearchTable {
     pub basins: Option<Whole<1, 64>>,
     /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
     pub tables: Option<Word<LookupUse>>,
+    /// Points of the path by which candidates are compared, at least one of every segment: chosen where left out, and all of them
+    /// where the path is short. What can win is planned on the whole path in any case.
+    pub path_points: Option<Whole<1, 1000000000>>,
+    /// Memory that planning the whole path may take; 4 GB where left out, on every machine.
+    pub memory_gb: Option<Gb<Memory>>,
 }
 
 impl SearchTable {
@@ -120,8 +128,37 @@ impl SearchTable {
             postures: self.postures.map_or(default.postures, |word| word.0),
             basins: self.basins.map_or(default.basins, Whole::count),
             tables: self.tables.map_or(default.tables, |word| word.0),
+            path_points: self.path_points.map(Whole::count),
             sensitivity: default.sensitivity,
         }
+    }
+
+    /// Refuses a path that does not fit in the memory allowed.
+    pub(super) fn check_memory(&self, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
+        let allowed = self.memory_gb.map_or(DEFAULT_MEMORY, Quantity::si);
+        let needed = planning_memory(problem) as f64;
+        if needed <= allowed {
+            return Ok(());
+        }
+        let [needed, allowed] = [needed, allowed].map(|bytes| figures(bytes / 1e9));
+        let points = problem.task.points().len();
+        let reason = format!("{allowed} GB, but to plan the {points} points of the path takes about {needed} GB");
+        Err(at.key("memory_gb").error(reason, format!("at least {needed}, or a path with fewer points")))
+    }
+}
+
+/// Memory that planning may take where nothing is said of it. Bytes
+const DEFAULT_MEMORY: f64 = 4e9;
+
+/// Refuses a number of path points that the path does not have, or that leaves a segment without one.
+pub(super) fn check_path_points(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
+    let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
+    match search.path_points {
+        Some(asked) if !(segments..=points).contains(&asked) => {
+            let reason = format!("{asked}, but the path has {points} points in {segments} segments");
+            Err(at.key("path_points").error(reason, format!("a whole number from {segments} to {points}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -65,17 +65,23 @@ impl LongPath {
     pub fn new(full: &Planner<'_>, settings: &SearchSettings, monitor: &Monitor) -> Option<Self> {
         let problem = full.problem();
         let task = &problem.task;
-        let count = SEARCH_POINTS + task.segments().len();
-        if task.points().len() < SHORT * REFINEMENT_FACTOR * count || problem.cell.pinned().is_some() {
+        let all = task.points().len();
+        let count = settings.path_points.unwrap_or(SEARCH_POINTS + task.segments().len());
+        let is_short = match settings.path_points {
+            Some(asked) => asked >= all,
+            None => all < SHORT * REFINEMENT_FACTOR * count,
+        };
+        if is_short || problem.cell.pinned().is_some() {
             return None;
         }
         let mut path = Self {
             search: PathSubset::new(task, count),
-            refinement: PathSubset::new(task, REFINEMENT_FACTOR * count),
-            levels: PathLevels { points: task.points().len(), ..PathLevels::default() },
+            refinement: PathSubset::new(task, (REFINEMENT_FACTOR * count).min(all)),
+            levels: PathLevels { points: all, ..PathLevels::default() },
         };
         let (pairs, deciding) = path.pairs(full, settings, monitor);
-        let largest = task.points().len() / SHORT;
+        // A subset that was asked for stays as it is.
+        let largest = if settings.path_points.is_some() { 0 } else { all / SHORT };
         let [search, refinement] = &mut path.levels.subsets;
         (path.search, *search) = accurate(problem, path.search, &pairs, &deciding, (TOLERANCES[0], largest));
         (path.refinement, *refinement) =

@@ -13,8 +13,8 @@ use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
-    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, Plan, PlanPoint, Refinement, SetBasin, SetOutcome,
-    Transfer,
+    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement, SetBasin,
+    SetOutcome, SubsetAccuracy, Transfer,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Interval, Problem, Redundancy};
@@ -66,6 +66,7 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
         ("refinements".to_owned(), Value::Array(refinements)),
         ("reference".to_owned(), reference),
     ]);
+    document.extend(outcome.path_levels.as_ref().map(|levels| ("path_levels".to_owned(), path_levels(levels))));
     document
         .extend((!outcome.sets.is_empty()).then(|| ("stiffness_sets".to_owned(), stiffness_sets(outcome, context))));
     document.extend(outcome.sensitivity.as_ref().map(|found| ("sensitivity".to_owned(), sensitivity(found))));
@@ -76,6 +77,25 @@ fn common(outcome: &Outcome, context: &Context, with_points: bool) -> Map<String
             .map(|found| ("stability".to_owned(), crate::stability::path::document(found, with_points))),
     );
     document
+}
+
+/// How a long path was searched.
+fn path_levels(levels: &PathLevels) -> Value {
+    let subset = |subset: &SubsetAccuracy| {
+        json!({
+            "points": subset.points,
+            "compared_placements": subset.pairs,
+            "largest_error": subset.error.map(|error| number(TABLE_ERROR, error)),
+        })
+    };
+    let [search, refinement] = &levels.subsets;
+    json!({
+        "points": levels.points,
+        "search": subset(search),
+        "refinement": subset(refinement),
+        "deciding_points": levels.deciding,
+        "placements_on_all_points": levels.whole,
+    })
 }
 
 /// Errors of a lookup table, relative.

@@ -6,7 +6,7 @@ use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::criterion::Over;
-use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, Plan, SetBasin};
+use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_placement::problem::Problem;
 use stead_placement::symmetry::Unsupported;
 
@@ -46,6 +46,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     }
     text.push('\n');
     line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
+    outcome.path_levels.iter().for_each(|levels| line(&mut text, &path_levels(levels)));
     match &outcome.lookup_summary {
         Some(Ok(lookup_summary)) => {
             let (states, megabytes) = (lookup_summary.shape.states(), lookup_summary.shape.bytes() as f64 / 1e6);
@@ -67,6 +68,22 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         line(&mut text, "The search was stopped before its end: this is the best result so far.");
     }
     text
+}
+
+/// By how many points of a long path placements were compared, and how far that is off.
+fn path_levels(levels: &PathLevels) -> String {
+    let [search, refinement] = levels.subsets;
+    let error = search.error.map_or(String::new(), |error| {
+        format!(
+            ": means are off by up to {} % there ({} placements planned both ways)",
+            figures(error * 100.0),
+            search.pairs
+        )
+    });
+    format!(
+        "searched on {} and refined on {} of {} points{error}; {} placements were planned on all points",
+        search.points, refinement.points, levels.points, levels.whole
+    )
 }
 
 /// Bounds that are named; the others are counted.
