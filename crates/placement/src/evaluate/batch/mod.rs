@@ -26,9 +26,10 @@ use crate::problem::{Placement, Problem, Redundancy};
 use deviation::Deviation;
 use laws::Laws;
 use limit::Limit;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
+use stead_model::task::PathPoint;
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
 use wrist::Demand;
 
@@ -46,6 +47,12 @@ pub struct BatchEvaluator<'a> {
     is_over_worst: bool,
     flips: Flips,
     forearm_sin_cos: (f64, f64),
+    /// The axes of the flange in the tool frame.
+    tool_from_flange: [Vector3<f64>; 3],
+    /// Tool centre point from the wrist centre, in the tool frame. m
+    lever: Vector3<f64>,
+    /// The axes of every path point in the workpiece frame.
+    workpiece_from_point: Vec<Matrix3<f64>>,
     instructions: Instructions,
 }
 
@@ -90,7 +97,7 @@ struct Turning {
 
 impl Turning {
     /// A vector given in the tool frame, on point axes given as columns in the root frame (Caro 2013, eq. 7 and 10).
-    fn new(axes: &nalgebra::Matrix3<f64>, v: &Vector3<f64>) -> Self {
+    fn new(axes: &Matrix3<f64>, v: &Vector3<f64>) -> Self {
         let (x, y, z) = (axes.column(0), axes.column(1), axes.column(2));
         Self { a: -z * v.z, b: x * v.x - y * v.y, c: x * v.y + y * v.x }
     }
@@ -124,6 +131,9 @@ impl<'a> BatchEvaluator<'a> {
         let count = grid.beta_count;
         let padded = count.next_multiple_of(MAX_LANES);
         let angle = |k: usize| libm::sincos(grid.beta(k % count));
+        let tool_from_flange = problem.spindle.flange_from_tool.inverse().rotation;
+        let mut lever = problem.spindle.flange_from_tool.translation;
+        lever.z += problem.robot.geometry().flange;
         let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
         Self {
             problem,
@@ -139,6 +149,9 @@ impl<'a> BatchEvaluator<'a> {
             is_over_worst: problem.is_over_worst(),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
+            tool_from_flange: std::array::from_fn(|k| tool_from_flange.column(k).into_owned()),
+            lever: tool_from_flange * lever,
+            workpiece_from_point: problem.task.points().iter().map(PathPoint::workpiece_from_point).collect(),
             instructions: Instructions::best(),
         }
     }
@@ -177,7 +190,8 @@ impl<'a> BatchEvaluator<'a> {
         for class in PostureClass::ALL {
             states.clear(class);
         }
-        if libm::hypot(geometry.tip.x, geometry.tip.y) < self.problem.constraints.min_base_distance {
+        let min_distance = self.problem.constraints.min_base_distance;
+        if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
             return;
         }
         self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
@@ -190,17 +204,14 @@ impl<'a> BatchEvaluator<'a> {
         let path_point = &self.problem.task.points()[point];
         let wrench = &self.problem.task.wrenches()[point];
         let rotation = root_from_base * workpiece.rotation;
-        let axes = rotation * path_point.workpiece_from_point();
-        let tool_from_flange = self.problem.spindle.flange_from_tool.inverse();
-        let mut lever = self.problem.spindle.flange_from_tool.translation;
-        lever.z += g.flange;
-        let flange_axis = |k: usize| Turning::new(&axes, &tool_from_flange.rotation.column(k).into_owned());
+        let axes = rotation * self.workpiece_from_point[point];
+        let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
         PointGeometry {
             tip: root_from_base * (workpiece.point(&path_point.position) - g.root_in_base),
             x6: flange_axis(0),
             y6: flange_axis(1),
             z6: flange_axis(2),
-            lever: Turning::new(&axes, &(tool_from_flange.rotation * lever)),
+            lever: Turning::new(&axes, &self.lever),
             directions: *self.problem.scored_directions(point, &axes).padded(),
             force: rotation * wrench.force,
             moment: rotation * wrench.moment,
