@@ -143,9 +143,16 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
             return None;
         }
         let scheme = estimate.candidate.scheme.clone();
-        let placement = &estimate.placement;
-        let solution = planned(planner, placement, scheme.as_deref(), spacing, &mut planner.workspace())?;
-        estimate.report.end_mean = solution.objective;
+        // What a subset gains may be lost on the whole path: the start may be the better one.
+        let ends = [estimate.placement, estimate.candidate.placement];
+        let solutions = ends
+            .par_iter()
+            .filter_map(|placement| planned(planner, placement, scheme.as_deref(), spacing, &mut planner.workspace()));
+        let solution = solutions
+            .collect::<Vec<_>>()
+            .into_iter()
+            .reduce(|end, start| if sense.compare(start.objective, end.objective).is_lt() { start } else { end })?;
+        (estimate.report.end, estimate.report.end_mean) = (solution.placement, solution.objective);
         Some((rank, Refined { solution, scheme }))
     };
     let mut planned: Vec<(usize, Refined)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
