@@ -117,8 +117,9 @@ pub struct Case {
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
     pub cycle: Cycle,
-    /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima.
-    pub active_bounds: Vec<ActiveBound>,
+    /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima; none where
+    /// they are not known.
+    pub active_bounds: Option<Vec<ActiveBound>>,
 }
 
 impl Case {

@@ -84,10 +84,10 @@ pub fn place(
             Sense::Max => &stated.worst,
         };
         let active_bounds = match plan_sense {
-            Sense::Min if monitor.should_stop() => Vec::new(),
+            Sense::Min if monitor.should_stop() => None,
             Sense::Min if placement_sense == Sense::Min => active_bounds(&untied, &solution.solution),
-            Sense::Min => active_walls(&planner, &solution.solution, solution.scheme.as_deref()),
-            Sense::Max => Vec::new(),
+            Sense::Min => Some(active_walls(&planner, &solution.solution, solution.scheme.as_deref())),
+            Sense::Max => Some(Vec::new()),
         };
         Case {
             placement_sense,

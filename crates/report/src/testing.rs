@@ -171,7 +171,7 @@ impl Grid {
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
         };
         let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Vec::new() }
+        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Some(Vec::new()) }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.

@@ -42,7 +42,7 @@ impl Score {
             placement: self.placement,
             plan: plan.clone(),
             cycle: cycle.clone(),
-            active_bounds: Vec::new(),
+            active_bounds: None,
         };
         [case(Sense::Min, &self.best, of_best), case(Sense::Max, &self.worst, of_worst)]
     }

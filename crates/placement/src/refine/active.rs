@@ -20,12 +20,15 @@ const FLOOR: f64 = 1e-5;
 /// A wall nearer than this is touched. Scaled
 const TOUCHED: f64 = 1e-5;
 
-/// The bounds that hold a best placement, the largest gains first; nothing where the subproblem has no solution.
-pub fn active_bounds(problem: &Problem, solution: &Solution) -> Vec<ActiveBound> {
-    let question = Question { trust: NEIGHBOURHOOD, curved: true, pose_stays: false };
-    let answer = linearise(problem, solution, Curvature::Beta)
-        .and_then(|locals| solve(problem, solution, &locals, question).ok());
-    let Some(Answer { multipliers: mut gains, .. }) = answer else { return Vec::new() };
+/// The bounds that hold a best placement, the largest gains first; none where the subproblem has no solution, so that they are not
+/// known.
+pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<ActiveBound>> {
+    let locals = linearise(problem, solution, Curvature::Beta)?;
+    // Without its curvature the model of a long path is better scaled in so small a neighbourhood.
+    let answers = [true, false].into_iter().filter_map(|curved| {
+        solve(problem, solution, &locals, Question { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
+    });
+    let Answer { multipliers: mut gains, .. } = { answers }.next()?;
     // The gains of all points that one bound holds add up.
     gains.sort_by_key(|(side, _)| *side);
     let mut bounds: Vec<ActiveBound> = Vec::new();
@@ -43,7 +46,7 @@ pub fn active_bounds(problem: &Problem, solution: &Solution) -> Vec<ActiveBound>
             bound.gain /= solution.objective;
         }
     }
-    sorted(bounds)
+    Some(sorted(bounds))
 }
 
 /// How far the difference reaches that measures the gain of a wall at a worst placement, in scaled variables.

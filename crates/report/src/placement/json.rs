@@ -146,7 +146,7 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "deflection_mm": deflection_mm(&case.plan.deflection),
         "postures": case.plan.postures,
         "mean_by_stiffness": mean_by_stiffness(&case.plan),
-        "active_bounds": case.active_bounds.iter().map(active_bound).collect::<Vec<_>>(),
+        "active_bounds": case.active_bounds.as_ref().map(|bounds| bounds.iter().map(active_bound).collect::<Vec<_>>()),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
         "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),

@@ -92,16 +92,19 @@ const NAMED: usize = 3;
 /// Which bounds hold a best or worst placement, and what moving them would gain: a line each.
 fn held_by(case: &Case) -> Vec<String> {
     let word = names::sense(case.placement_sense);
-    if case.active_bounds.is_empty() {
+    let Some(bounds) = &case.active_bounds else {
+        return vec![format!("which bounds hold the {word} placement is not known")];
+    };
+    if bounds.is_empty() {
         return vec![format!("no bound holds the {word} placement: the robot and the path decide")];
     }
     let mut lines = vec![format!("the {word} placement is held by")];
-    lines.extend(case.active_bounds.iter().take(NAMED).map(|bound| {
+    lines.extend(bounds.iter().take(NAMED).map(|bound| {
         let (gain, unit) = names::gain(bound);
         let side = if bound.side.is_upper { "upper" } else { "lower" };
         format!("  {} ({side}): {} {unit}", names::limit(bound.side.limit), figures(gain))
     }));
-    let others = case.active_bounds.len().saturating_sub(NAMED);
+    let others = bounds.len().saturating_sub(NAMED);
     lines.extend((others > 0).then(|| format!("  and {others} more")));
     lines
 }

@@ -21,7 +21,7 @@ fn gains_are_what_a_moved_wall_brings() {
             .0
     };
     let optimum = best(&problem, &start);
-    let bounds = active_bounds(&problem, &optimum);
+    let bounds = active_bounds(&problem, &optimum).unwrap();
     let wall = Side { limit: Limit::CellY, is_upper: true };
     let gain = bounds.iter().find(|bound| bound.side == wall).map_or(0.0, |bound| bound.gain);
     assert!(gain > 0.0, "{bounds:?}");
