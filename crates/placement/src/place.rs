@@ -86,7 +86,7 @@ pub fn place(
     let sets = if interrupted { Vec::new() } else { set_outcomes(problem, &best_case, &found, monitor) };
     Ok(Outcome {
         sets,
-        notes: notes::of(problem, &best_case.plan),
+        notes: notes::of(problem, &best_case.plan, &best_case.cycle.feed),
         sensitivity,
         cases: Cases {
             best: best_case,
