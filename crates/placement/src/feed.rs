@@ -12,7 +12,8 @@
 //! known.
 //!
 //! q' is exact at both ends of each step from point to point and between them, at poses so close that no joint turns by more than
-//! [`MAX_TURN`] from one to the next; so it is with a joint that is fast only near a singularity between two points.
+//! [`MAX_TURN`] from one to the next and speeds are much the same, and interpolated by a parabola from pose to pose: so a joint is found that
+//! is fast only near a singularity between two points.
 //!
 //! q' jumps where the straight lines meet, and with it beta, whose plan is piecewise linear. A controller blends there, so accelerations are
 //! those of the path blended over a distance w: the mean of q'' within w of s, weighted by a triangle,
@@ -36,6 +37,8 @@ use stead_numerics::scalar::Dual;
 
 /// The largest turn of a joint between poses at which its speed is evaluated. rad
 const MAX_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// The largest change of the speed of a joint between these poses, by its limit, beside the largest speed of any joint by its own.
+const MAX_CHANGE: f64 = 0.2;
 /// A step is halved this often at the most.
 const MAX_HALVINGS: usize = 10;
 /// Poses of the blended path on each blending distance.
@@ -186,18 +189,15 @@ impl Limits {
     /// The step to a place (from 1) of a segment's plan.
     fn step(&self, problem: &Problem, segment: usize, plan: &SegmentPlan, place: usize) -> Step {
         let ends = [&plan.joints[place - 1], &plan.joints[place]];
-        let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, ends);
+        let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
+        let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, weights, ends);
         let length = motion.travel.norm();
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
         let nodes = motion.nodes(ends, spacing / length);
         let point = plan.points.start + place;
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
-        let between = nodes.windows(2).map(|pair| {
-            let part = pair[1].part - pair[0].part;
-            let rates = std::array::from_fn(|j| (pair[1].joints[j] - pair[0].joints[j]) / part);
-            (pair[0].part + part / 2.0, rates)
-        });
+        let between = nodes.windows(2).map(|pair| (f64::midpoint(pair[0].part, pair[1].part), rates_between(pair)));
         let limit = at_nodes.chain(between).filter_map(|(part, rates): (f64, [f64; 6])| {
             let feeds = (0..6).filter_map(|j| Some((self.speeds[j]? * length / rates[j].abs(), j + 1)));
             let (feed, joint) = smallest(feeds)?;
@@ -255,10 +255,28 @@ struct Node {
     rates: Option<[f64; 6]>,
 }
 
+/// The largest rates of the joints between two poses in a row: their averages, or at the vertex of the parabola that has the rates at both
+/// ends and the average between, where the vertex is between the two. rad
+fn rates_between(pair: &[Node]) -> [f64; 6] {
+    let (from, to) = (&pair[0], &pair[1]);
+    std::array::from_fn(|j| {
+        let average = (to.joints[j] - from.joints[j]) / (to.part - from.part);
+        let (Some(first), Some(last)) = (from.rates, to.rates) else { return average };
+        // first + linear t + square t^2 for t from 0 to 1.
+        let linear = 6.0 * average - 4.0 * first[j] - 2.0 * last[j];
+        let square = 3.0 * (first[j] + last[j] - 2.0 * average);
+        let vertex = -linear / (2.0 * square);
+        let at_vertex = first[j] + linear * vertex / 2.0;
+        if vertex > 0.0 && vertex < 1.0 && at_vertex.abs() > average.abs() { at_vertex } else { average }
+    })
+}
+
 /// A linear move of the tool: its point along a straight line, the tool about a fixed axis.
 struct LinearMotion<'a> {
     robot: &'a Robot,
     posture: Posture,
+    /// What the speed of each joint counts in comparisons: the inverse of its limit, zero where that is not known. s/rad
+    weights: [f64; 6],
     /// Tool centre point in the flange frame. m
     tool: Vector3<f64>,
     /// Flange frame to base frame at the start.
@@ -272,13 +290,20 @@ struct LinearMotion<'a> {
 }
 
 impl<'a> LinearMotion<'a> {
-    fn new(robot: &'a Robot, flange_from_tool: &Pose<f64>, posture: Posture, ends: [&[f64; 6]; 2]) -> Self {
+    fn new(
+        robot: &'a Robot,
+        flange_from_tool: &Pose<f64>,
+        posture: Posture,
+        weights: [f64; 6],
+        ends: [&[f64; 6]; 2],
+    ) -> Self {
         let tool = flange_from_tool.translation;
         let [from, to] = ends.map(|joints| robot.forward(joints));
         let start = from.point(&tool);
         Self {
             robot,
             posture,
+            weights,
             tool,
             rotation: from.rotation,
             start,
@@ -301,8 +326,8 @@ impl<'a> LinearMotion<'a> {
         Some((joints.map(|joint| joint.value), joints.map(|joint| joint.gradient[0])))
     }
 
-    /// Both ends, the middle, and as many poses between that neither a joint turns by more than [`MAX_TURN`] nor more than `max_part` of the
-    /// way is done from one to the next.
+    /// Both ends, the middle, and as many poses between that from one to the next no joint turns by more than [`MAX_TURN`], speeds are much
+    /// the same, and no more than `max_part` of the way is done.
     fn nodes(&self, ends: [&[f64; 6]; 2], max_part: f64) -> Vec<Node> {
         let end =
             |part: f64, joints: &[f64; 6]| Node { part, joints: *joints, rates: self.at(part).map(|(_, rates)| rates) };
@@ -313,9 +338,17 @@ impl<'a> LinearMotion<'a> {
         nodes
     }
 
+    /// Whether the speeds of all joints are much the same at two poses.
+    fn is_even(&self, from: &Node, to: &Node) -> bool {
+        let (Some(first), Some(last)) = (from.rates, to.rates) else { return true };
+        let weighed = |rate: f64, j: usize| self.weights[j] * rate.abs();
+        let largest = (0..6).map(|j| weighed(first[j], j).max(weighed(last[j], j))).fold(0.0, f64::max);
+        (0..6).all(|j| weighed(last[j] - first[j], j) <= MAX_CHANGE * largest)
+    }
+
     fn halve(&self, from: &Node, to: &Node, max_part: f64, halvings: usize, nodes: &mut Vec<Node>) {
         let widest = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
-        let is_fine = halvings > 0 && widest <= MAX_TURN && to.part - from.part <= max_part;
+        let is_fine = halvings > 0 && widest <= MAX_TURN && to.part - from.part <= max_part && self.is_even(from, to);
         if is_fine || halvings == MAX_HALVINGS {
             return;
         }

@@ -120,7 +120,7 @@ fn a_single_point_holds_any_feed() {
 
 /// The largest speeds of the joints per unit of feed along a plan, from densely sampled joint angles alone. rad/m
 fn largest_speeds(problem: &Problem, plan: &SegmentPlan) -> Option<[f64; 6]> {
-    const PARTS: usize = 1000;
+    const PARTS: usize = 4000;
     let tool = &problem.spindle.flange_from_tool;
     let mut largest = [0.0_f64; 6];
     for pair in plan.joints.windows(2) {
@@ -148,16 +148,16 @@ fn largest_speeds(problem: &Problem, plan: &SegmentPlan) -> Option<[f64; 6]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(40))]
     #[test]
     fn at_the_highest_feed_every_speed_holds_and_beyond_it_one_does_not(
         start in prop::array::uniform6(-0.4..0.4_f64),
         changes in prop::collection::vec(prop::array::uniform6(-0.06..0.06_f64), 2..6),
         speeds in prop::array::uniform6(0.5..3.0_f64),
-        wrist in 0.02..0.8_f64,
+        wrist in 0.1..0.8_f64,
     ) {
         let problem = problem(speeds.map(|speed| (Some(speed), None)), true);
-        let middle = [0.0, 1.0, -1.7, 0.2, 0.0, 0.4];
+        let middle = [0.0, 1.0, -2.4, 0.2, 0.0, 0.4];
         let mut joints: [f64; 6] = std::array::from_fn(|j| middle[j] + start[j]);
         joints[4] = wrist;
         let mut path = vec![joints];
@@ -167,6 +167,9 @@ proptest! {
         }
         let posture = Posture::of(&problem.robot, &path[0]);
         prop_assume!(path.iter().all(|joints| Posture::of(&problem.robot, joints) == posture));
+        let tips = path.iter().map(|joints| problem.robot.forward(joints).then(&problem.spindle.flange_from_tool));
+        let tips: Vec<Vector3<f64>> = tips.map(|pose| pose.translation).collect();
+        prop_assume!(tips.windows(2).all(|pair| (pair[1] - pair[0]).norm() > 1e-3));
         let plan = plan(&problem.robot, path);
         let Some(largest) = largest_speeds(&problem, &plan) else { return Ok(()) };
         let limit = cut_feed(&problem, BLEND, &[plan]).highest().unwrap();
@@ -176,9 +179,8 @@ proptest! {
     }
 }
 
-/// Joints that are singular nowhere near: a sanity check of the poses of other arms.
 #[test]
-fn an_arm_with_offsets_is_followed_too() {
+fn an_arm_with_offsets_and_a_tilted_base_is_followed_too() {
     let wide = (-350.0, 350.0);
     let mut joints = robot_from([
         (20.0, 0.1, 0.4, wide.0, wide.1, 1.0),
@@ -193,7 +195,7 @@ fn an_arm_with_offsets_is_followed_too() {
     joints.iter_mut().for_each(|joint| joint.max_speed = Some(1.5));
     let mut problem = five_segments();
     problem.robot = Robot::new("odd", joints).unwrap();
-    let path = (0..20).map(|k| [0.3, 0.9, -1.2, 0.4, 0.8, -0.2].map(|angle| angle * (1.0 + 0.02 * f64::from(k))));
+    let path = (0..8).map(|k| [0.3, 0.9, -0.6, 0.4, 0.8, -0.2].map(|angle| angle * (1.0 + 0.02 * f64::from(k))));
     let plan = plan(&problem.robot, path.collect());
     let largest = largest_speeds(&problem, &plan).unwrap().into_iter().fold(0.0, f64::max);
     let limit = cut_feed(&problem, BLEND, &[plan]).highest().unwrap();
