@@ -169,6 +169,8 @@ proptest! {
         prop_assume!(path.iter().all(|joints| Posture::of(&problem.robot, joints) == posture));
         let tips = path.iter().map(|joints| problem.robot.forward(joints).then(&problem.spindle.flange_from_tool));
         let tips: Vec<Vector3<f64>> = tips.map(|pose| pose.translation).collect();
+        // Nearer to the singularity of the wrist the samples are too far apart.
+        prop_assume!(path.iter().all(|joints| joints[4] > 0.08));
         prop_assume!(tips.windows(2).all(|pair| (pair[1] - pair[0]).norm() > 1e-3));
         let plan = plan(&problem.robot, path);
         let Some(largest) = largest_speeds(&problem, &plan) else { return Ok(()) };
