@@ -12,6 +12,7 @@ mod criterion;
 mod discretisation;
 mod documents;
 mod facade;
+mod feed;
 mod help;
 mod identify;
 mod identify_plan;

@@ -9,7 +9,8 @@
 //!   planner.
 //! - [`candidate`]: a placement with its objective value; [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`sensitivity`]: how a result answers to the stiffness of the joints and to errors of the force.
-//! - [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not allowed.
+//! - [`feed`]: the feed that the arm holds; [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not
+//!   allowed.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`sense`]: minimise or maximise.
 //!
 //! Where the paper (Caro et al. 2013) leaves a choice or has a misprint, this room does as follows. Eq. 8 is a plain
@@ -25,6 +26,7 @@ pub mod criterion;
 pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
+pub mod feed;
 pub mod limit;
 pub mod lookup;
 pub mod objective;

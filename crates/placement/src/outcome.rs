@@ -1,6 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
 use super::feasibility::{DeflectionMap, deflection_map};
+use super::feed::CutFeed;
 use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
@@ -159,7 +160,9 @@ impl Cases {
 /// How long the cut takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cycle {
-    /// Time in the cut: path length over feed. s
+    /// The feed that the arm holds.
+    pub feed: CutFeed,
+    /// Time in the cut: the length of each segment over the feed held there. s
     pub cutting: f64,
     /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
     pub transfers: Vec<Transfer>,

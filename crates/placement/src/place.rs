@@ -107,7 +107,7 @@ pub fn place(
     Ok(Outcome {
         sets: sets.outcomes(&best_case),
         set_basins: sets.basins,
-        notes: notes::of(problem, &best_case.plan),
+        notes: notes::of(problem, &best_case.plan, &best_case.cycle.feed),
         sensitivity,
         cases: Cases {
             best: best_case,

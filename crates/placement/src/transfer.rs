@@ -3,6 +3,7 @@
 //! Each joint moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal profiles
 //! come from rsruckig. Only the time is computed: that the move clears the workpiece is for the programmer to see to.
 
+use super::feed::cut_feed;
 use super::outcome::{Cycle, Transfer};
 use super::problem::Problem;
 use super::redundancy::SegmentPlan;
@@ -12,10 +13,11 @@ use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 /// A joint that moves by less than this stands still. rad
 const STANDSTILL: f64 = 1e-7;
 
-/// The times of a plan: the cut itself and the moves between segments.
+/// The times of a plan: the cut itself, each segment with the feed that the arm holds, and the moves between segments.
 pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
     let path = problem.task.path();
-    let cutting = (0..path.segments().len()).map(|s| path.segment_length(s)).sum::<f64>() / problem.redundancy.feed;
+    let feed = cut_feed(problem, settings.blend, plans);
+    let cutting = (0..path.segments().len()).map(|s| path.segment_length(s) / feed.held(s)).sum();
     let transfers = plans
         .windows(2)
         .enumerate()
@@ -25,7 +27,7 @@ pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPla
             Some(Transfer { after_segment: index + 1, duration: duration(problem, settings, from, to), travel })
         })
         .collect();
-    Cycle { cutting, transfers }
+    Cycle { feed, cutting, transfers }
 }
 
 /// Shortest time from rest at `from` to rest at `to` (joint angles in rad); `None` when a joint that has to move has no

@@ -4,6 +4,7 @@ use crate::units::Unit;
 use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
+use stead_placement::feed::{CutFeed, FeedLimit};
 use stead_placement::outcome::DeflectionFigures;
 use stead_placement::problem::Placement;
 
@@ -113,6 +114,22 @@ pub fn deflection_mm(figures: &DeflectionFigures) -> Value {
         "feed": mean_and_max(&figures.feed),
         "axis": mean_and_max(&figures.axis),
         "total": mean_and_max(&figures.total),
+    })
+}
+
+/// The programmed feed, the highest that a plan holds with what decides it, and the highest of each segment; null where no limit of the
+/// joints is known.
+pub fn cut_feed(feed: &CutFeed) -> Value {
+    let speed = |feed: f64| Unit::SPEED_MM_PER_S.number(feed);
+    let highest = feed.highest();
+    let decided_by = highest.map(|FeedLimit { kind, joint, segment, point, .. }| {
+        json!({ "kind": kind, "joint": joint, "segment": segment, "point": point })
+    });
+    json!({
+        "programmed_mm_per_s": speed(feed.programmed),
+        "highest_mm_per_s": highest.map(|limit| speed(limit.feed)),
+        "decided_by": decided_by,
+        "segments_mm_per_s": feed.segments.iter().map(|limit| limit.map(|limit| speed(limit.feed))).collect::<Vec<_>>(),
     })
 }
 

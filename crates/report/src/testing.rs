@@ -10,6 +10,7 @@ use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
 use stead_placement::feasibility::{DeflectionMap, MapCell};
+use stead_placement::feed::{CutFeed, FeedLimit, FeedLimitKind};
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::sense::Sense;
@@ -170,7 +171,18 @@ impl Grid {
                 (placement_sense == Sense::Min || plan_sense == Sense::Min || k != 2).then_some(0.4 * k as f64);
             Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
         };
-        let cycle = Cycle { cutting: 29.52, transfers: (1..5).map(transfer).collect() };
+        let limit = |k: usize| FeedLimit {
+            feed: 0.08 - 0.005 * k as f64,
+            kind: FeedLimitKind::Speed,
+            joint: 6,
+            segment: k + 1,
+            point: 21 * k + 4,
+        };
+        let feed = CutFeed {
+            programmed: problem().redundancy.feed,
+            segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
+        };
+        let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };
         Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Some(Vec::new()) }
     }
 

@@ -25,6 +25,8 @@ ranges! {
     BelowOne: Included(0.0), Excluded(1.0);
     /// A margin of joint angles. deg
     Margin: Included(0.0), Excluded(180.0);
+    /// A blending distance. mm
+    Blend: Included(0.1), Included(1000.0);
 }
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
@@ -173,7 +175,7 @@ pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Plac
     Ok(())
 }
 
-/// Moves between segments, for joints whose row of the robot file has no acceleration or jerk.
+/// Moves between segments, for joints whose row of the robot file has no acceleration or jerk; and how the cut is blended.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TransferTable {
@@ -181,6 +183,8 @@ pub struct TransferTable {
     pub acceleration_time_s: Option<S<Positive>>,
     /// Time from no to full acceleration.
     pub jerk_time_s: Option<S<Positive>>,
+    /// Distance along the cut over which the controller blends changes of the joint speeds.
+    pub blend_mm: Option<Mm<Blend>>,
 }
 
 impl TransferTable {
@@ -189,6 +193,7 @@ impl TransferTable {
         TransferSettings {
             acceleration_time: self.acceleration_time_s.map_or(default.acceleration_time, Quantity::si),
             jerk_time: self.jerk_time_s.map_or(default.jerk_time, Quantity::si),
+            blend: self.blend_mm.map_or(default.blend, Quantity::si),
         }
     }
 }
@@ -219,7 +224,7 @@ mod tests {
     #[test]
     fn optional_tables_override_the_defaults() {
         let more = "[criterion]\nforce_uncertainty = 0.1\n[search]\nseed = 9223372036854775807\npopulation = 40\n\
-                    postures = 'genetic'\ntables = 'never'\n[transfer]\njerk_time_s = 0.2\n";
+                    postures = 'genetic'\ntables = 'never'\n[transfer]\njerk_time_s = 0.2\nblend_mm = 2\n";
         let text = format!("{RUN}{more}").replace("z_mm = [-500, -500]", "z_mm = [-500, -500]\nq4 = [0.5, 0.5]");
         let run = read(&text.replace("length_mm = 682", "length_mm = 682\nmax_deflection_mm = 1.5")).unwrap();
         assert_eq!(run.problem.criterion.force_uncertainty, 0.1);
@@ -236,7 +241,7 @@ mod tests {
             ..default
         };
         assert_eq!(run.search, expected);
-        assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, ..TransferSettings::default() });
+        assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, blend: 2e-3, ..TransferSettings::default() });
         assert!(run.reference.is_none() && run.notes.is_empty());
     }
 
@@ -274,6 +279,7 @@ mod tests {
             ("[cell]", "[search]\npostures = 'all'\n[cell]", [":7: search.postures: ", "found 'all'", "\"genetic\""]),
             ("[cell]", "[search]\ntables = 'some'\n[cell]", [":7: search.tables: ", "found 'some'", "\"always\""]),
             ("[cell]", "[transfer]\njerk_time_s = 0\n[cell]", [":7: transfer.jerk_time_s: ", "found 0", "above 0"]),
+            ("[cell]", "[transfer]\nblend_mm = 0\n[cell]", [":7: transfer.blend_mm: ", "found 0", "from 0.1 to 1000"]),
             (
                 "[cell]",
                 "[reference]\nsource = 'x'\ncase_mm = [1, 2, 3, 0]\n[cell]",

@@ -1,6 +1,7 @@
 //! What should be known about a result.
 
 use crate::criterion::Criterion;
+use crate::feed::CutFeed;
 use crate::outcome::{CANCELLATION, Plan};
 use crate::problem::Problem;
 use stead_model::plausibility;
@@ -17,9 +18,23 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
 }
 
 /// What should be known about a best plan though nothing is wrong with it.
-pub(super) fn of(problem: &Problem, plan: &Plan) -> Vec<String> {
+pub(super) fn of(problem: &Problem, plan: &Plan, feed: &CutFeed) -> Vec<String> {
     let large = plausibility::deflection(plan.deflection.total.max);
-    small_part(problem, plan).into_iter().chain(large).collect()
+    small_part(problem, plan).into_iter().chain(large).chain(slowed(feed)).collect()
+}
+
+/// A note that the arm does not hold the programmed feed.
+fn slowed(feed: &CutFeed) -> Option<String> {
+    let (segments, limit) = (feed.slowed(), feed.highest()?);
+    (segments > 0).then(|| {
+        format!(
+            "the best plan does not hold the programmed feed of {} mm/s but {} mm/s: {limit}, decides; {segments} of {} segments are \
+             slower, and cutting times are with the highest feed of each",
+            figures(feed.programmed * 1e3),
+            figures(limit.feed * 1e3),
+            feed.segments.len()
+        )
+    })
 }
 
 /// A scored part below this share of the whole deflection is small.

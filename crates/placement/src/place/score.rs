@@ -67,12 +67,13 @@ pub fn score(
     };
     let warnings = cancellation(problem, best.objective).into_iter().collect();
     let plan = detailed(problem, placement, &best.plans);
+    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans));
     Ok(Score {
         placement: *placement,
-        notes: notes::of(problem, &plan),
+        notes: notes::of(problem, &plan, &cycles[0].feed),
         best: plan,
         worst: detailed(problem, placement, &worst),
-        cycles: [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans)),
+        cycles,
         interrupted: monitor.should_stop(),
         warnings,
     })

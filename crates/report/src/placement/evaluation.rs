@@ -1,8 +1,8 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
 use super::Context;
-use crate::columns::aligned;
-use crate::document::{deflection_mm, placement as placement_json, placement_exact, put_deviation};
+use crate::columns::{aligned, line};
+use crate::document::{cut_feed, deflection_mm, placement as placement_json, placement_exact, put_deviation};
 use crate::names;
 use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
@@ -27,6 +27,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
             "p95_mm": Unit::DEFLECTION_MM.number(plan.percentiles[1]),
             "deflection_mm": deflection_mm(&plan.deflection),
             "postures": plan.postures,
+            "feed": cut_feed(&cycle.feed),
             "cutting_s": Unit::TIME_S.number(cycle.cutting),
             "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
         });
@@ -88,7 +89,11 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .stability
         .as_ref()
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
-    format!("{}\n\n{}{}", place_text(&score.placement), aligned(&rows, &[0, last]), stability.unwrap_or_default())
+    let mut feed = String::new();
+    super::text::highest_feed(&score.cycles[0].feed).iter().for_each(|row| line(&mut feed, row));
+    let feed = if feed.is_empty() { feed } else { format!("\n{feed}") };
+    let stability = stability.unwrap_or_default();
+    format!("{}\n\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
 }
 
 /// What `stead explain --json` prints.

@@ -4,7 +4,7 @@
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
 use super::Context;
-use crate::document::{Timing, deflection_mm, placement, placement_exact, put_deviation};
+use crate::document::{Timing, cut_feed, deflection_mm, placement, placement_exact, put_deviation};
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
@@ -147,6 +147,7 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "postures": case.plan.postures,
         "mean_by_stiffness": mean_by_stiffness(&case.plan),
         "active_bounds": case.active_bounds.as_ref().map(|bounds| bounds.iter().map(active_bound).collect::<Vec<_>>()),
+        "feed": cut_feed(&case.cycle.feed),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
         "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
@@ -287,6 +288,7 @@ fn transfer_settings(context: &Context) -> Value {
     json!({
         "acceleration_time_s": number(Unit::TIME_S, context.transfer.acceleration_time),
         "jerk_time_s": number(Unit::TIME_S, context.transfer.jerk_time),
+        "blend_mm": number(Unit::PLACE_MM, context.transfer.blend),
     })
 }
 

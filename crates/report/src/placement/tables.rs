@@ -7,6 +7,7 @@ use crate::units::{Unit, fixed};
 use stead_model::published::Published;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
+use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::feasibility::DeflectionMap;
 use stead_placement::outcome::{Cases, DeflectionFigures, Generation, Plan, PlanPoint, Refinement};
 use stead_placement::problem::{Placement, Problem};
@@ -75,7 +76,7 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 /// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
 /// the ratio where case 1 is a cancellation. `mean_mm` and `max_mm` are of the scores, `objective_mm` is what was minimised. The
 /// last column, `mean_std_mm`, is there where the robot's uncertainty is known: the standard deviation of the mean of the
-/// scored part.
+/// scored part. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -102,6 +103,7 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         "max_axis_mm",
         "mean_total_mm",
         "max_total_mm",
+        "max_feed_mm_per_s",
     ];
     header.extend(cases.best.plan.deflection.surface.iter().flat_map(|_| ["mean_surface_mm", "max_surface_mm"]));
     header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
@@ -118,8 +120,10 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         row.push(Unit::TIME_S.text_or_empty(total));
         row.push(Unit::DEFLECTION_MM.text(case.plan.objective));
         let DeflectionFigures { wall, axis, total, surface, .. } = case.plan.deflection;
-        let figures = [wall, axis, total].into_iter().chain(surface).flat_map(|figures| [figures.mean, figures.max]);
-        row.extend(figures.map(|value| Unit::DEFLECTION_MM.text(value)));
+        let pair = |figures: MeanAndMax| [figures.mean, figures.max].map(|value| Unit::DEFLECTION_MM.text(value));
+        row.extend([wall, axis, total].into_iter().flat_map(pair));
+        row.push(Unit::SPEED_MM_PER_S.text_or_empty(case.cycle.feed.highest().map(|limit| limit.feed)));
+        row.extend(surface.into_iter().flat_map(pair));
         row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
         row
     });

@@ -6,6 +6,7 @@ use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::criterion::Over;
+use stead_placement::feed::{CutFeed, FeedLimit};
 use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_placement::problem::Problem;
 use stead_placement::symmetry::Unsupported;
@@ -32,6 +33,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));
+    highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
         text.push_str(&aligned(&set_rows(outcome, context), &[0]));
@@ -118,6 +120,18 @@ fn stiffest(plan: &Plan) -> String {
         "joint {joint} matters most to the best placement: 1 % more stiffness changes its mean by {} % (same plan)",
         figures(share)
     )
+}
+
+/// The highest feed of a best plan and what decides it, a line each, where a limit of the joints is known.
+pub(super) fn highest_feed(feed: &CutFeed) -> Vec<String> {
+    let lines = |limit: FeedLimit| {
+        let [highest, programmed] = [limit.feed, feed.programmed].map(|feed| figures(feed * 1e3));
+        vec![
+            format!("the best plan holds a feed of up to {highest} mm/s (programmed: {programmed} mm/s)"),
+            format!("  what decides: {limit}"),
+        ]
+    };
+    feed.highest().map_or_else(Vec::new, lines)
 }
 
 /// What each stiffness set makes of the best placement.

@@ -1,0 +1,369 @@
+//! The feed that the arm holds along a plan: with which no joint is faster, or accelerated more, than the robot file allows.
+//!
+//! From path point to path point the tool moves as in a linear move of a robot controller: the tool centre point along the straight
+//! line, the tool about one fixed axis, both in proportion to the way s. So the joint angles are functions q(s) of the way, and at a
+//! constant feed v
+//!
+//! ```text
+//! speed q'(s) v        acceleration q''(s) v^2
+//! ```
+//!
+//! The highest feed of a segment is the smallest of `limit / |q'|` and `sqrt(limit / |q''|)` over its length and all joints whose limit is
+//! known.
+//!
+//! q' is exact at both ends of each step from point to point and between them, at poses so close that no joint turns by more than
+//! [`MAX_TURN`] from one to the next and speeds are much the same, and interpolated by a parabola from pose to pose: so a joint is found that
+//! is fast only near a singularity between two points.
+//!
+//! q' jumps where the straight lines meet, and with it beta, whose plan is piecewise linear. A controller blends there, so accelerations are
+//! those of the path blended over a distance w: the mean of q'' within w of s, weighted by a triangle,
+//!
+//! ```text
+//! q''(s) = (q(s + w) - 2 q(s) + q(s - w)) / w^2
+//! ```
+//!
+//! (as a divided difference, where the poses at hand are a little farther apart than w). Within w of the ends of a segment, where the feed
+//! starts and stops, accelerations are not evaluated.
+
+use crate::problem::Problem;
+use crate::redundancy::SegmentPlan;
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt;
+use stead_model::robot::{Joint, Pose, Posture, Robot, angles::wrap};
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
+use stead_numerics::scalar::Dual;
+
+/// The largest turn of a joint between poses at which its speed is evaluated. rad
+const MAX_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// The largest change of the speed of a joint between these poses, by its limit, beside the largest speed of any joint by its own.
+const MAX_CHANGE: f64 = 0.2;
+/// A step is halved this often at the most.
+const MAX_HALVINGS: usize = 10;
+/// Poses of the blended path on each blending distance.
+const POSES_PER_BLEND: f64 = 4.0;
+/// Steps that one thread evaluates at least.
+const MIN_SHARE: usize = 250;
+/// A programmed feed that is higher by this share is held: rounding.
+const FEED_ROUNDING: f64 = 1e-6;
+
+/// What a joint has too little of for a higher feed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FeedLimitKind {
+    /// Speed.
+    Speed,
+    /// Acceleration.
+    Acceleration,
+}
+
+impl fmt::Display for FeedLimitKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Speed => "speed",
+            Self::Acceleration => "acceleration",
+        })
+    }
+}
+
+/// The highest feed of a stretch of the path, and what decides it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeedLimit {
+    /// The highest feed. m/s
+    pub feed: f64,
+    /// Whether a speed or an acceleration decides.
+    pub kind: FeedLimitKind,
+    /// The joint that decides, from 1.
+    pub joint: usize,
+    /// Number of the segment, from 1.
+    pub segment: usize,
+    /// Index of the path point that is nearest to where it decides, from 0.
+    pub point: usize,
+}
+
+impl FeedLimit {
+    fn smaller(self, other: Self) -> Self {
+        if other.feed < self.feed { other } else { self }
+    }
+}
+
+impl fmt::Display for FeedLimit {
+    /// What decides, without the feed.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, joint, segment, point, .. } = self;
+        write!(f, "{kind} of joint {joint} at point {point}, segment {segment}")
+    }
+}
+
+/// The feed of a cut: as programmed, and as the arm holds it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CutFeed {
+    /// The programmed feed. m/s
+    pub programmed: f64,
+    /// The highest feed of each segment; `None` where no limit of a joint is known or none of these joints moves.
+    pub segments: Vec<Option<FeedLimit>>,
+}
+
+impl CutFeed {
+    /// The highest feed of the whole path: that of the segment with the lowest.
+    pub fn highest(&self) -> Option<FeedLimit> {
+        self.segments.iter().flatten().copied().reduce(FeedLimit::smaller)
+    }
+
+    /// The feed with which a segment (from 0) is cut: the programmed one, or the highest where that is lower. m/s
+    pub fn held(&self, segment: usize) -> f64 {
+        let limit = self.segments.get(segment).copied().flatten();
+        limit.filter(|limit| self.is_beyond(limit)).map_or(self.programmed, |limit| limit.feed)
+    }
+
+    /// Number of segments that cannot be cut with the programmed feed.
+    pub fn slowed(&self) -> usize {
+        self.segments.iter().flatten().filter(|limit| self.is_beyond(limit)).count()
+    }
+
+    fn is_beyond(&self, limit: &FeedLimit) -> bool {
+        limit.feed < self.programmed * (1.0 - FEED_ROUNDING)
+    }
+}
+
+/// The feed that each segment of a plan holds; accelerations are those of the path blended over the distance `blend` (m).
+pub fn cut_feed(problem: &Problem, blend: f64, plans: &[SegmentPlan]) -> CutFeed {
+    let of = |limit: fn(&Joint) -> Option<f64>| problem.robot.joints().each_ref().map(limit);
+    let limits =
+        Limits { speeds: of(|joint| joint.max_speed), accelerations: of(|joint| joint.max_acceleration), blend };
+    let segment = |(index, plan): (usize, &SegmentPlan)| limits.segment(problem, index + 1, plan);
+    CutFeed { programmed: problem.redundancy.feed, segments: plans.par_iter().enumerate().map(segment).collect() }
+}
+
+/// The limits of the joints where they are known, rad/s and rad/s^2, and the blending distance, m.
+struct Limits {
+    speeds: [Option<f64>; 6],
+    accelerations: [Option<f64>; 6],
+    blend: f64,
+}
+
+/// The joint angles at a place of a segment.
+#[derive(Clone, Copy)]
+struct Sample {
+    /// Way from the start of the segment. m
+    way: f64,
+    /// The nearest path point.
+    point: usize,
+    /// rad
+    joints: [f64; 6],
+}
+
+/// What one step from path point to path point holds, and its poses without the first.
+struct Step {
+    limit: Option<FeedLimit>,
+    length: f64,
+    /// Ways are from the start of the step.
+    samples: Vec<Sample>,
+}
+
+impl Limits {
+    fn segment(&self, problem: &Problem, segment: usize, plan: &SegmentPlan) -> Option<FeedLimit> {
+        if self.speeds.iter().chain(&self.accelerations).all(Option::is_none) {
+            return None;
+        }
+        let steps = (1..plan.joints.len()).into_par_iter().with_min_len(MIN_SHARE);
+        let steps: Vec<Step> = steps.map(|place| self.step(problem, segment, plan, place)).collect();
+        let by_speed = steps.iter().filter_map(|step| step.limit).reduce(FeedLimit::smaller);
+        let by_acceleration = self.has_accelerations().then(|| {
+            let mut samples = vec![Sample { way: 0.0, point: plan.points.start, joints: plan.joints[0] }];
+            let mut start = 0.0;
+            for step in &steps {
+                samples.extend(step.samples.iter().map(|sample| Sample { way: start + sample.way, ..*sample }));
+                start += step.length;
+            }
+            self.by_acceleration(segment, &samples)
+        });
+        by_speed.into_iter().chain(by_acceleration.flatten()).reduce(FeedLimit::smaller)
+    }
+
+    fn has_accelerations(&self) -> bool {
+        self.accelerations.iter().any(Option::is_some)
+    }
+
+    /// The step to a place (from 1) of a segment's plan.
+    fn step(&self, problem: &Problem, segment: usize, plan: &SegmentPlan, place: usize) -> Step {
+        let ends = [&plan.joints[place - 1], &plan.joints[place]];
+        let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
+        let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, weights, ends);
+        let length = motion.travel.norm();
+        let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
+        let nodes = motion.nodes(ends, spacing / length);
+        let point = plan.points.start + place;
+        let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
+        let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
+        let between = nodes.windows(2).map(|pair| (f64::midpoint(pair[0].part, pair[1].part), rates_between(pair)));
+        let limit = at_nodes.chain(between).filter_map(|(part, rates): (f64, [f64; 6])| {
+            let feeds = (0..6).filter_map(|j| Some((self.speeds[j]? * length / rates[j].abs(), j + 1)));
+            let (feed, joint) = smallest(feeds)?;
+            Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point: nearest(part) })
+        });
+        let limit = limit.reduce(FeedLimit::smaller);
+        let samples = if self.has_accelerations() { &nodes[1..] } else { &[] };
+        let sample = |node: &Node| Sample { way: node.part * length, point: nearest(node.part), joints: node.joints };
+        Step { limit, length, samples: samples.iter().map(sample).collect() }
+    }
+
+    /// The highest feed of a segment by the accelerations of its joints.
+    fn by_acceleration(&self, segment: usize, samples: &[Sample]) -> Option<FeedLimit> {
+        let reach = self.blend * (1.0 - 1e-9);
+        let (mut before, mut after) = (0, 0);
+        let mut limit: Option<FeedLimit> = None;
+        for (index, here) in samples.iter().enumerate() {
+            while samples.get(after).is_some_and(|sample| sample.way - here.way < reach) {
+                after += 1;
+            }
+            let Some(next) = samples.get(after) else { break };
+            while before < index && here.way - samples[before + 1].way >= reach {
+                before += 1;
+            }
+            let last = &samples[before];
+            if here.way - last.way < reach {
+                continue;
+            }
+            let feeds = (0..6).filter_map(|j| {
+                let slope = |a: &Sample, b: &Sample| (b.joints[j] - a.joints[j]) / (b.way - a.way);
+                let curvature = 2.0 * (slope(here, next) - slope(last, here)) / (next.way - last.way);
+                Some((libm::sqrt(self.accelerations[j]? / curvature.abs()), j + 1))
+            });
+            let Some((feed, joint)) = smallest(feeds) else { continue };
+            let found = FeedLimit { feed, kind: FeedLimitKind::Acceleration, joint, segment, point: here.point };
+            limit = Some(limit.map_or(found, |known| known.smaller(found)));
+        }
+        limit
+    }
+}
+
+/// The smallest finite feed (m/s) with its joint.
+fn smallest(feeds: impl Iterator<Item = (f64, usize)>) -> Option<(f64, usize)> {
+    feeds.filter(|(feed, _)| feed.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a })
+}
+
+/// A pose of a step.
+#[derive(Clone, Copy)]
+struct Node {
+    /// The part of the step that is done.
+    part: f64,
+    /// Real joint angles. rad
+    joints: [f64; 6],
+    /// Their derivatives by the part, where the pose is reached. rad
+    rates: Option<[f64; 6]>,
+}
+
+/// The largest rates of the joints between two poses in a row: their averages, or at the vertex of the parabola that has the rates at both
+/// ends and the average between, where the vertex is between the two. rad
+fn rates_between(pair: &[Node]) -> [f64; 6] {
+    let (from, to) = (&pair[0], &pair[1]);
+    std::array::from_fn(|j| {
+        let average = (to.joints[j] - from.joints[j]) / (to.part - from.part);
+        let (Some(first), Some(last)) = (from.rates, to.rates) else { return average };
+        // first + linear t + square t^2 for t from 0 to 1.
+        let linear = 6.0 * average - 4.0 * first[j] - 2.0 * last[j];
+        let square = 3.0 * (first[j] + last[j] - 2.0 * average);
+        let vertex = -linear / (2.0 * square);
+        let at_vertex = first[j] + linear * vertex / 2.0;
+        if vertex > 0.0 && vertex < 1.0 && at_vertex.abs() > average.abs() { at_vertex } else { average }
+    })
+}
+
+/// A linear move of the tool: its point along a straight line, the tool about a fixed axis.
+struct LinearMotion<'a> {
+    robot: &'a Robot,
+    posture: Posture,
+    /// What the speed of each joint counts in comparisons: the inverse of its limit, zero where that is not known. s/rad
+    weights: [f64; 6],
+    /// Tool centre point in the flange frame. m
+    tool: Vector3<f64>,
+    /// Flange frame to base frame at the start.
+    rotation: Matrix3<f64>,
+    /// Tool centre point at the start. m
+    start: Vector3<f64>,
+    /// From there to the end. m
+    travel: Vector3<f64>,
+    /// Rotation vector of the whole turn in the flange frame. rad
+    turn: Vector3<f64>,
+}
+
+impl<'a> LinearMotion<'a> {
+    fn new(
+        robot: &'a Robot,
+        flange_from_tool: &Pose<f64>,
+        posture: Posture,
+        weights: [f64; 6],
+        ends: [&[f64; 6]; 2],
+    ) -> Self {
+        let tool = flange_from_tool.translation;
+        let [from, to] = ends.map(|joints| robot.forward(joints));
+        let start = from.point(&tool);
+        Self {
+            robot,
+            posture,
+            weights,
+            tool,
+            rotation: from.rotation,
+            start,
+            travel: to.point(&tool) - start,
+            turn: rotation_vector(&from.rotation.tr_mul(&to.rotation)),
+        }
+    }
+
+    /// The joint angles, turns left out, where this part of the way is done, and their derivatives by the part; `None` where the arm does
+    /// not reach. rad
+    fn at(&self, part: f64) -> Option<([f64; 6], [f64; 6])> {
+        let rotation = self.rotation * rotation_from_vector(&(self.turn * part));
+        let rotation_rate = rotation * self.turn.cross_matrix();
+        let flange = self.start + self.travel * part - rotation * self.tool;
+        let flange_rate = self.travel - rotation_rate * self.tool;
+        let dual = |value: f64, rate: f64| Dual::<1> { value, gradient: [rate] };
+        let pose =
+            Pose { rotation: rotation.zip_map(&rotation_rate, dual), translation: flange.zip_map(&flange_rate, dual) };
+        let joints = self.robot.inverse(&pose, self.posture).ok()?;
+        Some((joints.map(|joint| joint.value), joints.map(|joint| joint.gradient[0])))
+    }
+
+    /// Both ends, the middle, and as many poses between that from one to the next no joint turns by more than [`MAX_TURN`], speeds are much
+    /// the same, and no more than `max_part` of the way is done.
+    fn nodes(&self, ends: [&[f64; 6]; 2], max_part: f64) -> Vec<Node> {
+        let end =
+            |part: f64, joints: &[f64; 6]| Node { part, joints: *joints, rates: self.at(part).map(|(_, rates)| rates) };
+        let (from, to) = (end(0.0, ends[0]), end(1.0, ends[1]));
+        let mut nodes = vec![from];
+        self.halve(&from, &to, max_part, 0, &mut nodes);
+        nodes.push(to);
+        nodes
+    }
+
+    /// Whether the speeds of all joints are much the same at two poses.
+    fn is_even(&self, from: &Node, to: &Node) -> bool {
+        let (Some(first), Some(last)) = (from.rates, to.rates) else { return true };
+        let weighed = |rate: f64, j: usize| self.weights[j] * rate.abs();
+        let largest = (0..6).map(|j| weighed(first[j], j).max(weighed(last[j], j))).fold(0.0, f64::max);
+        (0..6).all(|j| weighed(last[j] - first[j], j) <= MAX_CHANGE * largest)
+    }
+
+    fn halve(&self, from: &Node, to: &Node, max_part: f64, halvings: usize, nodes: &mut Vec<Node>) {
+        let widest = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
+        let is_fine = halvings > 0 && widest <= MAX_TURN && to.part - from.part <= max_part && self.is_even(from, to);
+        if is_fine || halvings == MAX_HALVINGS {
+            return;
+        }
+        let part = (from.part + to.part) / 2.0;
+        let Some((wrapped, rates)) = self.at(part) else { return };
+        let joints = std::array::from_fn(|j| {
+            let middle = (from.joints[j] + to.joints[j]) / 2.0;
+            middle + wrap(wrapped[j] - middle)
+        });
+        let node = Node { part, joints, rates: Some(rates) };
+        self.halve(from, &node, max_part, halvings + 1, nodes);
+        nodes.push(node);
+        self.halve(&node, to, max_part, halvings + 1, nodes);
+    }
+}
+
+#[cfg(test)]
+mod tests;
