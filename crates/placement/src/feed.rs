@@ -11,9 +11,9 @@
 //! The highest feed of a segment is the smallest of `limit / |q'|` and `sqrt(limit / |q''|)` over its length and all joints whose limit is
 //! known.
 //!
-//! q' is exact at both ends of each step from point to point and between them, at poses so close that no joint turns by more than
-//! [`MAX_TURN`] from one to the next and speeds are much the same, and interpolated by a parabola from pose to pose: so a joint is found that
-//! is fast only near a singularity between two points.
+//! q' is exact at both ends of each step from point to point and between them, at poses so close that no joint turns by more than 2 deg from
+//! one to the next and speeds are much the same, and interpolated by a parabola from pose to pose: so a joint is found that is fast only near
+//! a singularity between two points.
 //!
 //! q' jumps where the straight lines meet, and with it beta, whose plan is piecewise linear. A controller blends there, so accelerations are
 //! those of the path blended over a distance w: the mean of q'' within w of s, weighted by a triangle,
