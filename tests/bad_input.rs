@@ -128,6 +128,30 @@ fn a_run_file_that_breaks_a_rule_is_refused_at_its_line() {
 }
 
 #[test]
+fn a_subset_of_the_path_that_cannot_be_and_a_memory_that_does_not_suffice_are_refused() {
+    let cases: [(&str, &[&str]); 6] = [
+        (
+            "path_points = 106",
+            &["search.path_points: ", "the path has 105 points in 5 segments", "found 106;", "from 5 to 105"],
+        ),
+        (
+            "path_points = 4",
+            &["search.path_points: ", "the path has 105 points in 5 segments", "found 4;", "from 5 to 105"],
+        ),
+        ("path_points = 0", &["search.path_points: ", "found 0;", "from 1 to 1000000000"]),
+        ("path_points = 20.5", &["search.path_points: ", "is not a whole number", "found 20.5"]),
+        (
+            "memory_gb = 0.001",
+            &["search.memory_gb: ", "planning the 105 points of the path takes", "found 0.001;", "at least 0.00127"],
+        ),
+        ("memory_gb = 0", &["search.memory_gb: ", "found 0;", "from 0.001"]),
+    ];
+    for (line, parts) in cases {
+        refused_after(RUN, "seed = 1", &format!("seed = 1\n{line}"), 1, parts);
+    }
+}
+
+#[test]
 fn a_robot_file_that_breaks_a_rule_is_refused_at_its_line() {
     let third = "stiffness_mnm_per_rad = 2.79";
     for (from, to, parts) in [

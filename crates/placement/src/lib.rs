@@ -31,6 +31,7 @@ pub mod limit;
 pub mod lookup;
 pub mod objective;
 pub mod outcome;
+pub mod path_comparison;
 pub mod path_subset;
 pub mod place;
 pub mod postures;
@@ -43,6 +44,7 @@ pub mod sensitivity;
 pub mod settings;
 pub mod symmetry;
 pub mod transfer;
+mod whole_path;
 
 #[cfg(any(test, feature = "testing"))]
 pub mod testing {

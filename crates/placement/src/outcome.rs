@@ -290,7 +290,7 @@ pub struct PathLevels {
     pub points: usize,
     /// The subset for the search, and that for the refinement.
     pub subsets: [SubsetAccuracy; 2],
-    /// Points that joined the subsets because they decide whether a placement has a plan.
+    /// Points that joined the subsets because they decide whether a placement has a plan, or as the largest what it is worth.
     pub deciding: usize,
     /// Placements planned on the whole path before the last plans.
     pub whole: usize,

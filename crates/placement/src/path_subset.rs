@@ -17,6 +17,8 @@ pub struct PathSubset {
 
 /// Changes along the path that count alike: of position (m), of directions (rad), of the force relative to its mean size.
 const UNITS: [f64; 3] = [0.15, 0.5, 1.0];
+/// How often points are spread again at the most.
+const SPREADS: usize = 12;
 /// In segments with fewer kept points than this they are staggered from segment to segment, so that segments side by side are not
 /// all represented at the same place.
 const STAGGERED: usize = 3;
@@ -26,10 +28,26 @@ const STAGGER: f64 = 0.618_033_988_749_895;
 impl PathSubset {
     /// About `count` points, at least one of every segment; all points where the path has no more.
     pub fn new(task: &Task, count: usize) -> Self {
-        let travelled = travelled(task);
         if count >= task.points().len() {
             return Self { points: (0..task.points().len()).collect() };
         }
+        let travelled = travelled(task);
+        let mut subset = Self::spread(task, &travelled, count);
+        let mut cells = count;
+        // Where much changes from one point to the next, several cells share a point; those are spread anew.
+        for _ in 0..SPREADS {
+            cells += count.saturating_sub(subset.points.len());
+            let wider = Self::spread(task, &travelled, cells);
+            if wider.points.len() <= subset.points.len() || wider.points.len() > count {
+                break;
+            }
+            subset = wider;
+        }
+        subset
+    }
+
+    /// The points nearest to the middles of so many cells, which are as long in what changes along the path.
+    fn spread(task: &Task, travelled: &[f64], count: usize) -> Self {
         let spans = task.segments();
         let length = |span: &std::ops::Range<usize>| travelled[span.end - 1] - travelled[span.start];
         let whole: f64 = spans.iter().map(length).sum();
@@ -159,7 +177,8 @@ mod tests {
         let task = &problem.task;
         for count in [1, 5, 12, 40, 104, 105, 1000] {
             let mut subset = PathSubset::new(task, count);
-            assert!(subset.points().len() <= count.max(task.segments().len()).min(105));
+            let most = count.max(task.segments().len()).min(105);
+            assert!((most * 4 / 5..=most).contains(&subset.points().len()), "{count}: {}", subset.points().len());
             subset.add(&[0, 50, 104]);
             assert!(!subset.add(&[50]));
             let kept = subset.weighted(task);

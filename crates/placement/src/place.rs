@@ -12,7 +12,6 @@ use super::sensitivity::objective_with_force_errors;
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{Refined, best_alone, choose, leading, refine_basins};
-use long_path::LongPath;
 use notes::{cancellation, interruption};
 use plan::{StatedPlans, detailed};
 use searched::{Searched, search_cell};
@@ -32,6 +31,7 @@ mod sets;
 
 pub use infeasible::Infeasible;
 use infeasible::infeasible;
+pub use long_path::LongPath;
 pub use score::{Score, score};
 
 /// Memory for a point of the path while it is planned and reported, as measured with 50 000 points. Bytes

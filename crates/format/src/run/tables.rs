@@ -142,9 +142,11 @@ impl SearchTable {
         if needed <= allowed {
             return Ok(());
         }
-        let [needed, allowed] = [needed, allowed].map(|bytes| figures(bytes / 1e9));
+        // A little more than needed, so that the figure stated suffices when it is rounded.
+        let [needed, allowed] = [needed * 1.006, allowed].map(|bytes| figures(bytes / 1e9));
         let points = problem.task.points().len();
-        let reason = format!("{allowed} GB, but to plan the {points} points of the path takes about {needed} GB");
+        let reason =
+            format!("planning the {points} points of the path takes about {needed} GB, more than {allowed} GB");
         Err(at.key("memory_gb").error(reason, format!("at least {needed}, or a path with fewer points")))
     }
 }
@@ -157,7 +159,7 @@ pub(super) fn check_path_points(search: &SearchSettings, problem: &Problem, at: 
     let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
     match search.path_points {
         Some(asked) if !(segments..=points).contains(&asked) => {
-            let reason = format!("{asked}, but the path has {points} points in {segments} segments");
+            let reason = format!("the path has {points} points in {segments} segments");
             Err(at.key("path_points").error(reason, format!("a whole number from {segments} to {points}")))
         }
         _ => Ok(()),

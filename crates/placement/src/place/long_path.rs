@@ -9,16 +9,17 @@ use super::infeasible::{Infeasible, infeasible};
 use super::searched::{Searched, search_cell};
 use crate::candidate::{Candidate, Objective, rank};
 use crate::evaluator::Evaluator;
-use crate::outcome::{PathLevels, SubsetAccuracy};
+use crate::outcome::PathLevels;
+use crate::path_comparison::PathComparison;
 use crate::path_subset::PathSubset;
-use crate::problem::{Placement, Problem};
-use crate::redundancy::{NoFeasiblePlan, Planner};
+use crate::problem::Problem;
+use crate::redundancy::Planner;
 use crate::search::{self, SearchResult};
 use crate::sense::Sense;
 use crate::settings::SearchSettings;
+use crate::whole_path::WholePath;
 use rayon::prelude::*;
-use stead_model::robot::Posture;
-use stead_numerics::monitor::{Monitor, Progress};
+use stead_numerics::monitor::Monitor;
 
 /// Points of the subset for the search, beside one for every segment.
 const SEARCH_POINTS: usize = 60;
@@ -28,9 +29,7 @@ const REFINEMENT_FACTOR: usize = 3;
 const SHORT: usize = 2;
 /// Placements on which a subset is held against the whole path.
 const PAIRS: usize = 39;
-/// Populations drawn for them at the most.
-const DRAWS: u64 = 8;
-/// The relative errors of their means that the subsets for search and refinement may have.
+/// The relative errors that the subsets for search and refinement may have.
 const TOLERANCES: [f64; 2] = [0.05, 0.015];
 /// The share of the placements drawn at which they have to be kept.
 const WITHIN: f64 = 0.8;
@@ -42,26 +41,22 @@ const LAST_GENERATIONS: usize = 5;
 const SHARE: usize = 2;
 /// Candidates of a search that are planned on the whole path, for every basin asked for.
 const PROMOTED: usize = 3;
-/// Of every stretch of points that decide, so many join a subset.
-const STRETCH: usize = 3;
-/// Of a placement, at most so many stretches.
-const STRETCHES: usize = 12;
 
 /// The subsets of a long path.
 #[derive(Debug, Clone)]
-pub(super) struct LongPath {
+pub struct LongPath {
     /// For the search.
-    search: PathSubset,
+    pub search: PathSubset,
     /// For the refinement.
     pub refinement: PathSubset,
+    /// How large these are, how far they are off, and how many placements were planned on the whole path.
     pub levels: PathLevels,
+    /// What they are measured by.
+    comparison: PathComparison,
 }
 
-/// A placement drawn from the cell, and its objective on the whole path. m
-type Pair = (Placement, f64);
-
 impl LongPath {
-    /// The subsets of a path; none where it is short, or where the cell leaves one placement.
+    /// The subsets of the path of a planner's problem; none where it is short, or where the cell leaves one placement.
     pub fn new(full: &Planner<'_>, settings: &SearchSettings, monitor: &Monitor) -> Option<Self> {
         let problem = full.problem();
         let task = &problem.task;
@@ -74,55 +69,38 @@ impl LongPath {
         if is_short || problem.cell.pinned().is_some() {
             return None;
         }
-        let mut path = Self {
-            search: PathSubset::new(task, count),
-            refinement: PathSubset::new(task, (REFINEMENT_FACTOR * count).min(all)),
-            levels: PathLevels { points: all, ..PathLevels::default() },
-        };
-        let (pairs, deciding) = path.pairs(full, settings, monitor);
+        let search = PathSubset::new(task, count);
+        let refinement = PathSubset::new(task, (REFINEMENT_FACTOR * count).min(all));
+        let comparison = PathComparison::draw(full, &search, settings, PAIRS, monitor);
         // A subset that was asked for stays as it is.
         let largest = if settings.path_points.is_some() { 0 } else { all / SHORT };
-        let [search, refinement] = &mut path.levels.subsets;
-        (path.search, *search) = accurate(problem, path.search, &pairs, &deciding, (TOLERANCES[0], largest));
-        (path.refinement, *refinement) =
-            accurate(problem, path.refinement, &pairs, &deciding, (TOLERANCES[1], largest));
+        let accurate = |subset, tolerance| accurate(problem, subset, &comparison, tolerance, largest);
+        let mut path = Self {
+            search: accurate(search, TOLERANCES[0]),
+            refinement: accurate(refinement, TOLERANCES[1]),
+            levels: PathLevels { points: all, whole: comparison.planned, ..PathLevels::default() },
+            comparison,
+        };
+        path.measure(problem);
         Some(path)
     }
 
-    /// Draws placements that the search's subset allows, and plans them on the whole path: those that have a plan there, and the
-    /// points that decide against the others.
-    fn pairs(&mut self, full: &Planner<'_>, settings: &SearchSettings, monitor: &Monitor) -> (Vec<Pair>, Vec<usize>) {
-        let (mut pairs, mut deciding) = (Vec::new(), Vec::new());
-        let check = WholePath::new(full);
-        let thinned = self.search.of(full.problem());
-        let planner = Planner::new(&thinned);
-        for draw in 0..DRAWS {
-            if pairs.len() >= PAIRS || monitor.should_stop() {
-                break;
-            }
-            let drawn = search::drawn(full.problem(), settings, draw);
-            let allowed = objectives(&planner, &drawn);
-            let likely = drawn.into_iter().zip(allowed).filter(|(_, objective)| objective.mean().is_some());
-            let likely: Vec<Placement> = likely.map(|(placement, _)| placement).take(PAIRS - pairs.len()).collect();
-            let checked: Vec<_> = likely.par_iter().map(|placement| check.objective(placement, None)).collect();
-            self.levels.whole += checked.len();
-            for (placement, checked) in likely.into_iter().zip(checked) {
-                match checked {
-                    Ok(mean) => pairs.push((placement, mean)),
-                    Err(points) => deciding.extend(points),
-                }
-            }
-            monitor.report(Progress::Steps { stage: "long path", done: pairs.len(), total: PAIRS });
-        }
-        (pairs, deciding)
+    /// States how far the subsets are off as they stand.
+    fn measure(&mut self, problem: &Problem) {
+        let deciding = &mut self.comparison.deciding;
+        deciding.sort_unstable();
+        deciding.dedup();
+        self.levels.deciding = deciding.len();
+        self.levels.subsets = [&self.search, &self.refinement].map(|subset| self.comparison.accuracy(problem, subset));
     }
 
     /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win has no plan
-    /// there, the points that decide join the subsets, and the search is repeated.
+    /// there, the points that decide join the subsets, and the search is repeated. Where none has one even then, those by which the
+    /// subsets were measured take their place.
     ///
     /// # Errors
     /// [`Infeasible`] when nothing is met that has a plan on the whole path.
-    pub fn search<'a>(
+    pub(super) fn search<'a>(
         &mut self,
         full: &Planner<'a>,
         settings: &SearchSettings,
@@ -146,12 +124,15 @@ impl LongPath {
                 .zip(&mut found)
                 .map(|(sense, found)| self.promote(full, sense, found, settings.basins, &mut deciding));
             let is_refused = promoted.fold(false, |any, refused| any | refused);
-            self.levels.deciding += deciding.len();
+            self.comparison.deciding.extend(&deciding);
             let is_larger = self.search.add(&deciding);
             self.refinement.add(&deciding);
             if is_refused && is_larger && repeats < REPEATS && !monitor.should_stop() {
                 repeats += 1;
                 continue;
+            }
+            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(_, found)| found.basins.is_empty()) {
+                found.basins = search::distinct(&problem.cell, &self.comparison.ranked(sense), settings.basins);
             }
             match found.each_ref().map(|found| !found.basins.is_empty()) {
                 [true, true] => {}
@@ -161,7 +142,7 @@ impl LongPath {
                     return Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
                 }
             }
-            self.levels.subsets[0].points = self.search.points().len();
+            self.measure(problem);
             return Ok(Searched { found, table: None, lookup_summary, evaluations });
         }
     }
@@ -208,9 +189,14 @@ impl LongPath {
     ) -> bool {
         found.basins.truncate(PROMOTED * basins);
         let whole = WholePath::new(full);
-        let check = |candidate: &Candidate| whole.objective(&candidate.placement, candidate.scheme.as_deref());
-        let checked: Vec<Result<f64, Vec<usize>>> = found.basins.par_iter().map(check).collect();
+        let check = |candidate: &Candidate| {
+            let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
+            (whole.objective(placement, scheme), whole.largest(placement, scheme))
+        };
+        let (checked, largest): (Vec<Result<f64, Vec<usize>>>, Vec<Option<usize>>) =
+            found.basins.par_iter().map(check).unzip();
         self.levels.whole += checked.len();
+        deciding.extend(largest.into_iter().flatten());
         let is_refused = checked.first().is_some_and(Result::is_err);
         let mut allowed = Vec::new();
         for (candidate, checked) in found.basins.drain(..).zip(checked) {
@@ -225,76 +211,21 @@ impl LongPath {
     }
 }
 
-/// The whole path on the coarse grid of beta, and on the finer one where that is too coarse.
-pub(super) struct WholePath<'a, 'p> {
-    coarse: Planner<'p>,
-    full: &'a Planner<'p>,
-}
-
-impl<'a, 'p> WholePath<'a, 'p> {
-    pub fn new(full: &'a Planner<'p>) -> Self {
-        Self { coarse: Planner::new(full.problem()), full }
-    }
-
-    /// The problem on the whole path.
-    pub fn problem(&self) -> &'p Problem {
-        self.full.problem()
-    }
-
-    /// The objective of a placement (m), or points that decide against it.
-    pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>) -> Result<f64, Vec<usize>> {
-        let evaluator = Evaluator::new(&self.coarse, None).with_finer_planner(self.full);
-        match evaluator.planned_objective(placement, scheme, &mut evaluator.workspace()) {
-            Objective::Feasible(mean) => Ok(mean),
-            Objective::Infeasible { .. } => {
-                let plan = self.full.plan(placement, Sense::Min, scheme, &mut self.full.workspace());
-                Err(plan.err().map(|none| deciding(self.full.problem(), &none)).unwrap_or_default())
-            }
-        }
-    }
-}
-
-/// Of the points that leave a placement without a plan, some of every stretch.
-fn deciding(problem: &Problem, none: &NoFeasiblePlan) -> Vec<usize> {
-    let mut points = Vec::new();
-    for stretch in none.blocked_points.chunk_by(|a, b| a + 1 == *b).take(STRETCHES) {
-        points.extend((0..STRETCH).map(|k| stretch[k * (stretch.len() - 1) / (STRETCH - 1)]));
-    }
-    for (segment, stuck) in none.broken_segments.iter().take(STRETCHES) {
-        // A segment breaks between the points before and the first that cannot be reached.
-        let span = &problem.task.segments()[*segment];
-        points.extend((stuck.saturating_sub(2)..=stuck + 2).filter(|point| span.contains(point)));
-    }
-    points
-}
-
-/// The objectives of placements on a planner's grid.
-fn objectives(planner: &Planner<'_>, placements: &[Placement]) -> Vec<Objective> {
-    let of = |workspace: &mut _, placement: &Placement| planner.objective(placement, Sense::Min, None, workspace);
-    placements.par_iter().map_init(|| planner.workspace(), of).collect()
-}
-
 /// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path.
 fn accurate(
     problem: &Problem,
     mut subset: PathSubset,
-    pairs: &[Pair],
-    deciding: &[usize],
-    (tolerance, largest): (f64, usize),
-) -> (PathSubset, SubsetAccuracy) {
-    let placements: Vec<Placement> = pairs.iter().map(|(placement, _)| *placement).collect();
+    comparison: &PathComparison,
+    tolerance: f64,
+    largest: usize,
+) -> PathSubset {
     loop {
-        subset.add(deciding);
-        let thinned = subset.of(problem);
-        let estimates = objectives(&Planner::new(&thinned), &placements);
-        let error = |((_, whole), estimate): (&Pair, Objective)| Some((estimate.mean()? - whole).abs() / whole);
-        let errors: Vec<f64> = pairs.iter().zip(estimates).filter_map(error).collect();
-        let points = subset.points().len();
+        subset.add(&comparison.deciding);
+        let errors = comparison.errors(problem, &subset);
         let within = errors.iter().filter(|error| **error <= tolerance).count() as f64;
-        let is_accurate = within >= WITHIN * errors.len() as f64;
-        let accuracy = SubsetAccuracy { points, pairs: errors.len(), error: errors.into_iter().reduce(f64::max) };
-        if is_accurate || 2 * points > largest {
-            return (subset, accuracy);
+        let points = subset.points().len();
+        if within >= WITHIN * errors.len() as f64 || 2 * points > largest {
+            return subset;
         }
         subset = PathSubset::new(&problem.task, 2 * points);
     }

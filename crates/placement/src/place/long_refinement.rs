@@ -1,7 +1,7 @@
 //! Refinement of basins of a long path: on a subset, then on the whole path.
 
 use super::basins::Refined;
-use super::long_path::{LongPath, WholePath};
+use super::long_path::LongPath;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
@@ -10,6 +10,7 @@ use crate::redundancy::{Planner, off_grid};
 use crate::refine::{planned, refine, solver};
 use crate::search::SearchResult;
 use crate::sense::Sense;
+use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
@@ -50,16 +51,18 @@ pub(super) fn refine_basins(
     found: &[SearchResult; 2],
     monitor: &Monitor,
 ) -> ([Vec<Refined>; 2], Vec<Refinement>) {
-    let jobs: Vec<(Sense, &Candidate)> = Sense::BOTH
+    let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
         .into_iter()
         .zip(found)
-        .flat_map(|(sense, found)| found.basins.iter().map(move |candidate| (sense, candidate)))
+        .flat_map(|(sense, found)| found.basins.iter().enumerate().map(move |(rank, basin)| (sense, rank, basin)))
         .collect();
     let whole = WholePath::new(planner);
     let done = AtomicUsize::new(0);
     let estimate = |job: usize| {
-        let (sense, candidate) = jobs[job];
-        let estimated = estimated(path, &whole, sense, candidate, monitor);
+        let (sense, rank, candidate) = jobs[job];
+        // Once the caller asks to stop, the first basin of each search is enough.
+        let is_wanted = rank == 0 || !monitor.should_stop();
+        let estimated = is_wanted.then(|| estimated(path, &whole, sense, candidate, monitor)).flatten();
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         monitor.report(Progress::Steps { stage: "refining", done, total: jobs.len() });
         (sense, estimated)
