@@ -57,7 +57,7 @@ impl BetaChange {
     }
 
     /// The whole numbers within `half` of `middle`, on a cyclic grid of `count` values. Numbers of the grid
-    fn within(middle: f64, half: f64, count: usize) -> Self {
+    pub(super) fn within(middle: f64, half: f64, count: usize) -> Self {
         let all = count / 2;
         if half < 0.0 {
             return Self::NONE;
@@ -73,7 +73,7 @@ impl BetaChange {
     }
 
     /// The changes left when some of them was made before, on a cyclic grid.
-    fn after(self, taken: i32, count: usize) -> Self {
+    pub(super) fn after(self, taken: i32, count: usize) -> Self {
         let turns = (f64::from(self.min - taken + self.max - taken) / (2.0 * count as f64)).round() as i32;
         let taken = taken + turns * count as i32;
         Self { min: self.min - taken, max: self.max - taken }
