@@ -31,7 +31,8 @@ impl Planner<'_> {
         for (point, wanted) in span.clone().zip(wanted).skip(1) {
             let limits = &self.steps[point];
             let step = self.problem.beta_step_within(point, &self.grid);
-            let goal = beta + step.middle + step.off_middle(wanted - beta).clamp(-step.half.max(0.0), step.half.max(0.0));
+            let goal =
+                beta + step.middle + step.off_middle(wanted - beta).clamp(-step.half.max(0.0), step.half.max(0.0));
             let reached = |beta: f64| {
                 let state = state(point, beta)?;
                 let is_near = |j: usize| wrap(state.joints[j] - last.joints[j]).abs() <= limits[j] + STEP_ROUNDING;
@@ -40,7 +41,9 @@ impl Planner<'_> {
             let near = reached(goal).or_else(|| {
                 let still = self.problem.still_change(point);
                 let still = step.middle + step.off_middle(still).clamp(-step.half.max(0.0), step.half.max(0.0));
-                let mut best = [still, step.middle, (still + step.middle) / 2.0].iter().find_map(|change| reached(beta + change))?;
+                let mut best = [still, step.middle, (still + step.middle) / 2.0]
+                    .iter()
+                    .find_map(|change| reached(beta + change))?;
                 let mut far = goal;
                 for _ in 0..HALVINGS {
                     let half = (best.0 + far) / 2.0;

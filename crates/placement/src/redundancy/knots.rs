@@ -132,7 +132,7 @@ impl Knots {
                 if own.half < 0.0 || run.sure + STEP_ROUNDING >= room.knots || point + 1 == span.end {
                     // A remainder too short belongs to the run before it.
                     let previous = point - points;
-                    if run.sure < room.knots && found.points(previous) > 1 {
+                    if run.sure + STEP_ROUNDING < room.knots && found.points(previous) > 1 {
                         points += found.points(previous);
                         number -= 1;
                         found.knots.pop();

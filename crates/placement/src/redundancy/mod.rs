@@ -81,7 +81,7 @@ pub struct Planner<'a> {
 /// less than a step is allowed between neighbours, a step after every few of them.
 pub fn beta_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
     let rate_limit = rate_limit::RateLimit::new(problem, grid);
-    (0..problem.task.points().len()).map(|point| rate_limit.saved(point).change).collect()
+    (0..problem.task.points().len()).map(|point| rate_limit.saved(point)).collect()
 }
 
 /// Space of one thread to plan in.
