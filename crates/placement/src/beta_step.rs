@@ -101,6 +101,11 @@ impl Problem {
         2.0 * libm::atan2(libm::hypot(tilt_sine, tilt_cosine * sine), (tilt_cosine * cosine).abs())
     }
 
+    /// The change of beta from path point `point - 1` to `point` with which the spindle turns least in space. rad
+    pub(crate) fn still_change(&self, point: usize) -> f64 {
+        self.turn(point).middle
+    }
+
     /// The angle between the tool axes at path points `point - 1` and `point`: no beta turns the spindle by less. rad
     pub fn axis_turn(&self, point: usize) -> f64 {
         self.turn(point).tilt

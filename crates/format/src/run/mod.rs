@@ -27,7 +27,7 @@ use crate::spindle::SpindleTable;
 use crate::task::{Imported, parse_csv};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
-use notes::{density_note, direction_note, speed_note, tilt_note};
+use notes::{direction_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
 use schemars::JsonSchema;
@@ -176,7 +176,6 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
     notes.extend(problem.notes());
-    notes.extend(density_note(&problem));
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);

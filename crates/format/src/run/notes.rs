@@ -2,7 +2,6 @@
 
 use stead_model::robot::Robot;
 use stead_model::task::{Task, ToolPath};
-use stead_placement::problem::Problem;
 
 /// A feed that misses the plane normal to the tool axis by no more than this is normal to it. deg
 const NORMAL_FEED_DEG: f64 = 0.1;
@@ -15,25 +14,6 @@ pub(super) fn tilt_note(path: &ToolPath, lines: &[usize]) -> Option<String> {
         format!(
             "feed is up to {tilt:.2} deg off the normal of the tool axis (task line {line}): \
              the wall normal is axis x feed"
-        )
-    })
-}
-
-/// Points so near to each other that beta cannot change by a step of its grid between them.
-pub(super) fn density_note(problem: &Problem) -> Option<String> {
-    let step = problem.redundancy.beta_step();
-    let limits = match problem.redundancy.max_spindle_turn.or(problem.redundancy.max_spindle_speed) {
-        Some(_) => "limits on beta and the turn of the spindle allow",
-        None => "rate of beta allows",
-    };
-    let inner = || problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
-    let stuck = inner().filter(|point| problem.beta_step(*point).half < step * (1.0 - 1e-9)).count();
-    (stuck > 0).then(|| {
-        format!(
-            "between {stuck} of {} neighbouring points the {limits} less than beta_step_deg: steps of the grid are \
-             spread over several points there, or beta is held where that breaks a limit; a finer grid or a thinner path is \
-             planned more exactly",
-            inner().count()
         )
     })
 }

@@ -4,10 +4,14 @@
 //! points are kept, and for each state the way it came: of a long segment only for a block of points, since the joint_paths of
 //! the others can be found again from the costs at the start of their block. So memory grows with the square root of the
 //! number of points, and time with their number.
+//!
+//! Where points are dense the pass goes from knot to knot ([`super::knots`]), and the points between add to what a step costs.
 
 use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
-use super::rate_limit::SavedChange;
-use super::transition::{JointStep, Step, advance, begin};
+use super::between::Joining;
+use super::knots::{Knot, Place};
+use super::rate_limit::BetaChange;
+use super::transition::{JointStep, Step, advance, advance_over, begin};
 use super::{Planner, Sense, Workspace};
 use crate::problem::{MAX_JOINT_STEP, Placement};
 use std::ops::Range as Span;
@@ -99,29 +103,21 @@ pub(super) struct Pass<'p> {
     pub span: &'p Span<usize>,
     pub placement: &'p Placement,
     pub sense: Sense,
-    /// Whether steps of beta are saved up between points too close for one.
-    pub is_accumulated: bool,
+    /// Whether it goes from knot to knot, or else from point to point.
+    pub is_by_knots: bool,
 }
 
 impl Planner<'_> {
     /// What bounds the step to path point `point` from the one before.
     pub fn step(&self, point: usize, sense: Sense) -> Step {
-        self.accumulated_step(point, sense, false)
+        self.step_over(point, self.rate_limit.direct(point), 1, sense)
     }
 
-    fn accumulated_step(&self, point: usize, sense: Sense, is_accumulated: bool) -> Step {
-        let SavedChange { change, points, is_moving } = match is_accumulated {
-            true => self.rate_limit.saved(point),
-            false => SavedChange { change: self.rate_limit.direct(point), points: 1, is_moving: false },
-        };
+    /// What bounds the step to a path point from the one so many points before.
+    fn step_over(&self, point: usize, change: BetaChange, points: usize, sense: Sense) -> Step {
         let mut limits = self.steps[point];
         for other in point + 1 - points..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
-        }
-        if is_moving {
-            // Joint steps are checked when the changes are spread; here states are beside those of the plan.
-            let rounding = 2.0 * self.grid.beta_step();
-            limits.iter_mut().for_each(|limit| *limit = MAX_JOINT_STEP.min(*limit + rounding));
         }
         Step {
             change,
@@ -130,6 +126,60 @@ impl Planner<'_> {
             aggregate: self.problem.criterion.aggregate,
             instructions: self.instructions,
         }
+    }
+
+    /// What a point is to a pass.
+    fn place(&self, pass: Pass<'_>, point: usize) -> Place {
+        match pass.is_by_knots {
+            true => self.knots.at(point),
+            false => Place::Knot(Knot {
+                number: point - pass.span.start,
+                change: self.rate_limit.direct(point),
+                points: 1,
+                middle: 0.0,
+            }),
+        }
+    }
+
+    /// The path point of a knot of a pass.
+    fn knot(&self, pass: Pass<'_>, number: usize) -> usize {
+        if pass.is_by_knots { self.knots.of(pass.span)[number] } else { pass.span.start + number }
+    }
+
+    /// Number of knots of a pass.
+    fn knot_count(&self, pass: Pass<'_>) -> usize {
+        if pass.is_by_knots { self.knots.of(pass.span).len() } else { pass.span.len() }
+    }
+
+    /// Adds the scores of a point between knots to the costs of the run; false when no state is left.
+    fn add_between(&self, pass: Pass<'_>, point: usize, class: PostureClass, workspace: &mut Workspace) -> bool {
+        let Place::Between { knot, middle, share, is_first } = self.knots.at(point) else { return true };
+        let Place::Knot(end) = self.knots.at(knot) else { return true };
+        let Workspace { now, run_costs, .. } = workspace;
+        if !now.is_alive(class) {
+            return false;
+        }
+        now.wrap_around(class);
+        let offsets = self.knots.offsets(end, middle, share);
+        let joining = self.joining(pass);
+        run_costs.add(class, now.scores(class), now.pad(), offsets, is_first, joining, self.instructions);
+        true
+    }
+
+    fn joining(&self, pass: Pass<'_>) -> Joining {
+        Joining { sense: pass.sense, aggregate: self.problem.criterion.aggregate }
+    }
+
+    /// Takes the cheapest predecessors of a knot's states; false when no state is reached.
+    fn reach(&self, pass: Pass<'_>, point: usize, knot: Knot, class: PostureClass, workspace: &mut Workspace) -> bool {
+        let Workspace { before, now, record, run_costs } = workspace;
+        let step = self.step_over(point, knot.change, knot.points, pass.sense);
+        let way = record.way(knot.number, class);
+        if knot.points == 1 {
+            return advance(before, now, class, &step, way);
+        }
+        let between = run_costs.of(class, knot.change.min, self.joining(pass));
+        advance_over(before, now, class, &step, between, way)
     }
 
     /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one posture. With
@@ -145,36 +195,30 @@ impl Planner<'_> {
         let rules = &self.problem.postures;
         let asked = PostureClass::ALL
             .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
-        let Workspace { before, now, record } = workspace;
-        record.costs.clear();
-        for (place, point) in pass.span.clone().enumerate() {
-            pass.evaluator.evaluate_classes(point, pass.placement, asked, now);
-            if PostureClass::ALL.iter().all(|class| !now.is_alive(*class)) {
+        workspace.record.costs.clear();
+        for point in pass.span.clone() {
+            pass.evaluator.evaluate_classes(point, pass.placement, asked, &mut workspace.now);
+            if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
                 forward_pass.blocked.push(point);
             }
             if count_only {
                 continue;
             }
-            let step = self.accumulated_step(point, pass.sense, pass.is_accumulated);
+            let place = self.place(pass, point);
             for class in PostureClass::ALL {
-                if now.is_alive(class) {
-                    if place == 0 {
-                        begin(now, class, step.sense.sign());
-                    } else if !before.is_alive(class) || !advance(before, now, class, &step, record.way(place, class)) {
-                        now.clear(class);
-                    }
-                }
-                if now.is_alive(class) {
-                    now.wrap_around(class);
-                } else if forward_pass.stuck[class.index()].is_none() {
-                    forward_pass.stuck[class.index()] = Some(point);
+                let (is_reached, stuck) = self.continue_to(pass, point, place, class, workspace);
+                if !is_reached && forward_pass.stuck[class.index()].is_none() {
+                    forward_pass.stuck[class.index()] = Some(stuck);
                 }
             }
-            if record.begins(place, pass.span.len()) {
-                record.keep(now);
+            if let Place::Knot(knot) = place {
+                if workspace.record.begins(knot.number, self.knot_count(pass)) {
+                    workspace.record.keep(&workspace.now);
+                }
+                std::mem::swap(&mut workspace.before, &mut workspace.now);
             }
-            std::mem::swap(before, now);
         }
+        let before = &workspace.before;
         if !count_only {
             for class in PostureClass::ALL.into_iter().filter(|class| before.is_alive(*class)) {
                 let costs = before.inner_scores(class);
@@ -183,6 +227,42 @@ impl Planner<'_> {
             }
         }
         forward_pass
+    }
+
+    /// Continues a class to a point. Returns whether a state is reached, and the point that is not where none is.
+    fn continue_to(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        place: Place,
+        class: PostureClass,
+        workspace: &mut Workspace,
+    ) -> (bool, usize) {
+        match place {
+            Place::Between { .. } => {
+                let is_reached = workspace.before.is_alive(class) && self.add_between(pass, point, class, workspace);
+                if !is_reached {
+                    workspace.before.clear(class);
+                }
+                (is_reached, point)
+            }
+            Place::Knot(knot) => {
+                let (is_start, is_alive) = (point == pass.span.start, workspace.now.is_alive(class));
+                if is_alive && is_start {
+                    begin(&mut workspace.now, class, pass.sense.sign());
+                } else if is_alive
+                    && (!workspace.before.is_alive(class) || !self.reach(pass, point, knot, class, workspace))
+                {
+                    workspace.now.clear(class);
+                }
+                let is_reached = workspace.now.is_alive(class);
+                if is_reached {
+                    workspace.now.wrap_around(class);
+                }
+                // Of a run that is not gone through, no more is known than that its first point may be out of reach.
+                (is_reached, if is_alive { point + 1 - knot.points } else { point })
+            }
+        }
     }
 
     /// The beta numbers of the plan that a class ended with, along the segment last swept, in a pass like that.
@@ -197,14 +277,15 @@ impl Planner<'_> {
         let mut beta = forward_pass.ends[class.index()].map_or(0, |(_, end)| end);
         let mut betas = vec![beta; pass.span.len()];
         let is_whole = workspace.record.costs.is_empty();
-        for place in (1..pass.span.len()).rev() {
+        let last = self.knot_count(pass) - 1;
+        for number in (1..=last).rev() {
             let block = workspace.record.block;
-            if !is_whole && (place == pass.span.len() - 1 || place.is_multiple_of(block)) {
-                self.repeat_block(pass, class, (place - 1) / block, workspace);
+            if !is_whole && (number == last || number.is_multiple_of(block)) {
+                self.repeat_block(pass, class, (number - 1) / block, workspace);
             }
-            let shift = workspace.record.way(place, class)[beta];
+            let shift = workspace.record.way(number, class)[beta];
             beta = (beta as isize + isize::from(shift)).rem_euclid(count) as usize;
-            betas[place - 1] = beta;
+            betas[self.knot(pass, number - 1) - pass.span.start] = beta;
         }
         betas
     }
@@ -213,26 +294,26 @@ impl Planner<'_> {
     fn repeat_block(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
         let mut asked = [false; 4];
         asked[class.index()] = true;
-        let Workspace { before, now, record } = workspace;
-        let first = block * record.block;
-        let last = (first + record.block).min(pass.span.len() - 1);
-        for place in first..=last {
-            let point = pass.span.start + place;
-            pass.evaluator.evaluate_classes(point, pass.placement, asked, now);
-            if place == first {
-                let (pad, count) = (now.pad(), now.count());
-                now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));
-            } else {
-                advance(
-                    before,
-                    now,
-                    class,
-                    &self.accumulated_step(point, pass.sense, pass.is_accumulated),
-                    record.way(place, class),
-                );
+        let first = block * workspace.record.block;
+        let last = (first + workspace.record.block).min(self.knot_count(pass) - 1);
+        for point in self.knot(pass, first)..=self.knot(pass, last) {
+            pass.evaluator.evaluate_classes(point, pass.placement, asked, &mut workspace.now);
+            match self.place(pass, point) {
+                Place::Between { .. } => {
+                    self.add_between(pass, point, class, workspace);
+                    continue;
+                }
+                Place::Knot(knot) if knot.number == first => {
+                    let Workspace { now, record, .. } = workspace;
+                    let (pad, count) = (now.pad(), now.count());
+                    now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));
+                }
+                Place::Knot(knot) => {
+                    self.reach(pass, point, knot, class, workspace);
+                }
             }
-            now.wrap_around(class);
-            std::mem::swap(before, now);
+            workspace.now.wrap_around(class);
+            std::mem::swap(&mut workspace.before, &mut workspace.now);
         }
     }
 }

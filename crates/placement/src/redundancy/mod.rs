@@ -7,14 +7,17 @@
 //! The plan is made in steps:
 //! 1. [`transition`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles modulo a
 //!    turn (twice where the two flips of a class yield differently: [`Flips`]). This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid.
-//!    Between points closer than a step of the grid takes, the steps found are spread over as many points as each takes (`rate_limit`).
+//!    Where points are closer than a few steps of the grid take, it goes from knot to knot, with the points between interpolated (`knots`).
 //! 2. `joint_turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
 //! 3. `reference_dp`: only where that fails, dynamic programming over (beta, turns) in one posture.
 //! 4. [`off_grid`]: beta off the grid, by dynamic programming on ever narrower grids around the plan.
 
+mod between;
+mod follow;
 mod forward_pass;
 mod joint_turns;
+mod knots;
 mod obstruction;
 pub mod off_grid;
 mod rate_limit;
@@ -31,7 +34,7 @@ use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
 use rayon::prelude::*;
 use std::ops::Range as Span;
-use stead_model::robot::{Posture, turns::Range};
+use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::simd::Instructions;
 
 /// The plan of one segment.
@@ -66,6 +69,8 @@ pub struct Planner<'a> {
     grid: Redundancy,
     evaluators: Vec<BatchEvaluator<'a>>,
     rate_limit: rate_limit::RateLimit,
+    knots: knots::Knots,
+    room: knots::Room,
     steps: Vec<[f64; 6]>,
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
@@ -76,7 +81,7 @@ pub struct Planner<'a> {
 /// less than a step is allowed between neighbours, a step after every few of them.
 pub fn beta_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
     let rate_limit = rate_limit::RateLimit::new(problem, grid);
-    (0..problem.task.points().len()).map(|point| rate_limit.saved(point).change).collect()
+    (0..problem.task.points().len()).map(|point| rate_limit.saved(point)).collect()
 }
 
 /// Space of one thread to plan in.
@@ -85,37 +90,51 @@ pub struct Workspace {
     before: StateGrid,
     now: StateGrid,
     record: forward_pass::Record,
+    run_costs: between::RunCosts,
 }
 
 impl<'a> Planner<'a> {
     /// Prepares the planning of a problem on its grid of beta: for the search.
     pub fn new(problem: &'a Problem) -> Self {
-        Self::on_grid(problem, problem.redundancy)
+        Self::on_grid(problem, problem.redundancy, SEARCH_ROOM)
     }
 
     /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
     /// degree and at most half the width of what is allowed to beta between any two points, those apart where that is less than
     /// an eighth of a degree.
     pub fn finer(problem: &'a Problem) -> Self {
-        Self::on_grid(problem, finer(problem, problem.redundancy))
+        Self::on_grid(problem, finer(problem, problem.redundancy), FINAL_ROOM)
     }
 
-    fn on_grid(problem: &'a Problem, grid: Redundancy) -> Self {
+    fn on_grid(problem: &'a Problem, grid: Redundancy, room: knots::Room) -> Self {
         let count = problem.task.points().len();
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
         let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
+        let rate_limit = rate_limit::RateLimit::new(problem, &grid);
+        let step = |p: usize| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) };
+        let steps: Vec<_> = (0..count).map(step).collect();
         Self {
             problem,
             grid,
             evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
-            rate_limit: rate_limit::RateLimit::new(problem, &grid),
-            steps: (0..count).map(|p| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) }).collect(),
+            knots: knots::Knots::new(problem, &grid, &steps, |point| rate_limit.direct(point), room),
+            room,
+            rate_limit,
+            steps,
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
         }
+    }
+
+    /// The same with steps of the joints that may be at least so large. rad
+    fn with_joint_steps(mut self, least: f64) -> Self {
+        self.steps.iter_mut().flatten().for_each(|limit| *limit = limit.max(least));
+        let direct = |point| self.rate_limit.direct(point);
+        self.knots = knots::Knots::new(self.problem, &self.grid, &self.steps, direct, self.room);
+        self
     }
 
     /// The problem that is planned.
@@ -130,7 +149,7 @@ impl<'a> Planner<'a> {
 
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
-        self.rate_limit.widest()
+        self.rate_limit.widest().max(self.knots.widest())
     }
 
     /// Space for one thread.
@@ -138,10 +157,13 @@ impl<'a> Planner<'a> {
         let count = self.grid.beta_count;
         let pad = self.pad();
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
+        let before = StateGrid::new(count, pad);
+        let stride = before.scores(PostureClass::ALL[0]).len();
         Workspace {
-            before: StateGrid::new(count, pad),
-            now: StateGrid::new(count, pad),
+            now: before.clone(),
+            before,
             record: forward_pass::Record::new(longest, count),
+            run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
         }
     }
 
@@ -357,6 +379,11 @@ const STEPS_PER_CHANGE: f64 = 4.0;
 const DENSE_STEP: f64 = WIDEST_STEP / 2.0;
 /// Narrowest step that the limits on beta may ask for. rad
 const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
+
+/// Steps of the grid that the search wants between knots.
+const SEARCH_ROOM: knots::Room = knots::Room { neighbours: 1.0, knots: 2.0 };
+/// The same of plans that are printed.
+const FINAL_ROOM: knots::Room = knots::Room { neighbours: 6.0, knots: 6.0 };
 
 /// From so many points on, the segments of one plan are planned side by side.
 const PARALLEL_POINTS: usize = 1000;

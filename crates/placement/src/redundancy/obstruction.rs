@@ -3,7 +3,7 @@
 //! The segment is planned again with limits left out: each alone, then two, then all three. What lets a posture past the point
 //! that none gets to is what stops it.
 
-use super::{Planner, finer};
+use super::{Planner, SEARCH_ROOM, finer};
 use crate::constraints::ConstraintKind;
 use crate::problem::{MAX_JOINT_STEP, Placement, Problem, Redundancy};
 use crate::sense::Sense;
@@ -79,16 +79,15 @@ impl<'a> Relaxed<'a> {
         let mut planners = Vec::new();
         if grid.max_beta_rate.or(grid.max_spindle_turn).or(grid.max_spindle_speed).is_none() {
             let beta_count = grid.beta_count.min(MAX_BETA_COUNT);
-            planners.push(Planner::on_grid(problem, Redundancy { beta_count, ..grid }));
+            planners.push(Planner::on_grid(problem, Redundancy { beta_count, ..grid }, SEARCH_ROOM));
             // Where joints step by less than that grid, it does not hold the spindle still in a corner; a limit in space does.
             grid.max_spindle_turn = problem.redundancy.max_beta_rate;
         }
         if grid.max_spindle_turn.or(grid.max_spindle_speed).or(grid.max_beta_rate).is_some() {
-            planners.push(Planner::on_grid(problem, finer(problem, grid)));
+            planners.push(Planner::on_grid(problem, finer(problem, grid), SEARCH_ROOM));
         }
         if kinds.contains(&ConstraintKind::JointStep) {
-            let limits = planners.iter_mut().flat_map(|planner| planner.steps.iter_mut().flatten());
-            limits.for_each(|limit| *limit = limit.max(MAX_JOINT_STEP));
+            planners = planners.into_iter().map(|planner| planner.with_joint_steps(MAX_JOINT_STEP)).collect();
         }
         Self { kinds, planners }
     }

@@ -32,16 +32,16 @@ impl Planner<'_> {
     ) -> SegmentOptions {
         let mut found = SegmentOptions { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
         let rules = &self.problem.postures;
-        let is_spread = margin.is_some() && self.rate_limit.is_spread(&span);
+        let is_spread = margin.is_some() && self.knots.is_spread(&span);
         let is_asked = |posture: Posture| only.is_none_or(|asked| asked == posture) && rules.allows(posture);
         for evaluator in &self.evaluators {
             let postures = |posture: &Posture| evaluator.flips().contains(*posture) && is_asked(*posture);
             if !Posture::ALL.iter().any(postures) {
                 continue;
             }
-            // With steps saved up first; where they cannot be spread, without.
-            for is_accumulated in [true, false].into_iter().skip(usize::from(!is_spread)) {
-                let pass = Pass { evaluator, span: &span, placement, sense, is_accumulated };
+            // From knot to knot first; where such a plan breaks a limit between knots, from point to point.
+            for is_by_knots in [true, false].into_iter().skip(usize::from(!is_spread)) {
+                let pass = Pass { evaluator, span: &span, placement, sense, is_by_knots };
                 let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
                 found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
                 let Some(margin) = margin else { break };
@@ -74,7 +74,7 @@ impl Planner<'_> {
         margin: f64,
         found: &mut Vec<joint_turns::SegmentChoice>,
     ) -> bool {
-        let Pass { span, placement, sense, is_accumulated, .. } = pass;
+        let Pass { span, placement, sense, is_by_knots, .. } = pass;
         let mut has_all = outcome.ends.iter().any(Option::is_some);
         // The classes by rising cost; what `reference_dp` finds for a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
@@ -93,15 +93,18 @@ impl Planner<'_> {
             let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
             let betas = self.trace(pass, class, outcome, workspace);
             let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-            if is_accumulated {
-                self.rate_limit.smooth(self.problem, span, &mut path);
-            }
-            let unwound =
-                joint_turns::unwind(self.problem, span, placement, &path, &postures, cost * sign, &self.steps);
-            let choice = if is_accumulated {
-                unwound.and_then(|choice| self.recosted(placement, choice))
+            let unwind = |path: &[f64]| {
+                joint_turns::unwind(self.problem, span, placement, path, &postures, cost * sign, &self.steps)
+            };
+            let choice = if is_by_knots {
+                self.knots.spread(span, &mut path);
+                let spread = unwind(&path).and_then(|choice| self.recosted(placement, choice));
+                spread.or_else(|| {
+                    let followed = self.followed(span, placement, *postures.first()?, &path)?;
+                    unwind(&followed).and_then(|choice| self.recosted(placement, choice))
+                })
             } else {
-                unwound.or_else(|| reference_dp::plan(self, span, placement, sense, &postures, workspace))
+                unwind(&path).or_else(|| reference_dp::plan(self, span, placement, sense, &postures, workspace))
             };
             has_all &= choice.is_some();
             found.extend(choice);

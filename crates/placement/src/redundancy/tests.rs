@@ -9,6 +9,7 @@ use stead_model::robot::angles::{wrap, yaw_from_q4};
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 
+mod dense;
 mod spindle_turn;
 
 fn published_optimum() -> Placement {
@@ -188,7 +189,7 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let placement = Placement::from([-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f]);
             for span in problem.task.segments() {
                 let evaluator = &planner.evaluators[0];
-                let pass = Pass { evaluator, span, placement: &placement, sense: Sense::Min, is_accumulated: false };
+                let pass = Pass { evaluator, span, placement: &placement, sense: Sense::Min, is_by_knots: false };
                 let forward_pass = planner.forward_pass(pass, None, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
@@ -261,7 +262,7 @@ fn plans_of_blocks_are_those_of_whole_segments() {
     let mut compared = 0;
     for evaluator in &planner.evaluators {
         for span in problem.task.segments() {
-            let pass = Pass { evaluator, span, placement: &placement, sense, is_accumulated: false };
+            let pass = Pass { evaluator, span, placement: &placement, sense, is_by_knots: false };
             let mut whole = planner.workspace();
             let forward_pass = planner.forward_pass(pass, None, &mut whole, false);
             // Blocks that end with the segment, that do not, and of the least length.
@@ -315,7 +316,7 @@ fn beta_keeps_its_pace_where_points_are_close() {
     let dense = denser(&five_segments(), 10);
     let sense = Sense::Min;
     let planner = Planner::new(&dense);
-    assert!(dense.task.segments().iter().all(|span| planner.rate_limit.is_spread(span)));
+    assert!(dense.task.segments().iter().all(|span| planner.knots.is_spread(span)));
     let mut workspace = planner.workspace();
     let plans = planner.plan(&placement, sense, None, &mut workspace).unwrap();
     assert_sound(&dense, &placement, &plans);

@@ -5,6 +5,7 @@
 //! within every step, and then it is the cheapest of those that are.
 
 use super::super::evaluate::batch::StateGrid;
+use super::between::Between;
 use super::rate_limit::BetaChange;
 use crate::constraints::STEP_ROUNDING;
 use crate::criterion::Aggregate;
@@ -111,7 +112,19 @@ pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
 ///
 /// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`].
 pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
-    advance_by::<Right>(before, now, class, step, way)
+    advance_by::<Right>(before, now, class, step, None, way)
+}
+
+/// The same over a run of points, with what the points between cost.
+pub(super) fn advance_over(
+    before: &StateGrid,
+    now: &mut StateGrid,
+    class: PostureClass,
+    step: &Step,
+    between: Between<'_>,
+    way: &mut [i16],
+) -> bool {
+    advance_by::<Right>(before, now, class, step, Some(between), way)
 }
 
 #[inline]
@@ -120,9 +133,10 @@ fn advance_by<R: Rules>(
     now: &mut StateGrid,
     class: PostureClass,
     step: &Step,
+    between: Option<Between<'_>>,
     way: &mut [i16],
 ) -> bool {
-    step.instructions.run(Advance::<R> { before, now, class, step, way, rules: PhantomData })
+    step.instructions.run(Advance::<R> { before, now, class, step, between, way, rules: PhantomData })
 }
 
 /// The rules of a step; the tests break them one by one, to see that each breach is noticed.
@@ -151,6 +165,7 @@ struct Advance<'s, R> {
     now: &'s mut StateGrid,
     class: PostureClass,
     step: &'s Step,
+    between: Option<Between<'s>>,
     way: &'s mut [i16],
     rules: PhantomData<R>,
 }
@@ -160,7 +175,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { before, now, class, step, way, .. } = self;
+        let Self { before, now, class, step, between, way, .. } = self;
         let (count, pad) = (now.count(), now.pad());
         let lanes = Lanes::<S>::COUNT;
         let infinity = Lanes::splat(simd, f64::INFINITY);
@@ -175,6 +190,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         let band = Band::<R> {
             costs: before.scores(class),
             change,
+            between,
             middle: change.middle_shift(),
             half: (change.count() - 1) / 2,
             is_even: change.count().is_multiple_of(2),
@@ -230,21 +246,33 @@ struct Band<'s, R> {
     middle: isize,
     half: usize,
     is_even: bool,
+    between: Option<Between<'s>>,
     rules: PhantomData<R>,
 }
 
 impl<R: Rules> Band<'_, R> {
+    /// The costs of neighbouring states from `here` up to the points between, by the predecessors beside them.
+    #[inline(always)]
+    fn cost<S: Simd>(&self, simd: S, here: usize, shift: isize) -> Lanes<S> {
+        let cost = Lanes::load(simd, self.costs, here.wrapping_add_signed(shift));
+        match &self.between {
+            None => cost,
+            Some(between) => between.join(simd, cost, Lanes::load(simd, between.row(shift), here)),
+        }
+    }
+
     /// For neighbouring states from `here` the smallest cost of a predecessor, joint steps not checked, and the shift to
     /// it. Small shifts come first, so that of equal predecessors the nearest is taken.
     #[inline(always)]
     fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
-        let here = here.wrapping_add_signed(self.middle);
-        let mut best = Lanes::load(simd, self.costs, here);
-        let mut from = Lanes::splat(simd, self.middle as f64);
+        let middle = self.middle;
+        let mut best = self.cost(simd, here, middle);
+        let mut from = Lanes::splat(simd, middle as f64);
         let (mut down, mut up) = (from, from);
         for far in 1..=self.half {
             (down, up) = (down - 1.0, up + 1.0);
-            let (left, right) = (Lanes::load(simd, self.costs, here - far), Lanes::load(simd, self.costs, here + far));
+            let (left, right) = (middle - far as isize, middle + far as isize);
+            let (left, right) = (self.cost(simd, here, left), self.cost(simd, here, right));
             let better = left.less(best);
             best = better.select(left, best);
             from = better.select(down, from);
@@ -253,7 +281,7 @@ impl<R: Rules> Band<'_, R> {
             from = better.select(up, from);
         }
         if self.is_even {
-            let left = Lanes::load(simd, self.costs, here - self.half - 1);
+            let left = self.cost(simd, here, middle - self.half as isize - 1);
             let better = left.less(best);
             best = better.select(left, best);
             from = better.select(down - 1.0, from);
@@ -268,7 +296,7 @@ impl<R: Rules> Band<'_, R> {
         let mut from = Lanes::splat(simd, 0.0);
         for shift in self.change.shifts() {
             let there = here.wrapping_add_signed(shift);
-            let cost = Lanes::load(simd, self.costs, there);
+            let cost = self.cost(simd, here, shift);
             let mut better = cost.less(best);
             if better.any() {
                 better = better & joints.within(simd, here, there);

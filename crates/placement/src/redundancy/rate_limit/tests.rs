@@ -1,5 +1,6 @@
 //! Whole steps of the grid within intervals, and steps saved up and spread again.
 
+use super::super::knots::{Knots, Place, Room};
 use super::*;
 use crate::testing::five_segments;
 use proptest::prelude::*;
@@ -17,6 +18,14 @@ fn arc(radius: f64, turn: f64, count: usize) -> Problem {
     let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
     problem.task = Task::new(path, vec![problem.task.wrenches()[0]; count]).unwrap();
     problem
+}
+
+/// The knots of a path whose joints may step as they like.
+fn knots(problem: &Problem, room: f64) -> Knots {
+    let grid = problem.redundancy;
+    let limits = RateLimit::new(problem, &grid);
+    let joints = vec![[std::f64::consts::PI; 6]; problem.task.points().len()];
+    Knots::new(problem, &grid, &joints, |point| limits.direct(point), Room { neighbours: 1.0, knots: room })
 }
 
 proptest! {
@@ -43,7 +52,8 @@ proptest! {
 
     #[test]
     fn what_is_saved_up_is_spread_within_the_limits(
-        (size, side) in (1e-3..0.4_f64, prop::bool::ANY), share in 0.05..3.0_f64, beta_count in 20..400_usize, picks in prop::collection::vec(0.0..1.0_f64, 60)
+        (size, side) in (1e-3..0.4_f64, prop::bool::ANY), share in 0.05..3.0_f64, beta_count in 20..400_usize,
+        room in 1.0..6.0_f64, picks in prop::collection::vec(0.0..1.0_f64, 60)
     ) {
         let turn = if side { size } else { -size };
         let mut problem = arc(0.002, turn, 60);
@@ -52,18 +62,19 @@ proptest! {
         let limit = share * problem.redundancy.beta_step() / problem.step_length(1);
         (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(limit));
         let grid = problem.redundancy;
-        let limits = RateLimit::new(&problem, &grid);
+        let knots = knots(&problem, room);
         let span = problem.task.segments()[0].clone();
+        prop_assert_eq!(knots.of(&span).first().zip(knots.of(&span).last()), Some((&0, &59)));
         let mut number = 7;
-        let mut betas = vec![grid.beta(number as usize % beta_count)];
+        let mut betas = vec![grid.beta(number as usize % beta_count); 60];
         for point in span.clone().skip(1) {
-            let change = limits.saved(point).change;
-            prop_assert!(!change.is_none(), "{change:?}");
-            let pick = (picks[point] * change.count() as f64) as i32;
-            number = (number + change.min + pick).rem_euclid(beta_count as i32);
-            betas.push(grid.beta(number as usize));
+            let Place::Knot(knot) = knots.at(point) else { continue };
+            prop_assert!(!knot.change.is_none(), "{knot:?}");
+            let pick = (picks[point] * knot.change.count() as f64) as i32;
+            number = (number + knot.change.min + pick).rem_euclid(beta_count as i32);
+            betas[point] = grid.beta(number as usize);
         }
-        limits.smooth(&problem, &span, &mut betas);
+        knots.spread(&span, &mut betas);
         for point in span.skip(1) {
             let (step, change) = (problem.beta_step(point), betas[point] - betas[point - 1]);
             prop_assert!(step.off_middle(change).abs() <= step.half + 1e-7, "{point} {change} {step:?}");
@@ -77,7 +88,15 @@ fn steps_about_zero_are_saved_up_as_before() {
     // A third of a step of the grid between neighbours.
     problem.redundancy.max_beta_rate = Some(problem.redundancy.beta_step() / 3.0 / problem.step_length(1));
     let limits = RateLimit::new(&problem, &problem.redundancy);
-    let saved: Vec<(i32, usize)> = (1..8).map(|p| (limits.saved(p).change.max, limits.saved(p).points)).collect();
-    assert_eq!(saved, [(0, 1), (0, 1), (1, 3), (0, 1), (0, 1), (1, 3), (0, 1)]);
+    let saved: Vec<i32> = (1..8).map(|p| limits.saved(p).max).collect();
+    assert_eq!(saved, [0, 0, 1, 0, 0, 1, 0]);
     assert!((1..8).all(|point| limits.direct(point) == BetaChange::only(0)));
+    let knots = knots(&problem, 1.0);
+    let runs: Vec<(i32, usize)> = (1..8)
+        .map(|point| match knots.at(point) {
+            Place::Knot(knot) => (knot.change.max, knot.points),
+            Place::Between { .. } => (0, 1),
+        })
+        .collect();
+    assert_eq!(runs, [(0, 1), (0, 1), (1, 3), (0, 1), (0, 1), (1, 3), (0, 1)]);
 }

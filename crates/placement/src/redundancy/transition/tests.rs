@@ -109,7 +109,7 @@ impl Case {
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
-        let reached = advance_by::<R>(&before, &mut now, CLASS, &step, &mut way);
+        let reached = advance_by::<R>(&before, &mut now, CLASS, &step, None, &mut way);
         let expected: Vec<f64> = (0..self.count).map(|here| self.expected(here)).collect();
         if reached != expected.iter().any(|cost| cost.is_finite()) {
             return Some(format!("reached: {reached}"));
