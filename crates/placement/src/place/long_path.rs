@@ -96,7 +96,7 @@ impl LongPath {
 
     /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win has no plan
     /// there, the points that decide join the subsets, and the search is repeated. Where none has one even then, those by which the
-    /// subsets were measured take their place.
+    /// subsets were measured take their place, and where there are none of these, the whole path is searched: a subset never refuses.
     ///
     /// # Errors
     /// [`Infeasible`] when nothing is met that has a plan on the whole path.
@@ -112,8 +112,11 @@ impl LongPath {
         let mut evaluations = 0;
         loop {
             let thinned = self.search.of(problem);
-            let nowhere = |none: Infeasible| infeasible(full, &none.placement, None, true, monitor);
-            let searched = search_cell(&Planner::finer(&thinned), &wider, monitor).map_err(nowhere)?;
+            let searched = match search_cell(&Planner::finer(&thinned), &wider, monitor) {
+                Ok(searched) => searched,
+                Err(_) if repeats > 0 && !monitor.should_stop() => return search_cell(full, settings, monitor),
+                Err(none) => return Err(infeasible(full, &none.placement, None, true, monitor)),
+            };
             evaluations += searched.evaluations;
             let (mut found, lookup_summary) = (searched.found, searched.lookup_summary);
             evaluations += self.search_on(problem, &wider, &mut found, monitor);
@@ -138,6 +141,7 @@ impl LongPath {
                 [true, true] => {}
                 [true, false] => found[1].basins = found[0].basins.clone(),
                 [false, true] => found[0].basins = found[1].basins.clone(),
+                [false, false] if !monitor.should_stop() => return search_cell(full, settings, monitor),
                 [false, false] => {
                     return Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
                 }
