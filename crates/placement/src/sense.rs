@@ -28,6 +28,14 @@ impl Sense {
         }
     }
 
+    /// The other sense.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Min => Self::Max,
+            Self::Max => Self::Min,
+        }
+    }
+
     /// Order of two values, better first.
     pub fn compare(self, a: f64, b: f64) -> Ordering {
         match self {

@@ -39,13 +39,20 @@ impl Planner<'_> {
             if !Posture::ALL.iter().any(postures) {
                 continue;
             }
-            // From knot to knot first; where such a plan breaks a limit between knots, from point to point.
-            for is_by_knots in [true, false].into_iter().skip(usize::from(!is_spread)) {
+            let mut has_knots = is_spread;
+            // From knot to knot first; where such a plan breaks a limit between knots, from point to point; and where no point is
+            // reached so, by the knots of the other sense, so that both senses find the same segments feasible.
+            for (number, is_by_knots) in [true, false, true].into_iter().enumerate() {
+                if (is_by_knots && !has_knots) || (number == 2 && !found.choices.is_empty()) {
+                    continue;
+                }
+                let sense = if number == 2 { sense.other() } else { sense };
                 let pass = Pass { evaluator, span: &span, placement, sense, is_by_knots };
                 let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
                 found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
                 let Some(margin) = margin else { break };
                 found.farthest = found.farthest.max(forward_pass.farthest(&span));
+                has_knots &= !is_by_knots || forward_pass.ends.iter().any(Option::is_some);
                 if self.choose(pass, postures, &forward_pass, workspace, margin, &mut found.choices) {
                     break;
                 }
