@@ -4,7 +4,7 @@ use crate::criterion::{Aggregate, Weights};
 use crate::outcome::{Case, Outcome};
 use crate::path_subset::PathSubset;
 use crate::place::{place, score};
-use crate::problem::{Interval, Placement, Problem};
+use crate::problem::{Cell, Interval, Placement, Problem};
 use crate::settings::{LookupUse, SearchSettings, TransferSettings};
 use crate::testing::five_segments;
 use nalgebra::Vector3;
@@ -119,7 +119,9 @@ fn other_figures_of_a_long_path_are_searched_on_subsets_too() {
         let outcome = placed(&problem, &settings());
         assert!(outcome.path_levels.is_some());
         assert_whole(&problem, &outcome);
-        assert_as_good_as_without_subsets(&problem, &outcome);
+        if aggregate == Aggregate::Max {
+            assert_as_good_as_without_subsets(&problem, &outcome);
+        }
     }
 }
 
@@ -139,12 +141,18 @@ fn ten_points_that_no_subset_has_forbid_placements() {
     let first = unseen(&problem, 15);
     let free = placed(&problem, &asked);
     // What the ten points allow is not where the others would have the workpiece.
-    let mut problem = with_moment(problem, first, 5000.0);
+    let mut problem = with_moment(problem, first, 20_000.0);
     let at = |placement: &Placement| {
-        let scored = score(&problem, placement, &TransferSettings::default(), &Monitor::silent()).unwrap();
-        scored.best.points[first..first + 10].iter().map(|point| point.score).fold(0.0, f64::max)
+        let scored = score(&problem, placement, &TransferSettings::default(), &Monitor::silent()).ok()?;
+        Some(scored.best.points[first..first + 10].iter().map(|point| point.score).fold(0.0, f64::max))
     };
-    let limit = 0.98 * at(&free.cases.best.placement);
+    let corner = |k: usize| {
+        let end = |axis: usize, bounds: &Interval| if k >> axis & 1 == 0 { bounds.min } else { bounds.max };
+        let Cell { position: [x, y, z], yaw } = &problem.cell;
+        Placement { x: end(0, x), y: end(1, y), z: end(2, z), yaw: end(3, yaw) }
+    };
+    let least = (0..16).filter_map(|k| at(&corner(k))).fold(f64::INFINITY, f64::min);
+    let limit = 0.3 * least + 0.7 * at(&free.cases.best.placement).unwrap();
     problem.constraints.max_deflection = Some(limit);
     let outcome = placed(&problem, &asked);
     assert!(outcome.path_levels.unwrap().deciding > 0, "{:?}", outcome.path_levels);
