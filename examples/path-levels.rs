@@ -164,7 +164,7 @@ fn placed(problem: &Problem, settings: &SearchSettings, run: &Run, what: &str) -
 fn changed(task: &Task, first: usize, change: impl Fn(f64, &mut PathPoint, &mut Wrench)) -> Result<Task, Failure> {
     let mut wrenches = task.wrenches().to_vec();
     let mut points: Vec<(u32, PathPoint)> =
-        (0..wrenches.len()).map(|k| (task.path().segment_of(k) as u32, task.points()[k])).collect();
+        (0..wrenches.len()).map(|k| (task.path().segment_of(k) as u32 + 1, task.points()[k])).collect();
     for k in 0..DECIDING {
         let share = (k as f64 + 0.5) / DECIDING as f64;
         change(share, &mut points[first + k].1, &mut wrenches[first + k]);
