@@ -197,8 +197,7 @@ impl LongPath {
             let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
             (whole.objective(placement, scheme), whole.largest(placement, scheme))
         };
-        let (checked, largest): (Vec<Result<f64, Vec<usize>>>, Vec<Option<usize>>) =
-            found.basins.par_iter().map(check).unzip();
+        let (checked, largest): (Vec<_>, Vec<_>) = found.basins.par_iter().map(check).unzip();
         self.levels.whole += checked.len();
         deciding.extend(largest.into_iter().flatten());
         let is_refused = checked.first().is_some_and(Result::is_err);

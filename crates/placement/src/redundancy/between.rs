@@ -84,8 +84,7 @@ impl RunCosts {
     pub fn add(
         &mut self,
         class: PostureClass,
-        scores: &[f64],
-        pad: usize,
+        (scores, pad): (&[f64], usize),
         offsets: impl Iterator<Item = f64>,
         is_first: bool,
         joining: Joining,

@@ -162,7 +162,7 @@ impl Planner<'_> {
         now.wrap_around(class);
         let offsets = self.knots.offsets(end, middle, share);
         let joining = self.joining(pass);
-        run_costs.add(class, now.scores(class), now.pad(), offsets, is_first, joining, self.instructions);
+        run_costs.add(class, (now.scores(class), now.pad()), offsets, is_first, joining, self.instructions);
         true
     }
 
