@@ -56,8 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn freeform(count: usize, lines: usize) -> Vec<Point> {
     let k = PI / (2.0 * HALF) * 1.0;
     let point = |line: usize, x: f64, y: f64, sign: f64| {
-        let (sx, cx) = (k * x).sin_cos();
-        let (sy, cy) = (k * y).sin_cos();
+        let (sx, cx) = libm::sincos(k * x);
+        let (sy, cy) = libm::sincos(k * y);
         let position = Vector3::new(x, y, HEIGHT * cx * cy);
         let along_x = Vector3::new(1.0, 0.0, -HEIGHT * k * sx * cy);
         let along_y = Vector3::new(0.0, 1.0, -HEIGHT * k * cx * sy);
@@ -98,8 +98,8 @@ fn trim(count: usize) -> Vec<Point> {
             let (mut corner, mut heading) = (Vector3::new(-a / 2.0, 0.0, -height / 2.0), 0.0_f64);
             for side in 0..4 {
                 let length = if side % 2 == 0 { a } else { b };
-                let forward = Vector3::new(heading.cos(), 0.0, heading.sin());
-                let left = Vector3::new(-heading.sin(), 0.0, heading.cos());
+                let forward = Vector3::new(libm::cos(heading), 0.0, libm::sin(heading));
+                let left = Vector3::new(-libm::sin(heading), 0.0, libm::cos(heading));
                 if s <= length {
                     return (1, corner + forward * s, forward, axis);
                 }
@@ -107,8 +107,9 @@ fn trim(count: usize) -> Vec<Point> {
                 corner += forward * length;
                 if s <= arc {
                     let turn = s / radius;
-                    let feed = forward * turn.cos() + left * turn.sin();
-                    let position = corner + forward * (radius * turn.sin()) + left * (radius * (1.0 - turn.cos()));
+                    let feed = forward * libm::cos(turn) + left * libm::sin(turn);
+                    let position =
+                        corner + forward * (radius * libm::sin(turn)) + left * (radius * (1.0 - libm::cos(turn)));
                     return (1, position, feed, axis);
                 }
                 s -= arc;
@@ -130,7 +131,7 @@ fn task(points: &[Point]) -> String {
         if let Some((_, before, ..)) = i.checked_sub(1).map(|before| &points[before]) {
             length += (position - before).norm();
         }
-        let size = 150.0 + 50.0 * (TAU * length / 900.0).sin();
+        let size = 150.0 + 50.0 * libm::sin(TAU * length / 900.0);
         let force = (-feed * 0.4 + axis.cross(feed) * 0.85 + axis * 0.34) * size;
         let _ = write!(text, "{segment}");
         for (digits, vector) in [(6, position), (12, feed), (12, axis), (6, &force)] {

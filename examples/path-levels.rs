@@ -75,10 +75,10 @@ fn task(shape: Shape, random: &mut ChaCha8Rng) -> Result<Task, Failure> {
     let (radius, height) = (wave(0.03), wave(0.02));
     let (tilt, heading, force) = (wave(0.28), wave(1.5), wave(0.18));
     let at =
-        |wave: &[[f64; 3]; 3], t: f64| wave.iter().map(|[size, rate, phase]| size * (rate * t + phase).sin()).sum();
+        |wave: &[[f64; 3]; 3], t: f64| wave.iter().map(|[size, rate, phase]| size * libm::sin(rate * t + phase)).sum();
     let rounds: f64 = random.random_range(0.5..3.0);
     let position = |t: f64| {
-        let (sine, cosine) = (TAU * rounds * t).sin_cos();
+        let (sine, cosine) = libm::sincos(TAU * rounds * t);
         let radius: f64 = 0.2 + at(&radius, t);
         Vector3::<f64>::new(radius * cosine, radius * sine, at(&height, t))
     };
@@ -88,7 +88,7 @@ fn task(shape: Shape, random: &mut ChaCha8Rng) -> Result<Task, Failure> {
         let feed = (position(t + 1e-6) - position(t - 1e-6)).normalize();
         let noise = Vector3::from_fn(|_, _| shape.roughness * random.random_range(-1.0..1.0));
         let heading: f64 = at(&heading, t);
-        let turn = Rotation3::new(Vector3::new(heading.cos(), heading.sin(), 0.0) * at(&tilt, t));
+        let turn = Rotation3::new(Vector3::new(libm::cos(heading), libm::sin(heading), 0.0) * at(&tilt, t));
         let axis = (turn * Vector3::z() + noise * 0.02).normalize();
         let size: f64 = 150.0 * (1.0 + at(&force, t) + noise.x);
         let cutting = (-feed * 0.4 + axis.cross(&feed) * 0.85 + axis * 0.34) * size;
@@ -187,7 +187,7 @@ fn adversarial(run: &Run, paths: usize, points: usize) -> Result<(), Failure> {
         problem.task = match path % 4 {
             0 => changed(&problem.task, first, |_, _, wrench| wrench.force *= 10.0)?,
             1 => changed(&problem.task, first, |share, point, _| {
-                let turn = Rotation3::new(point.feed * (0.35 * (share * TAU / 2.0).sin()));
+                let turn = Rotation3::new(point.feed * (0.35 * libm::sin(share * TAU / 2.0)));
                 point.axis = turn * point.axis;
             })?,
             _ => changed(&problem.task, first, |_, point, wrench| wrench.moment = point.feed * 100.0)?,

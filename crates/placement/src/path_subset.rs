@@ -89,10 +89,8 @@ impl PathSubset {
         let kept = self.weighted(&problem.task);
         Problem {
             robot: problem.robot.clone(),
-            spindle: problem.spindle.clone(),
             task: problem.task.thinned(&kept),
             criterion: problem.criterion.clone(),
-            postures: problem.postures.clone(),
             ..*problem
         }
     }
