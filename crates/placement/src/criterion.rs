@@ -139,7 +139,7 @@ pub enum Over {
     /// The largest.
     Worst,
     /// Their mean; of the refined basins that of the least regret is taken
-    /// ([`SetOutcome::regret`](super::sensitivity::SetOutcome::regret)).
+    /// ([`SetOutcome::regret`](super::outcome::SetOutcome::regret)).
     Regret,
 }
 

@@ -279,7 +279,7 @@ pub struct SubsetAccuracy {
     /// Placements that were planned both on the subset and on the whole path, drawn at random.
     pub pairs: usize,
     /// The largest relative error of their means; none where no placement was allowed. It covers the error at the next placement
-    /// drawn with probability `pairs / (pairs + 1)`, whatever the path, since the errors are exchangeable.
+    /// drawn with probability `pairs / (pairs + 1)`, but for the choice of the subset's size, which the same placements decide.
     pub error: Option<f64>,
 }
 

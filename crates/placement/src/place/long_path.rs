@@ -197,13 +197,13 @@ impl LongPath {
             let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
             (whole.objective(placement, scheme), whole.largest(placement, scheme))
         };
-        let (checked, largest): (Vec<_>, Vec<_>) = found.basins.par_iter().map(check).unzip();
+        let checked: Vec<_> = found.basins.par_iter().map(check).collect();
         self.levels.whole += checked.len();
-        deciding.extend(largest.into_iter().flatten());
-        let is_refused = checked.first().is_some_and(Result::is_err);
+        let is_refused = checked.first().is_some_and(|(objective, _)| objective.is_err());
         let mut allowed = Vec::new();
-        for (candidate, checked) in found.basins.drain(..).zip(checked) {
-            match checked {
+        for (candidate, (objective, largest)) in found.basins.drain(..).zip(checked) {
+            deciding.extend(largest);
+            match objective {
                 Ok(mean) => allowed.push(Candidate { objective: Objective::Feasible(mean), ..candidate }),
                 Err(points) => deciding.extend(points),
             }
