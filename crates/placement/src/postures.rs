@@ -1,7 +1,5 @@
 //! Which postures segments may be driven in, and how one plan is taken of several that are as good.
 
-use crate::problem::Problem;
-use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
 
 /// Rules for the postures of segments and the moves between them.
@@ -48,15 +46,5 @@ impl PostureRules {
     /// Whether the best plan of a segment is always taken.
     pub(crate) fn takes_the_best(&self) -> bool {
         self.move_weight == 0.0 && self.tie == 0.0
-    }
-}
-
-impl Problem {
-    /// The same problem where the best plan of a segment is taken whatever the moves: what placements are compared by.
-    pub(crate) fn untied(&self) -> Cow<'_, Self> {
-        if self.postures.tie == 0.0 {
-            return Cow::Borrowed(self);
-        }
-        Cow::Owned(Self { postures: PostureRules { tie: 0.0, ..self.postures }, ..self.clone() })
     }
 }

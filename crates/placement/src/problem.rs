@@ -3,6 +3,7 @@
 use super::criterion::Criterion;
 use super::postures::PostureRules;
 use nalgebra::{Matrix3, Vector3};
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
 use stead_model::plausibility;
@@ -268,6 +269,14 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// The same problem where the best plan of a segment is taken whatever the moves: what placements are compared by.
+    pub(crate) fn untied(&self) -> Cow<'_, Self> {
+        if self.postures.tie == 0.0 {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { postures: PostureRules { tie: 0.0, ..self.postures }, ..self.clone() })
+    }
+
     /// What looks like a wrong unit or sign though it is possible, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let parts = [

@@ -2,24 +2,17 @@
 
 use super::long_path::LongPath;
 use super::long_refinement;
+use super::refined::Refined;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::redundancy::off_grid;
-use crate::refine::{Solution, found_again, planned, refine};
+use crate::refine::{found_again, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use stead_model::robot::Posture;
 use stead_numerics::monitor::{Monitor, Progress};
-
-/// A refined solution with the scheme it was held to.
-#[derive(Clone)]
-pub(super) struct Refined {
-    pub solution: Solution,
-    pub scheme: Option<Vec<Posture>>,
-}
 
 /// Basins whose means differ by less than this (relative) are equal: the one that the search ranked higher is taken, so
 /// that rounding does not choose between mirror images.

@@ -1,7 +1,7 @@
 //! Refinement of basins of a long path: on a subset, then on the whole path.
 
-use super::basins::Refined;
 use super::long_path::LongPath;
+use super::refined::Refined;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;

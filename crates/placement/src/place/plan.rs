@@ -1,6 +1,6 @@
 //! Plans with everything that there is to say of them.
 
-use super::basins::Refined;
+use super::refined::Refined;
 use crate::evaluate::reference::{scored_part_by_parameters, state};
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::problem::{Placement, Problem};

@@ -1,8 +1,9 @@
 //! What each stiffness set of the criterion makes of the refined basins.
 
-use super::basins::{Refined, best_alone, leading, refine_basins};
+use super::basins::{best_alone, leading, refine_basins};
 use super::long_path::LongPath;
 use super::plan::detailed;
+use super::refined::Refined;
 use crate::criterion::Over;
 use crate::evaluator::Evaluator;
 use crate::outcome::{Case, SetBasin, SetOutcome};
