@@ -4,13 +4,12 @@ use serde_json::Value;
 use std::path::Path;
 use stead_format::read_run;
 use stead_placement::problem::{Placement, Problem};
-use stead_placement::redundancy::{Planner, off_grid::Spacing};
+use stead_placement::redundancy::Planner;
 use stead_placement::sense::Sense;
 
 /// The mean of the final plan at a placement, m.
 fn mean(planner: &Planner<'_>, placement: &Placement, sense: Sense) -> f64 {
-    let spacing = Spacing::full(planner.grid());
-    let plans = planner.plan_fine(placement, sense, None, spacing, &mut planner.workspace()).unwrap();
+    let plans = planner.plan_fine(placement, sense, None, &mut planner.workspace()).unwrap();
     plans.iter().map(|plan| plan.cost).sum::<f64>() / planner.problem().task.points().len() as f64
 }
 

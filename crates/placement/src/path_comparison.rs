@@ -49,17 +49,15 @@ impl PathComparison {
             }
             let drawn = search::drawn(full.problem(), settings, draw);
             let allowed = objectives(&planner, &drawn);
-            let likely = drawn.into_iter().zip(allowed).filter(|(_, objective)| objective.mean().is_some());
-            let likely: Vec<Placement> = likely.map(|(placement, _)| placement).take(missing).collect();
-            let check = |placement: &Placement| (whole.objective(placement, None), whole.largest(placement, None));
-            let checked: Vec<_> = likely.par_iter().map(check).collect();
+            let of = |(placement, objective)| Candidate { placement, scheme: None, objective };
+            let likely =
+                drawn.into_iter().zip(allowed).map(of).filter(|candidate| candidate.objective.mean().is_some());
+            let likely: Vec<Candidate> = likely.take(missing).collect();
+            let checked: Vec<_> = likely.par_iter().map(|candidate| whole.check(candidate)).collect();
             comparison.planned += checked.len();
-            for (placement, (checked, largest)) in likely.into_iter().zip(checked) {
-                comparison.deciding.extend(largest);
-                match checked {
-                    Ok(mean) => comparison.pairs.push((placement, mean)),
-                    Err(points) => comparison.deciding.extend(points),
-                }
+            for (candidate, (mean, deciding)) in likely.into_iter().zip(checked) {
+                comparison.add_deciding(&deciding);
+                comparison.pairs.extend(mean.map(|mean| (candidate.placement, mean)));
             }
             monitor.report(Progress::Steps { stage: "long path", done: comparison.pairs.len(), total: wanted });
         }
@@ -92,12 +90,21 @@ impl PathComparison {
 
     /// The subset, with the largest of its errors.
     pub fn accuracy(&self, problem: &Problem, subset: &PathSubset) -> SubsetAccuracy {
-        let errors = self.errors(problem, subset);
-        SubsetAccuracy {
-            points: subset.points().len(),
-            pairs: errors.len(),
-            error: errors.into_iter().reduce(f64::max),
-        }
+        SubsetAccuracy::new(subset, self.errors(problem, subset))
+    }
+
+    /// Remembers points that decide: ascending, each once.
+    pub fn add_deciding(&mut self, points: &[usize]) {
+        self.deciding.extend(points);
+        self.deciding.sort_unstable();
+        self.deciding.dedup();
+    }
+}
+
+impl SubsetAccuracy {
+    /// The largest of a subset's errors.
+    pub(crate) fn new(subset: &PathSubset, errors: Vec<f64>) -> Self {
+        Self { points: subset.points().len(), pairs: errors.len(), error: errors.into_iter().reduce(f64::max) }
     }
 }
 

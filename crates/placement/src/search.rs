@@ -43,6 +43,34 @@ pub struct SearchResult {
     pub interrupted: bool,
 }
 
+impl SearchResult {
+    /// Whether it met a feasible placement.
+    pub fn is_feasible(&self) -> bool {
+        self.basins.first().is_some_and(|best| best.objective.mean().is_some())
+    }
+
+    /// Of the searches of both senses the one that met nothing feasible goes on from the basins of the other; whether either met
+    /// something.
+    pub fn share_basins(found: &mut [Self; 2]) -> bool {
+        let feasible = found.each_ref().map(Self::is_feasible);
+        match feasible {
+            [true, false] => found[1].basins = found[0].basins.clone(),
+            [false, true] => found[0].basins = found[1].basins.clone(),
+            _ => {}
+        }
+        feasible.contains(&true)
+    }
+
+    /// The basins of both searches, each with its sense and its rank.
+    pub fn jobs(found: &[Self; 2]) -> Vec<(Sense, usize, &Candidate)> {
+        let mut jobs = Vec::new();
+        for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+            jobs.extend(found.basins.iter().enumerate().map(|(rank, candidate)| (sense, rank, candidate)));
+        }
+        jobs
+    }
+}
+
 /// Share of the population that goes on unchanged: the best.
 const ELITE: f64 = 0.05;
 /// Share of the children that have two parents; the others are mutants of one.
@@ -66,10 +94,10 @@ const UNEVALUATED: Objective = Objective::Infeasible { points: usize::MAX, segme
 /// Searches the cell.
 pub fn search(evaluator: &Evaluator<'_>, settings: &SearchSettings, sense: Sense, monitor: &Monitor) -> SearchResult {
     let start = initial(evaluator.planner().problem(), settings, sense);
-    generations(evaluator, settings, sense, start, 0..=settings.generations, monitor).0
+    generations(evaluator, settings, sense, start, 0..=settings.generations, monitor)
 }
 
-/// The generations of a search from a first population on, and the population that they end with.
+/// The generations of a search from a first population on.
 pub fn generations(
     evaluator: &Evaluator<'_>,
     settings: &SearchSettings,
@@ -77,7 +105,7 @@ pub fn generations(
     mut population: Vec<Candidate>,
     generations: RangeInclusive<usize>,
     monitor: &Monitor,
-) -> (SearchResult, Vec<Candidate>) {
+) -> SearchResult {
     let problem = evaluator.planner().problem();
     let cell = &problem.cell;
     evaluate(evaluator, &mut population, 0, monitor);
@@ -125,14 +153,13 @@ pub fn generations(
     evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
-    let result = SearchResult {
+    SearchResult {
         basins: selected.basins,
         history,
         evaluations,
         lookup_rejected: selected.lookup_rejected,
         interrupted,
-    };
-    (result, population)
+    }
 }
 
 /// In place of a search, the only placement of a cell that leaves no other, on a planner's grid.

@@ -79,7 +79,7 @@ pub fn objective_with_force_errors(problem: &Problem, placement: &Placement, pla
 mod tests {
     use super::*;
     use crate::place::score;
-    use crate::redundancy::{Planner, off_grid};
+    use crate::redundancy::Planner;
     use crate::refine::planned;
     use crate::settings::TransferSettings;
     use crate::testing::{compensated, five_segments, with_laws};
@@ -90,12 +90,11 @@ mod tests {
         let problem = with_laws(five_segments(), &[(1, compensated(0.2, 3e-7))]);
         let placement = Placement::from([0.1, -1.7, -0.4, 1.0]);
         let planner = Planner::new(&problem);
-        let spacing = off_grid::Spacing::full(planner.grid());
-        let solution = planned(&planner, &placement, None, spacing, &mut planner.workspace()).unwrap();
+        let solution = planned(&planner, &placement, None, &mut planner.workspace()).unwrap();
         let slopes = mean_by_stiffness(&problem, &placement, &solution.plans);
         // A deflection is a sum over the joints of what falls with their stiffness, so that all together it falls as it is large.
         let constant = five_segments();
-        let solution = planned(&Planner::new(&constant), &placement, None, spacing, &mut planner.workspace()).unwrap();
+        let solution = planned(&Planner::new(&constant), &placement, None, &mut planner.workspace()).unwrap();
         let all: f64 = mean_by_stiffness(&constant, &placement, &solution.plans).iter().sum();
         assert!((all / solution.objective + 1.0).abs() < 1e-6, "{all} {}", solution.objective);
         assert!(slopes.iter().any(|slope| *slope < 0.0) && slopes.iter().all(|slope| slope.is_finite()));

@@ -1,9 +1,8 @@
 //! What a placement that a subset of a long path allows comes to on the whole path, and which points decide that.
 
-use super::candidate::Objective;
+use super::candidate::{Candidate, Objective};
 use super::criterion::Aggregate;
 use super::evaluate::reference::state;
-use super::evaluator::Evaluator;
 use super::problem::{Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use super::sense::Sense;
@@ -14,10 +13,23 @@ const STRETCH: usize = 3;
 /// Of a placement, at most so many stretches.
 const STRETCHES: usize = 12;
 
+/// Where the objective on the coarse grid is farther than this (relative) from that on a subset, the finer grid decides: between
+/// dense points a coarse grid may leave a narrow way out that the subset takes.
+const AGREEMENT: f64 = 0.05;
+
 /// The whole path on the coarse grid of beta, and on the finer one where that is too coarse.
 pub(crate) struct WholePath<'a, 'p> {
     coarse: Planner<'p>,
     finer: &'a Planner<'p>,
+}
+
+/// What a placement comes to on the whole path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OnWhole {
+    /// The mean score of its best plan. m
+    pub mean: f64,
+    /// Whether that plan is on the finer grid.
+    pub is_fine: bool,
 }
 
 impl<'a, 'p> WholePath<'a, 'p> {
@@ -30,22 +42,46 @@ impl<'a, 'p> WholePath<'a, 'p> {
         self.finer.problem()
     }
 
-    /// The objective of a placement (m), or points that decide against it.
-    pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>) -> Result<f64, Vec<usize>> {
-        let evaluator = Evaluator::new(&self.coarse, None).with_finer_planner(self.finer);
-        match evaluator.planned_objective(placement, scheme, &mut evaluator.workspace()) {
-            Objective::Feasible(mean) => Ok(mean),
-            Objective::Infeasible { .. } => {
+    /// The objective of a placement that is `expected` to come to about so much (m), or points that decide against it.
+    pub fn objective(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        expected: Option<f64>,
+    ) -> Result<OnWhole, Vec<usize>> {
+        let on = |planner: &Planner<'_>| planner.objective(placement, Sense::Min, scheme, &mut planner.workspace());
+        let coarse = on(&self.coarse);
+        if let Objective::Feasible(mean) = coarse
+            && expected.is_none_or(|expected| (mean - expected).abs() <= AGREEMENT * mean)
+        {
+            return Ok(OnWhole { mean, is_fine: false });
+        }
+        let is_blocked = matches!(coarse, Objective::Infeasible { points: 1.., .. });
+        let fine = if is_blocked { None } else { on(self.finer).mean() };
+        match (fine, coarse) {
+            (Some(mean), _) => Ok(OnWhole { mean, is_fine: true }),
+            (None, Objective::Feasible(mean)) => Ok(OnWhole { mean, is_fine: false }),
+            (None, Objective::Infeasible { .. }) => {
                 let plan = self.finer.plan(placement, Sense::Min, scheme, &mut self.finer.workspace());
                 Err(plan.err().map(|none| deciding(self.problem(), &none)).unwrap_or_default())
             }
+        }
+    }
+
+    /// The objective of a candidate of a subset, none where it has no plan, and the points that decide that.
+    pub fn check(&self, candidate: &Candidate) -> (Option<f64>, Vec<usize>) {
+        let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
+        let largest = self.largest(placement, scheme);
+        match self.objective(placement, scheme, candidate.objective.mean()) {
+            Ok(whole) => (Some(whole.mean), largest.into_iter().collect()),
+            Err(points) => (None, points),
         }
     }
 }
 
 impl WholePath<'_, '_> {
     /// The point with the largest cost under the best plan of a placement, where that alone is the objective.
-    pub fn largest(&self, placement: &Placement, scheme: Option<&[Posture]>) -> Option<usize> {
+    fn largest(&self, placement: &Placement, scheme: Option<&[Posture]>) -> Option<usize> {
         let problem = self.problem();
         if problem.criterion.aggregate != Aggregate::Max {
             return None;

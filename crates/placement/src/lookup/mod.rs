@@ -30,7 +30,7 @@ pub use shape::{Axis, Shape};
 
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
-use super::redundancy::{BetaChange, Planner, beta_changes};
+use super::redundancy::{BetaChange, Planner, saved_changes};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
@@ -75,7 +75,7 @@ impl BetaGrid {
     /// A grid of `count` values over a full turn, with the changes of beta that are allowed on it.
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
-        let changes = beta_changes(problem, &grid);
+        let changes = saved_changes(problem, &grid);
         Self { count, changes }
     }
 }

@@ -6,7 +6,6 @@ use super::refined::Refined;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
-use crate::redundancy::off_grid;
 use crate::refine::{found_again, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
@@ -74,11 +73,7 @@ pub(super) fn refine_basins(
     if let Some(path) = long {
         return long_refinement::refine_basins(path, evaluator.planner(), found, monitor);
     }
-    let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
-        .into_iter()
-        .zip(found)
-        .flat_map(|(sense, f)| f.basins.iter().enumerate().map(move |(rank, candidate)| (sense, rank, candidate)))
-        .collect();
+    let jobs = SearchResult::jobs(found);
     let done = AtomicUsize::new(0);
     let run = |jobs: &[(Sense, usize, &Candidate)],
                of: usize,
@@ -135,8 +130,7 @@ pub(super) fn refine_one(
     let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
     let (solution, report) = if monitor.should_stop() {
         let planner = evaluator.planner();
-        let spacing = off_grid::Spacing::full(planner.grid());
-        (planned(planner, placement, scheme, spacing, &mut planner.workspace())?, None)
+        (planned(planner, placement, scheme, &mut planner.workspace())?, None)
     } else {
         let (solution, report) = refine(evaluator, placement, sense, scheme, monitor)?;
         (found_again(evaluator.planner(), solution, scheme, monitor), Some(report))

@@ -9,7 +9,7 @@ use super::infeasible::{Infeasible, infeasible};
 use super::searched::{Searched, search_cell};
 use crate::candidate::{Candidate, Objective, rank};
 use crate::evaluator::Evaluator;
-use crate::outcome::PathLevels;
+use crate::outcome::{PathLevels, SubsetAccuracy};
 use crate::path_comparison::PathComparison;
 use crate::path_subset::PathSubset;
 use crate::problem::Problem;
@@ -75,23 +75,21 @@ impl LongPath {
         // A subset that was asked for stays as it is.
         let largest = if settings.path_points.is_some() { 0 } else { all / SHORT };
         let accurate = |subset, tolerance| accurate(problem, subset, &comparison, tolerance, largest);
-        let mut path = Self {
-            search: accurate(search, TOLERANCES[0]),
-            refinement: accurate(refinement, TOLERANCES[1]),
-            levels: PathLevels { points: all, whole: comparison.planned, ..PathLevels::default() },
-            comparison,
-        };
-        path.measure(problem);
-        Some(path)
+        let (search, of_search) = accurate(search, TOLERANCES[0]);
+        let (refinement, of_refinement) = accurate(refinement, TOLERANCES[1]);
+        let (subsets, deciding) = ([of_search, of_refinement], comparison.deciding.len());
+        let levels = PathLevels { points: all, whole: comparison.planned, subsets, deciding };
+        Some(Self { search, refinement, levels, comparison })
     }
 
-    /// States how far the subsets are off as they stand.
+    /// States how far the subsets are off as they stand, where points joined them.
     fn measure(&mut self, problem: &Problem) {
-        let deciding = &mut self.comparison.deciding;
-        deciding.sort_unstable();
-        deciding.dedup();
-        self.levels.deciding = deciding.len();
-        self.levels.subsets = [&self.search, &self.refinement].map(|subset| self.comparison.accuracy(problem, subset));
+        let known = self.levels.deciding;
+        self.levels.deciding = self.comparison.deciding.len();
+        if self.levels.deciding > known {
+            let accuracy = |subset| self.comparison.accuracy(problem, subset);
+            self.levels.subsets = [&self.search, &self.refinement].map(accuracy);
+        }
     }
 
     /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win has no plan
@@ -110,6 +108,7 @@ impl LongPath {
         let wider = SearchSettings { basins: PROMOTED * settings.basins, ..*settings };
         let mut repeats = 0;
         let mut evaluations = 0;
+        let whole = WholePath::new(full);
         loop {
             let thinned = self.search.of(problem);
             let searched = match search_cell(&Planner::finer(&thinned), &wider, monitor) {
@@ -122,12 +121,11 @@ impl LongPath {
             evaluations += self.search_on(problem, &wider, &mut found, monitor);
             let nearest = found[0].basins[0].clone();
             let mut deciding = Vec::new();
-            let promoted = Sense::BOTH
-                .into_iter()
-                .zip(&mut found)
-                .map(|(sense, found)| self.promote(full, sense, found, settings.basins, &mut deciding));
-            let is_refused = promoted.fold(false, |any, refused| any | refused);
-            self.comparison.deciding.extend(&deciding);
+            let mut is_refused = false;
+            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+                is_refused |= self.promote(&whole, sense, found, settings.basins, &mut deciding);
+            }
+            self.comparison.add_deciding(&deciding);
             let is_larger = self.search.add(&deciding);
             self.refinement.add(&deciding);
             if is_refused && is_larger && repeats < REPEATS && !monitor.should_stop() {
@@ -137,14 +135,11 @@ impl LongPath {
             for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(_, found)| found.basins.is_empty()) {
                 found.basins = search::distinct(&problem.cell, &self.comparison.ranked(sense), settings.basins);
             }
-            match found.each_ref().map(|found| !found.basins.is_empty()) {
-                [true, true] => {}
-                [true, false] => found[1].basins = found[0].basins.clone(),
-                [false, true] => found[0].basins = found[1].basins.clone(),
-                [false, false] if !monitor.should_stop() => return search_cell(full, settings, monitor),
-                [false, false] => {
-                    return Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
-                }
+            if !SearchResult::share_basins(&mut found) {
+                return match monitor.should_stop() {
+                    false => search_cell(full, settings, monitor),
+                    true => Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor)),
+                };
             }
             self.measure(problem);
             return Ok(Searched { found, table: None, lookup_summary, evaluations });
@@ -172,8 +167,7 @@ impl LongPath {
                 break;
             }
             let start = std::mem::take(&mut found.basins);
-            let (again, _) =
-                search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
+            let again = search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
             evaluations += again.evaluations;
             found.basins = again.basins;
             found.interrupted |= again.interrupted;
@@ -185,50 +179,44 @@ impl LongPath {
     /// `basins`; returns whether the first has none.
     fn promote(
         &mut self,
-        full: &Planner<'_>,
+        whole: &WholePath<'_, '_>,
         sense: Sense,
         found: &mut SearchResult,
         basins: usize,
         deciding: &mut Vec<usize>,
     ) -> bool {
         found.basins.truncate(PROMOTED * basins);
-        let whole = WholePath::new(full);
-        let check = |candidate: &Candidate| {
-            let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
-            (whole.objective(placement, scheme), whole.largest(placement, scheme))
-        };
-        let checked: Vec<_> = found.basins.par_iter().map(check).collect();
+        let checked: Vec<_> = found.basins.par_iter().map(|candidate| whole.check(candidate)).collect();
         self.levels.whole += checked.len();
-        let is_refused = checked.first().is_some_and(|(objective, _)| objective.is_err());
+        let is_refused = checked.first().is_some_and(|(mean, _)| mean.is_none());
         let mut allowed = Vec::new();
-        for (candidate, (objective, largest)) in found.basins.drain(..).zip(checked) {
-            deciding.extend(largest);
-            match objective {
-                Ok(mean) => allowed.push(Candidate { objective: Objective::Feasible(mean), ..candidate }),
-                Err(points) => deciding.extend(points),
-            }
+        for (candidate, (mean, points)) in found.basins.drain(..).zip(checked) {
+            deciding.extend(points);
+            allowed.extend(mean.map(|mean| Candidate { objective: Objective::Feasible(mean), ..candidate }));
         }
         allowed.sort_by(|a, b| rank(sense, a.objective, b.objective));
-        found.basins = search::distinct(&full.problem().cell, &allowed, basins);
+        found.basins = search::distinct(&whole.problem().cell, &allowed, basins);
         is_refused
     }
 }
 
-/// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path.
+/// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path, and how far
+/// it is off.
 fn accurate(
     problem: &Problem,
     mut subset: PathSubset,
     comparison: &PathComparison,
     tolerance: f64,
     largest: usize,
-) -> PathSubset {
+) -> (PathSubset, SubsetAccuracy) {
     loop {
         subset.add(&comparison.deciding);
         let errors = comparison.errors(problem, &subset);
         let within = errors.iter().filter(|error| **error <= tolerance).count() as f64;
         let points = subset.points().len();
         if within >= WITHIN * errors.len() as f64 || 2 * points > largest {
-            return subset;
+            let accuracy = SubsetAccuracy::new(&subset, errors);
+            return (subset, accuracy);
         }
         subset = PathSubset::new(&problem.task, 2 * points);
     }

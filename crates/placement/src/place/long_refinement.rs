@@ -6,7 +6,7 @@ use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::problem::Placement;
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use crate::refine::{planned, refine, solver};
 use crate::search::SearchResult;
 use crate::sense::Sense;
@@ -51,11 +51,7 @@ pub(super) fn refine_basins(
     found: &[SearchResult; 2],
     monitor: &Monitor,
 ) -> ([Vec<Refined>; 2], Vec<Refinement>) {
-    let jobs: Vec<(Sense, usize, &Candidate)> = Sense::BOTH
-        .into_iter()
-        .zip(found)
-        .flat_map(|(sense, found)| found.basins.iter().enumerate().map(move |(rank, basin)| (sense, rank, basin)))
-        .collect();
+    let jobs = SearchResult::jobs(found);
     let whole = WholePath::new(planner);
     let done = AtomicUsize::new(0);
     let estimate = |job: usize| {
@@ -103,7 +99,10 @@ fn estimated<'c>(
         let evaluator = Evaluator::new(&planner, None).with_coarser_planner(&coarse);
         let (solution, report) = refine(&evaluator, &candidate.placement, sense, scheme, monitor)?;
         let placement = solution.placement;
-        let mut checked = whole.objective(&placement, scheme);
+        let on_subset =
+            |placement: &Placement| coarse.objective(placement, Sense::Min, scheme, &mut coarse.workspace()).mean();
+        let check = |placement: &Placement| whole.objective(placement, scheme, on_subset(placement));
+        let mut checked = check(&placement);
         if let Err(points) = &checked
             && repeats < REPEATS
             && !monitor.should_stop()
@@ -120,13 +119,16 @@ fn estimated<'c>(
             }
             let share = if halving == HALVINGS { 1.0 } else { 1.0 - libm::pow(0.5, halving as f64) };
             end = problem.cell.between(&placement, &candidate.placement, share);
-            checked = whole.objective(&end, scheme);
+            checked = check(&end);
         }
-        let on_subset = coarse.objective(&end, Sense::Min, scheme, &mut coarse.workspace()).mean();
         let on_whole = checked.ok()?;
+        let on_subset = match on_whole.is_fine {
+            true => planner.objective(&end, Sense::Min, scheme, &mut planner.workspace()).mean(),
+            false => on_subset(&end),
+        };
         let objective = match on_subset {
-            Some(on_subset) if end == placement && on_subset > 0.0 => solution.objective * on_whole / on_subset,
-            _ => on_whole,
+            Some(on_subset) if end == placement && on_subset > 0.0 => solution.objective * on_whole.mean / on_subset,
+            _ => on_whole.mean,
         };
         let report = Refinement { end, end_mean: objective, ..report };
         return Some(Estimated { candidate, placement: end, objective, report });
@@ -140,7 +142,6 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
     let is_long = planner.problem().task.points().len() > MAX_REFINED;
     let close = if is_long { CLOSE_LONG } else { CLOSE };
     let is_close = |estimate: &Estimated<'_>| (estimate.objective - first).abs() <= close * first;
-    let spacing = off_grid::Spacing::full(planner.grid());
     let plan = |(rank, estimate): (usize, &mut Estimated<'_>)| {
         if rank > 0 && (!is_close(estimate) || (is_long && rank >= REFINED) || monitor.should_stop()) {
             return None;
@@ -150,7 +151,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
         let ends = [estimate.placement, estimate.candidate.placement];
         let solutions = ends
             .par_iter()
-            .filter_map(|placement| planned(planner, placement, scheme.as_deref(), spacing, &mut planner.workspace()));
+            .filter_map(|placement| planned(planner, placement, scheme.as_deref(), &mut planner.workspace()));
         let solution = solutions
             .collect::<Vec<_>>()
             .into_iter()
@@ -183,7 +184,6 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
 /// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone
 /// gets the same. Returns the report, continued.
 fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
-    let spacing = off_grid::Spacing::full(planner.grid());
     for _ in 0..ROUNDS {
         if monitor.should_stop() {
             break;
@@ -194,7 +194,7 @@ fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinemen
         report.statuses.push(run.status);
         let scheme = best.scheme.as_deref();
         let before = best.solution.objective;
-        match planned(planner, &run.solution.placement, scheme, spacing, &mut planner.workspace()) {
+        match planned(planner, &run.solution.placement, scheme, &mut planner.workspace()) {
             Some(anew) if anew.objective < before => best.solution = anew,
             _ => break,
         }

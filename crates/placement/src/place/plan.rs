@@ -4,7 +4,7 @@ use super::refined::Refined;
 use crate::evaluate::reference::{scored_part_by_parameters, state};
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::problem::{Placement, Problem};
-use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
+use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use crate::refine::planned;
 use crate::sense::Sense;
 use crate::sensitivity::mean_by_stiffness;
@@ -27,8 +27,7 @@ impl StatedPlans {
             if tie == 0.0 || monitor.should_stop() {
                 return None;
             }
-            let spacing = off_grid::Spacing::full(planner.grid());
-            let found = planned(planner, &solution.placement, scheme, spacing, &mut planner.workspace());
+            let found = planned(planner, &solution.placement, scheme, &mut planner.workspace());
             found.filter(|found| found.objective <= solution.objective * (1.0 + tie + ROUNDING))
         };
         let worst = || worst_plan(planner, &solution.placement, scheme);
@@ -48,8 +47,7 @@ pub(super) fn worst_plan(
     placement: &Placement,
     scheme: Option<&[Posture]>,
 ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-    let spacing = off_grid::Spacing::full(planner.grid());
-    planner.plan_fine(placement, Sense::Max, scheme, spacing, &mut planner.workspace())
+    planner.plan_fine(placement, Sense::Max, scheme, &mut planner.workspace())
 }
 
 /// A plan with everything that there is to say of each point, from the reference evaluator.

@@ -5,7 +5,7 @@ use super::notes::{self, cancellation};
 use super::plan::{detailed, worst_plan};
 use crate::outcome::{Case, Cycle, Plan};
 use crate::problem::{Placement, Problem};
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use crate::refine::planned;
 use crate::sense::Sense;
 use crate::settings::TransferSettings;
@@ -60,8 +60,7 @@ pub fn score(
 ) -> Result<Score, Infeasible> {
     monitor.report(Progress::Steps { stage: "planning", done: 0, total: 1 });
     let planner = Planner::finer(problem);
-    let spacing = off_grid::Spacing::full(planner.grid());
-    let best = planned(&planner, placement, None, spacing, &mut planner.workspace());
+    let best = planned(&planner, placement, None, &mut planner.workspace());
     let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
         return Err(infeasible(&planner, placement, None, false, monitor));
     };

@@ -56,23 +56,16 @@ pub(super) fn search_cell<'a>(
         found = search(None);
         evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
     }
-    let is_feasible = |f: &SearchResult| f.basins.first().is_some_and(|i| i.objective.mean().is_some());
-    if !found.iter().any(is_feasible) {
+    if !found.iter().any(SearchResult::is_feasible) {
         evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
         for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
             search::evaluate_finer(finer, sense, &mut found.basins, monitor);
             found.basins.truncate(settings.basins);
         }
     }
-    // A search that met nothing feasible goes on from what the other met.
-    match found.each_ref().map(is_feasible) {
-        [true, true] => {}
-        [true, false] => found[1].basins = found[0].basins.clone(),
-        [false, true] => found[0].basins = found[1].basins.clone(),
-        [false, false] => {
-            let nearest = &found[0].basins[0];
-            return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
-        }
+    if !SearchResult::share_basins(&mut found) {
+        let nearest = &found[0].basins[0];
+        return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
     }
     Ok(Searched { found, table, lookup_summary, evaluations })
 }

@@ -110,7 +110,7 @@ pub(super) struct Pass<'p> {
 impl Planner<'_> {
     /// What bounds the step to path point `point` from the one before.
     pub fn step(&self, point: usize, sense: Sense) -> Step {
-        self.step_over(point, self.rate_limit.direct(point), 1, sense)
+        self.step_over(point, self.changes[point], 1, sense)
     }
 
     /// What bounds the step to a path point from the one so many points before.
@@ -134,7 +134,7 @@ impl Planner<'_> {
             true => self.knots.at(point),
             false => Place::Knot(Knot {
                 number: point - pass.span.start,
-                change: self.rate_limit.direct(point),
+                change: self.changes[point],
                 points: 1,
                 middle: 0.0,
             }),

@@ -99,13 +99,7 @@ impl PointRoom {
 
 impl Knots {
     /// For points whose joints may step by `joints` (rad); `direct` are the changes between neighbours.
-    pub fn new(
-        problem: &Problem,
-        grid: &Redundancy,
-        joints: &[[f64; 6]],
-        direct: impl Fn(usize) -> BetaChange,
-        room: Room,
-    ) -> Self {
+    pub fn new(problem: &Problem, grid: &Redundancy, joints: &[[f64; 6]], direct: &[BetaChange], room: Room) -> Self {
         let count = joints.len();
         let start = Knot { number: 0, change: BetaChange::only(0), points: 1, middle: 0.0 };
         let mut found = Self {
@@ -122,7 +116,7 @@ impl Knots {
                 let own = PointRoom::new(problem, grid, point, &joints[point]);
                 found.rooms[point] = own;
                 if points == 0 && (own.half < 0.0 || own.sure + STEP_ROUNDING >= room.neighbours) {
-                    let knot = Knot { number, change: direct(point), points: 1, middle: 0.0 };
+                    let knot = Knot { number, change: direct[point], points: 1, middle: 0.0 };
                     found.places[point] = Place::Knot(knot);
                     found.knots.push(point);
                     number += 1;

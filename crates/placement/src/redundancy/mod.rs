@@ -26,12 +26,13 @@ mod segment;
 pub mod transition;
 
 pub use obstruction::Obstruction;
-pub use rate_limit::BetaChange;
+pub use rate_limit::{BetaChange, saved_changes};
 
 use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
+use off_grid::Spacing;
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
@@ -68,20 +69,15 @@ pub struct Planner<'a> {
     problem: &'a Problem,
     grid: Redundancy,
     evaluators: Vec<BatchEvaluator<'a>>,
-    rate_limit: rate_limit::RateLimit,
+    /// Allowed changes of the beta number from the point before.
+    changes: Vec<BetaChange>,
     knots: knots::Knots,
     room: knots::Room,
+    spacing: Spacing,
     steps: Vec<[f64; 6]>,
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
     instructions: Instructions,
-}
-
-/// Allowed changes of the beta number at every path point from the one before, on a grid: where points are so close that
-/// less than a step is allowed between neighbours, a step after every few of them.
-pub fn beta_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
-    let rate_limit = rate_limit::RateLimit::new(problem, grid);
-    (0..problem.task.points().len()).map(|point| rate_limit.saved(point)).collect()
 }
 
 /// Space of one thread to plan in.
@@ -100,8 +96,8 @@ impl<'a> Planner<'a> {
     }
 
     /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
-    /// degree and at most half the width of what is allowed to beta between any two points, those apart where that is less than
-    /// an eighth of a degree.
+    /// degree and at most a quarter of the largest change allowed to beta between any two points, but not below half a degree, or
+    /// that change where it is less; changes of less than an eighth of a degree do not count.
     pub fn finer(problem: &'a Problem) -> Self {
         Self::on_grid(problem, finer(problem, problem.redundancy), FINAL_ROOM)
     }
@@ -111,16 +107,17 @@ impl<'a> Planner<'a> {
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
         let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
-        let rate_limit = rate_limit::RateLimit::new(problem, &grid);
+        let changes = rate_limit::direct_changes(problem, &grid);
         let step = |p: usize| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) };
         let steps: Vec<_> = (0..count).map(step).collect();
         Self {
             problem,
             grid,
             evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
-            knots: knots::Knots::new(problem, &grid, &steps, |point| rate_limit.direct(point), room),
+            knots: knots::Knots::new(problem, &grid, &steps, &changes, room),
             room,
-            rate_limit,
+            spacing: if problem.task.path().is_thinned() { Spacing::rough(&grid) } else { Spacing::full(&grid) },
+            changes,
             steps,
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
@@ -132,9 +129,13 @@ impl<'a> Planner<'a> {
     /// The same with steps of the joints that may be at least so large. rad
     fn with_joint_steps(mut self, least: f64) -> Self {
         self.steps.iter_mut().flatten().for_each(|limit| *limit = limit.max(least));
-        let direct = |point| self.rate_limit.direct(point);
-        self.knots = knots::Knots::new(self.problem, &self.grid, &self.steps, direct, self.room);
+        self.knots = knots::Knots::new(self.problem, &self.grid, &self.steps, &self.changes, self.room);
         self
+    }
+
+    /// The same with beta narrowed down otherwise where a plan leaves the grid.
+    pub fn with_spacing(self, spacing: Spacing) -> Self {
+        Self { spacing, ..self }
     }
 
     /// The problem that is planned.
@@ -149,7 +150,7 @@ impl<'a> Planner<'a> {
 
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
-        self.rate_limit.widest().max(self.knots.widest())
+        self.changes.iter().copied().map(BetaChange::widest).max().unwrap_or(0).max(self.knots.widest())
     }
 
     /// Space for one thread.
@@ -242,7 +243,6 @@ impl<'a> Planner<'a> {
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        spacing: off_grid::Spacing,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let rules = &self.problem.postures;
@@ -251,7 +251,7 @@ impl<'a> Planner<'a> {
         self.unchanging(scheme, sense, |scheme| {
             let choices = self.choices(placement, sense, scheme, workspace, margin)?;
             let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
-                let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), spacing, classes);
+                let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), classes);
                 Some(driven).filter(|driven| !driven.is_empty())
             };
             let refined = match self.is_parallel() {
@@ -298,13 +298,12 @@ impl<'a> Planner<'a> {
         placement: &Placement,
         sense: Sense,
         only: Option<Posture>,
-        spacing: off_grid::Spacing,
         classes: Vec<joint_turns::SegmentChoice>,
     ) -> Vec<joint_turns::SegmentChoice> {
         let (rules, sign) = (&self.problem.postures, sense.sign());
         let refined = classes.into_iter().filter_map(|choice| {
             let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
-            off_grid::refine(self.problem, placement, sense, spacing, &mut plan);
+            off_grid::refine(self.problem, placement, sense, self.spacing, &mut plan);
             Some(plan)
         });
         let mut plans: Vec<SegmentPlan> = refined.collect();

@@ -36,12 +36,35 @@ impl Spacing {
     pub fn full(grid: &Redundancy) -> Self {
         Self { first: grid.beta_step() / 2.0, last: 1.7e-5 }
     }
+
+    /// Down to a sixtieth of a degree: for a subset of a path, whose mean is off by more than that makes.
+    pub fn rough(grid: &Redundancy) -> Self {
+        Self { last: 2.9e-4, ..Self::full(grid) }
+    }
 }
 
 /// One value of beta at one point.
 #[derive(Clone, Copy)]
-struct Node {
+struct Value {
     beta: f64,
+    /// What the arm comes to there, none where a constraint on the state forbids it.
+    state: Option<Allowed>,
+    /// The same with turns inside the limits of the joints.
+    node: Option<Node>,
+}
+
+/// An allowed state.
+#[derive(Clone, Copy)]
+struct Allowed {
+    /// Joint angles modulo a turn. rad
+    joints: [f64; 6],
+    score: f64,
+}
+
+/// An allowed state with its turns.
+#[derive(Clone, Copy)]
+struct Node {
+    /// Real joint angles. rad
     joints: [f64; 6],
     score: f64,
     cost: f64,
@@ -55,7 +78,8 @@ struct Node {
 pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
     let mut better = false;
     let mut spacing = range.first;
-    let mut layers = vec![Layer { states: [None; VALUES], is_fresh: false }; plan.points.len()];
+    let unknown = Value { beta: f64::NAN, state: None, node: None };
+    let mut layers = vec![Layer { values: [unknown; VALUES], is_fresh: false }; plan.points.len()];
     while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
@@ -73,7 +97,7 @@ pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spa
 /// The values of beta that a level lays at one point.
 #[derive(Clone)]
 struct Layer {
-    states: [Option<Node>; VALUES],
+    values: [Value; VALUES],
     /// Whether they lie around the present plan, with the present spacing.
     is_fresh: bool,
 }
@@ -84,7 +108,8 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
     let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
-        let node = node(problem, placement, point, plan, place, plan.betas[place])?;
+        let state = allowed(problem, placement, point, plan.betas[place], plan)?;
+        let node = turned(problem, &state, &plan.joints[place])?;
         replayed.joints[place] = node.joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
         if place > 0 {
@@ -97,20 +122,16 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
     Some(replayed)
 }
 
-fn node(
-    problem: &Problem,
-    placement: &Placement,
-    point: usize,
-    plan: &SegmentPlan,
-    place: usize,
-    beta: f64,
-) -> Option<Node> {
+/// The state of a path point in the posture of a plan, if it satisfies everything but the limits of the joints.
+fn allowed(problem: &Problem, placement: &Placement, point: usize, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
     let state = reference::state(problem, point, placement, beta, plan.posture).ok()?;
-    let joints = nearest_turns(&state.joints, &plan.joints[place]);
-    if !is_allowed(problem, &state) || !inside_limits(problem, &joints) {
-        return None;
-    }
-    Some(Node { beta, joints, score: state.score(), cost: f64::INFINITY, from: 0 })
+    is_allowed(problem, &state).then(|| Allowed { joints: state.joints, score: state.score() })
+}
+
+/// A state with the turns nearest to given joint angles (rad), if they are inside the limits.
+fn turned(problem: &Problem, state: &Allowed, near: &[f64; 6]) -> Option<Node> {
+    let joints = nearest_turns(&state.joints, near);
+    inside_limits(problem, &joints).then_some(Node { joints, score: state.score, cost: f64::INFINITY, from: 0 })
 }
 
 /// Lays values of beta around the plan, where that moved since.
@@ -122,13 +143,15 @@ fn lay(problem: &Problem, placement: &Placement, spacing: f64, plan: &SegmentPla
             return;
         }
         layer.is_fresh = true;
-        let own = plan.betas[place];
-        // The plan itself was met before, at the latest spacing.
-        let known = layer.states.iter().flatten().find(|node| node.beta == own && node.joints == plan.joints[place]);
-        let known = known.copied();
-        layer.states = std::array::from_fn(|k| {
-            let beta = own + (k as f64 - middle as f64) * spacing;
-            known.filter(|_| k == middle).or_else(|| node(problem, placement, first + place, plan, place, beta))
+        let known = layer.values;
+        layer.values = std::array::from_fn(|k| {
+            let beta = plan.betas[place] + (k as f64 - middle as f64) * spacing;
+            // Every second value was met before, at the latest spacing.
+            let met = known.iter().find(|value| value.beta == beta);
+            let own = met.and_then(|value| value.node).filter(|node| k == middle && node.joints == plan.joints[place]);
+            let state = met.map_or_else(|| allowed(problem, placement, first + place, beta, plan), |value| value.state);
+            let turned = |state: &Allowed| turned(problem, state, &plan.joints[place]);
+            Value { beta, state, node: own.or_else(|| state.as_ref().and_then(turned)) }
         });
     });
 }
@@ -138,22 +161,23 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
     let sign = sense.sign();
     for (place, point) in plan.points.clone().enumerate() {
         let (done, open) = layers.split_at_mut(place);
-        let before = done.last().map(|layer| &layer.states);
+        let before = done.last().map(|layer| &layer.values);
         let joint_limits = if place > 0 { problem.joint_steps(point) } else { [f64::INFINITY; 6] };
         let beta_step = (place > 0).then(|| problem.beta_step(point));
-        for node in open[0].states.iter_mut().flatten() {
+        for value in &mut open[0].values {
+            let (beta, Some(node)) = (value.beta, &mut value.node) else { continue };
             let best = match before {
                 None => Some((0.0, 0)),
                 Some(before) => before
                     .iter()
                     .enumerate()
-                    .filter_map(|(index, old)| old.as_ref().map(|old| (index, old)))
-                    .filter(|(_, old)| {
+                    .filter_map(|(index, old)| old.node.as_ref().map(|node| (index, old.beta, node)))
+                    .filter(|(_, old_beta, old)| {
                         old.cost.is_finite()
-                            && beta_step.is_none_or(|step| step.allows(node.beta - old.beta))
+                            && beta_step.is_none_or(|step| step.allows(beta - old_beta))
                             && joint_steps_hold(&old.joints, &node.joints, &joint_limits)
                     })
-                    .map(|(index, old)| (old.cost, index))
+                    .map(|(index, _, old)| (old.cost, index))
                     .min_by(|a, b| a.0.total_cmp(&b.0)),
             };
             let own = sign * problem.point_cost(point, node.score);
@@ -165,7 +189,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
         }
     }
     let end = layers.last().and_then(|layer| {
-        let ends = layer.states.iter().enumerate().filter_map(|(k, node)| node.map(|node| (node.cost, k)));
+        let ends = layer.values.iter().enumerate().filter_map(|(k, value)| value.node.map(|node| (node.cost, k)));
         ends.filter(|(cost, _)| cost.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     let Some((cost, mut index)) = end else { return false };
@@ -173,9 +197,9 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
         return false;
     }
     for (place, layer) in layers.iter_mut().enumerate().rev() {
-        let Some(node) = layer.states[index] else { return false };
-        layer.is_fresh = plan.betas[place] == node.beta && plan.joints[place] == node.joints;
-        plan.betas[place] = node.beta;
+        let Value { beta, node: Some(node), .. } = layer.values[index] else { return false };
+        layer.is_fresh = plan.betas[place] == beta && plan.joints[place] == node.joints;
+        plan.betas[place] = beta;
         plan.joints[place] = node.joints;
         index = node.from;
     }

@@ -78,16 +78,6 @@ impl BetaChange {
     }
 }
 
-/// The limits on beta along the whole path, on a grid.
-#[derive(Debug, Clone)]
-pub(super) struct RateLimit {
-    grid: Redundancy,
-    /// Between neighbours.
-    direct: Vec<BetaChange>,
-    /// The same with steps saved up.
-    saved: Vec<BetaChange>,
-}
-
 /// A run of points over which steps are saved up: sums of the middles and half widths, in steps of the grid.
 #[derive(Default)]
 struct Run {
@@ -97,58 +87,53 @@ struct Run {
     taken: i32,
 }
 
-impl RateLimit {
-    pub fn new(problem: &Problem, grid: &Redundancy) -> Self {
-        let still = vec![BetaChange::only(0); problem.task.points().len()];
-        let mut limit = Self { grid: *grid, direct: still.clone(), saved: still };
-        for span in problem.task.segments() {
-            let mut run = Run::default();
-            for point in span.clone().skip(1) {
-                limit.add(point, problem, &mut run);
-            }
-        }
-        limit
-    }
-
-    /// Continues a run of saved steps by a point, or leaves it behind.
-    fn add(&mut self, point: usize, problem: &Problem, run: &mut Run) {
-        let grid = &self.grid;
+impl Run {
+    /// Continues a run of saved steps by a point, or leaves it behind; returns the changes allowed there.
+    fn add(&mut self, point: usize, problem: &Problem, grid: &Redundancy) -> BetaChange {
         let (step, count) = (problem.beta_step_within(point, grid), grid.beta_count);
         let (middle, half) = (step.middle / grid.beta_step(), step.half / grid.beta_step());
-        let direct = BetaChange::within(middle, half, count);
-        self.direct[point] = direct;
         let is_wide = half + STEP_ROUNDING >= 1.0;
         // Where the middle stands still, so does beta until there is a step, and nothing is owed.
-        if half < 0.0 || (is_wide && run.middle == 0.0) {
-            self.saved[point] = direct;
-            *run = Run::default();
-            return;
+        if half < 0.0 || (is_wide && self.middle == 0.0) {
+            *self = Self::default();
+            return BetaChange::within(middle, half, count);
         }
-        *run = Run { middle: run.middle + middle, half: run.half + half, ..*run };
-        if run.half + STEP_ROUNDING >= 1.0 {
-            self.saved[point] = BetaChange::within(run.middle, run.half, count).after(run.taken, count);
-            *run = Run::default();
+        *self = Self { middle: self.middle + middle, half: self.half + half, ..*self };
+        if self.half + STEP_ROUNDING >= 1.0 {
+            let run = std::mem::take(self);
+            BetaChange::within(run.middle, run.half, count).after(run.taken, count)
         } else {
-            let followed = run.middle.round() as i32;
-            self.saved[point] = BetaChange::only(followed - run.taken).after(0, count);
-            run.taken = followed;
+            let followed = self.middle.round() as i32;
+            let taken = std::mem::replace(&mut self.taken, followed);
+            BetaChange::only(followed - taken).after(0, count)
         }
     }
+}
 
-    /// The changes of the beta number between neighbours.
-    pub fn direct(&self, point: usize) -> BetaChange {
-        self.direct[point]
+/// Allowed changes of the beta number at every path point from the one before, on a grid.
+pub(super) fn direct_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
+    let change = |point: usize| {
+        let step = problem.beta_step_within(point, grid);
+        BetaChange::within(step.middle / grid.beta_step(), step.half / grid.beta_step(), grid.beta_count)
+    };
+    let mut changes = vec![BetaChange::only(0); problem.task.points().len()];
+    for point in problem.task.segments().iter().flat_map(|span| span.clone().skip(1)) {
+        changes[point] = change(point);
     }
+    changes
+}
 
-    /// The changes of the beta number at this point where steps are saved up.
-    pub fn saved(&self, point: usize) -> BetaChange {
-        self.saved[point]
+/// The same with steps saved up: where points are so close that less than a step is allowed between neighbours, a step after
+/// every few of them.
+pub fn saved_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
+    let mut changes = vec![BetaChange::only(0); problem.task.points().len()];
+    for span in problem.task.segments() {
+        let mut run = Run::default();
+        for point in span.clone().skip(1) {
+            changes[point] = run.add(point, problem, grid);
+        }
     }
-
-    /// The largest change of the beta number between neighbours.
-    pub fn widest(&self) -> usize {
-        self.direct.iter().copied().map(BetaChange::widest).max().unwrap_or(0)
-    }
+    changes
 }
 
 #[cfg(test)]

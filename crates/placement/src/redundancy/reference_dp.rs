@@ -127,7 +127,7 @@ impl Search<'_> {
         let point = self.span.start + place;
         let planner = self.planner;
         let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
-        connect(before, &mut layer, planner.rate_limit.direct(point), planner.grid.beta_count, &planner.steps[point]);
+        connect(before, &mut layer, planner.changes[point], planner.grid.beta_count, &planner.steps[point]);
         layer.retain(|node| node.cost.is_finite());
         let join = |node: &Node| {
             let own = node.score * self.sense.sign();

@@ -10,7 +10,7 @@ use super::subproblem::{Answer, Question, solve};
 use super::{LENGTH_UNIT, Solution, planned};
 use crate::limit::{ActiveBound, Limit, Side};
 use crate::problem::Problem;
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use stead_model::robot::Posture;
 
 /// Half width of the neighbourhood in which bounds are seen, in scaled variables.
@@ -56,7 +56,6 @@ const STEP: f64 = 1e-3;
 /// wall that it touches.
 pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
     let rooms = pose_bounds(planner.problem(), &worst.placement);
-    let spacing = off_grid::Spacing::full(planner.grid());
     let mut workspace = planner.workspace();
     let mut bounds = Vec::new();
     for (k, room) in rooms.into_iter().enumerate() {
@@ -66,7 +65,7 @@ pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Po
             }
             let mut inside = worst.placement;
             inside[k] += if is_upper { -STEP } else { STEP } * UNITS[k];
-            let Some(inside) = planned(planner, &inside, scheme, spacing, &mut workspace) else { continue };
+            let Some(inside) = planned(planner, &inside, scheme, &mut workspace) else { continue };
             let gain = (worst.objective - inside.objective) / (STEP * UNITS[k]);
             if gain > FLOOR * worst.objective {
                 bounds.push(ActiveBound { side: Side { limit: Limit::ALL_WALLS[k], is_upper }, gain });

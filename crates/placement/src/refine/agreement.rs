@@ -6,7 +6,7 @@
 
 use super::{LENGTH_UNIT, Solution, planned};
 use crate::problem::Placement;
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
@@ -29,8 +29,7 @@ pub fn found_again(
     monitor: &Monitor,
 ) -> Solution {
     let plan = |placement: &Placement| {
-        let spacing = off_grid::Spacing::full(planner.grid());
-        let plan = || planned(planner, placement, scheme, spacing, &mut planner.workspace());
+        let plan = || planned(planner, placement, scheme, &mut planner.workspace());
         if monitor.should_stop() { None } else { plan() }
     };
     let printed = |solution: &Solution| (solution.objective / PRINTED).round();

@@ -6,7 +6,7 @@
 
 use super::super::outcome::RefinementStatus;
 use super::super::problem::{Placement, Problem};
-use super::super::redundancy::{Planner, Workspace, off_grid};
+use super::super::redundancy::{Planner, Workspace};
 use super::linearise::{Curvature, UNITS, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
 use super::solver::Run;
@@ -34,7 +34,6 @@ pub fn run(
     monitor: &Monitor,
 ) -> Run {
     let problem = planner.problem();
-    let spacing = off_grid::Spacing::full(planner.grid());
     let mut best = start.clone();
     let mut iterations = 0;
     let ended = |solution, iterations, status| Run { solution, iterations, status };
@@ -60,7 +59,7 @@ pub fn run(
         }
         let placement = Placement::from(std::array::from_fn(|k| best.placement[k] + step[k] * UNITS[k]));
         let placement = problem.cell.clamp(&placement);
-        let candidate = planned(planner, &placement, scheme, spacing, workspace);
+        let candidate = planned(planner, &placement, scheme, workspace);
         let Some(next) = candidate.filter(|next| next.objective - best.objective > ARMIJO * promised) else {
             trust = trust.min(step.amax()) / 3.0;
             continue;
@@ -130,7 +129,7 @@ pub fn kkt_residual(
             }
             let mut placement = solution.placement;
             placement[k] += side * SAMPLING * UNITS[k];
-            let near = planned(planner, &placement, scheme, off_grid::Spacing::full(planner.grid()), &mut workspace);
+            let near = planned(planner, &placement, scheme, &mut workspace);
             gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
         }
     }

@@ -67,10 +67,9 @@ pub fn planned(
     planner: &Planner<'_>,
     placement: &Placement,
     scheme: Option<&[Posture]>,
-    spacing: off_grid::Spacing,
     workspace: &mut Workspace,
 ) -> Option<Solution> {
-    let plans = planner.plan_fine(placement, Sense::Min, scheme, spacing, workspace).ok()?;
+    let plans = planner.plan_fine(placement, Sense::Min, scheme, workspace).ok()?;
     Some(Solution::new(planner.problem(), *placement, plans))
 }
 
@@ -87,8 +86,7 @@ pub fn refine(
     let problem = planner.problem();
     let mut workspace = planner.workspace();
     let mut space = evaluator.workspace();
-    let spacing = off_grid::Spacing::full(planner.grid());
-    let mut best = planned(planner, start, scheme, spacing, &mut workspace)?;
+    let mut best = planned(planner, start, scheme, &mut workspace)?;
     let mut report = Refinement {
         sense,
         start: best.placement,
@@ -126,7 +124,7 @@ pub fn refine(
         // already the best at its placement.
         if sense == Sense::Min
             && !monitor.should_stop()
-            && let Some(anew) = planned(planner, &best.placement, scheme, spacing, &mut workspace)
+            && let Some(anew) = planned(planner, &best.placement, scheme, &mut workspace)
             && anew.objective < best.objective
         {
             best = anew;
@@ -168,7 +166,6 @@ fn poll(
 ) -> Option<Solution> {
     let planner = evaluator.planner();
     let problem = planner.problem();
-    let spacing = off_grid::Spacing::full(planner.grid());
     let sign = match sense {
         Sense::Min => 1.0,
         Sense::Max => -1.0,
@@ -191,7 +188,7 @@ fn poll(
                 if placement == centre.placement || here.zip(look(&placement)).is_some_and(is_no_better) {
                     continue;
                 }
-                let Some(near) = planned(planner, &placement, scheme, spacing, workspace) else { continue };
+                let Some(near) = planned(planner, &placement, scheme, workspace) else { continue };
                 let known = best.as_ref().map_or(centre.objective * (1.0 - sign * GAIN), |best| best.objective);
                 if near.objective * sign < known * sign {
                     best = Some(near);

@@ -48,7 +48,7 @@ fn best_gets_better_and_stays_allowed() {
                 if !problem.cell.contains(&placement) {
                     continue;
                 }
-                let near = planned(&planner, &placement, None, off_grid::Spacing::full(planner.grid()), &mut workspace);
+                let near = planned(&planner, &placement, None, &mut workspace);
                 assert!(near.is_none_or(|n| n.objective > solution.objective * (1.0 - 2e-5)), "variable {k} {side}");
             }
         }
@@ -130,18 +130,18 @@ fn joint_speeds_bind_and_hold() {
 #[test]
 fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
     for problem in [five_segments(), five_segments_compensated()] {
-        let planner = Planner::finer(&problem);
-        let mut workspace = planner.workspace();
         let spacing = off_grid::Spacing { first: 0.026, last: 1e-7 };
+        let planner = Planner::finer(&problem).with_spacing(spacing);
+        let mut workspace = planner.workspace();
         let placement = Placement::from([0.2, -2.1, -0.3, -2.2]);
-        let here = planned(&planner, &placement, None, spacing, &mut workspace).unwrap();
+        let here = planned(&planner, &placement, None, &mut workspace).unwrap();
         let gradient = ascent::pose_gradient(&problem, &here).unwrap();
         for k in 0..4 {
             let h = 1e-4;
             let mut at = |side: f64| {
                 let mut moved = placement;
                 moved[k] += side * h * linearise::UNITS[k];
-                planned(&planner, &moved, None, spacing, &mut workspace).unwrap().objective
+                planned(&planner, &moved, None, &mut workspace).unwrap().objective
             };
             let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
             assert!((gradient[k] - difference).abs() < 1e-2 * gradient.norm(), "{k} {} {difference}", gradient[k]);
@@ -153,8 +153,7 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
 fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
     for problem in [five_segments(), five_segments_compensated()] {
         let planner = Planner::finer(&problem);
-        let spacing = off_grid::Spacing::full(planner.grid());
-        let here = planned(&planner, &published_optimum(), None, spacing, &mut planner.workspace()).unwrap();
+        let here = planned(&planner, &published_optimum(), None, &mut planner.workspace()).unwrap();
         let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
@@ -208,9 +207,7 @@ fn argmin_observers_see_every_iteration() {
 
     let problem = five_segments();
     let planner = Planner::finer(&problem);
-    let spacing = off_grid::Spacing::full(planner.grid());
-    let start =
-        planned(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), None, spacing, &mut planner.workspace()).unwrap();
+    let start = planned(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), None, &mut planner.workspace()).unwrap();
     let costs = Arc::new(Mutex::new(Vec::new()));
     let observer = Costs(Arc::clone(&costs));
     let run = solver::run_observed(&problem, &start, &Monitor::silent(), |executor| {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::candidate::Objective;
 use crate::postures::PostureRules;
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use crate::testing::five_segments;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -122,8 +122,7 @@ fn a_zigzag_does_not_turn_the_arm_over_for_nothing() {
         let mut plan = |tie: f64| {
             problem.postures = PostureRules { tie, ..PostureRules::NONE };
             let planner = Planner::new(&problem);
-            let spacing = off_grid::Spacing::full(planner.grid());
-            let found = planner.plan_fine(&placement, Sense::Min, None, spacing, &mut planner.workspace()).ok()?;
+            let found = planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace()).ok()?;
             Some((moved(&problem, &found), found.iter().map(|plan| plan.cost).collect::<Vec<_>>()))
         };
         let Some((free, best)) = plan(0.0) else { continue };

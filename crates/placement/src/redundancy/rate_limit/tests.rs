@@ -23,9 +23,9 @@ fn arc(radius: f64, turn: f64, count: usize) -> Problem {
 /// The knots of a path whose joints may step as they like.
 fn knots(problem: &Problem, room: f64) -> Knots {
     let grid = problem.redundancy;
-    let limits = RateLimit::new(problem, &grid);
+    let direct = direct_changes(problem, &grid);
     let joints = vec![[std::f64::consts::PI; 6]; problem.task.points().len()];
-    Knots::new(problem, &grid, &joints, |point| limits.direct(point), Room { neighbours: 1.0, knots: room })
+    Knots::new(problem, &grid, &joints, &direct, Room { neighbours: 1.0, knots: room })
 }
 
 proptest! {
@@ -87,10 +87,10 @@ fn steps_about_zero_are_saved_up_as_before() {
     let mut problem = five_segments();
     // A third of a step of the grid between neighbours.
     problem.redundancy.max_beta_rate = Some(problem.redundancy.beta_step() / 3.0 / problem.step_length(1));
-    let limits = RateLimit::new(&problem, &problem.redundancy);
-    let saved: Vec<i32> = (1..8).map(|p| limits.saved(p).max).collect();
+    let grid = problem.redundancy;
+    let saved: Vec<i32> = saved_changes(&problem, &grid)[1..8].iter().map(|change| change.max).collect();
     assert_eq!(saved, [0, 0, 1, 0, 0, 1, 0]);
-    assert!((1..8).all(|point| limits.direct(point) == BetaChange::only(0)));
+    assert!(direct_changes(&problem, &grid)[1..8].iter().all(|change| *change == BetaChange::only(0)));
     let knots = knots(&problem, 1.0);
     let runs: Vec<(i32, usize)> = (1..8)
         .map(|point| match knots.at(point) {

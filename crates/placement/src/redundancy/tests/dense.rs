@@ -98,8 +98,7 @@ impl Limits {
 
 /// The objective of the refined plan of a planner.
 fn refined(planner: &Planner<'_>, placement: &Placement) -> Option<f64> {
-    let spacing = off_grid::Spacing::full(planner.grid());
-    let plans = planner.plan_fine(placement, Sense::Min, None, spacing, &mut planner.workspace()).ok()?;
+    let plans = planner.plan_fine(placement, Sense::Min, None, &mut planner.workspace()).ok()?;
     assert_sound(planner.problem(), placement, &plans);
     Some(planner.problem().objective(plans.iter().map(|plan| plan.cost)))
 }

@@ -67,8 +67,7 @@ fn fast_planner_agrees_with_plain_dynamic_programming() {
                     let cost = problem.objective([plans[0].cost]);
                     assert!((cost - expected).abs() < 1e-12 * expected, "{cost} {expected}");
                     assert_sound(&problem, &placement, &plans);
-                    let fine = off_grid::Spacing::full(planner.grid());
-                    let fine = planner.plan_fine(&placement, sense, None, fine, &mut workspace).unwrap();
+                    let fine = planner.plan_fine(&placement, sense, None, &mut workspace).unwrap();
                     assert_sound(&problem, &placement, &fine);
                     assert!(problem.objective([fine[0].cost]) * sense.sign() <= cost * sense.sign());
                 }
@@ -91,8 +90,7 @@ fn a_spindle_that_stands_still_gets_around_a_tight_corner() {
     let placement = Placement::from([0.0, -1.8, -0.4, 1.2]);
     let fine = |problem: &Problem| {
         let planner = Planner::finer(problem);
-        let spacing = off_grid::Spacing::full(planner.grid());
-        planner.plan_fine(&placement, Sense::Min, None, spacing, &mut planner.workspace())
+        planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace())
     };
     // 0.9 deg/mm of beta, where the corner needs 28.6, and joints that turn no faster.
     let none = fine(&problem).unwrap_err();

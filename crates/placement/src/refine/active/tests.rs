@@ -3,7 +3,7 @@
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::problem::Placement;
-use crate::redundancy::{Planner, off_grid};
+use crate::redundancy::Planner;
 use crate::refine::{planned, refine};
 use crate::sense::Sense;
 use crate::testing::five_segments;
@@ -42,14 +42,13 @@ fn a_worst_placement_is_held_by_the_walls_it_touches() {
     problem.redundancy.beta_count = 60;
     let corner = Placement::from([0.3, -2.24, -0.25, 2.0]);
     let planner = Planner::finer(&problem);
-    let spacing = off_grid::Spacing::full(planner.grid());
-    let solution = planned(&planner, &corner, None, spacing, &mut planner.workspace()).unwrap();
+    let solution = planned(&planner, &corner, None, &mut planner.workspace()).unwrap();
     let bounds = active_walls(&planner, &solution, None);
     let wall = Side { limit: Limit::CellY, is_upper: false };
     let gain = bounds.iter().find(|bound| bound.side == wall).unwrap().gain;
     let step = 1e-4;
     let beyond = Placement { y: corner.y - step, ..corner };
-    let farther = planned(&planner, &beyond, None, spacing, &mut planner.workspace()).unwrap().objective;
+    let farther = planned(&planner, &beyond, None, &mut planner.workspace()).unwrap().objective;
     let measured = (farther - solution.objective) / step;
     assert!((gain / measured - 1.0).abs() < 0.05, "{gain} {measured}");
     assert!(bounds.iter().all(|bound| bound.side.limit != Limit::CellZ));
