@@ -113,12 +113,18 @@ impl Planner<'_> {
         self.step_over(point, self.changes[point], 1, sense)
     }
 
-    /// What bounds the step to a path point from the one so many points before.
-    fn step_over(&self, point: usize, change: BetaChange, points: usize, sense: Sense) -> Step {
+    /// By how much each joint may step to a path point from the one so many points before. rad
+    pub(super) fn joint_limits(&self, point: usize, points: usize) -> [f64; 6] {
         let mut limits = self.steps[point];
         for other in point + 1 - points..point {
             limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
         }
+        limits
+    }
+
+    /// What bounds the step to a path point from the one so many points before.
+    fn step_over(&self, point: usize, change: BetaChange, points: usize, sense: Sense) -> Step {
+        let limits = self.joint_limits(point, points);
         Step {
             change,
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
@@ -129,7 +135,7 @@ impl Planner<'_> {
     }
 
     /// What a point is to a pass.
-    fn place(&self, pass: Pass<'_>, point: usize) -> Place {
+    pub(super) fn place(&self, pass: Pass<'_>, point: usize) -> Place {
         match pass.is_by_knots {
             true => self.knots.at(point),
             false => Place::Knot(Knot {
@@ -142,17 +148,23 @@ impl Planner<'_> {
     }
 
     /// The path point of a knot of a pass.
-    fn knot(&self, pass: Pass<'_>, number: usize) -> usize {
+    pub(super) fn knot(&self, pass: Pass<'_>, number: usize) -> usize {
         if pass.is_by_knots { self.knots.of(pass.span)[number] } else { pass.span.start + number }
     }
 
     /// Number of knots of a pass.
-    fn knot_count(&self, pass: Pass<'_>) -> usize {
+    pub(super) fn knot_count(&self, pass: Pass<'_>) -> usize {
         if pass.is_by_knots { self.knots.of(pass.span).len() } else { pass.span.len() }
     }
 
     /// Adds the scores of a point between knots to the costs of the run; false when no state is left.
-    fn add_between(&self, pass: Pass<'_>, point: usize, class: PostureClass, workspace: &mut Workspace) -> bool {
+    pub(super) fn add_between(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        class: PostureClass,
+        workspace: &mut Workspace,
+    ) -> bool {
         let Place::Between { knot, middle, share, is_first } = self.knots.at(point) else { return true };
         let Place::Knot(end) = self.knots.at(knot) else { return true };
         let Workspace { now, run_costs, .. } = workspace;
@@ -166,7 +178,7 @@ impl Planner<'_> {
         true
     }
 
-    fn joining(&self, pass: Pass<'_>) -> Joining {
+    pub(super) fn joining(&self, pass: Pass<'_>) -> Joining {
         Joining { sense: pass.sense, aggregate: self.problem.criterion.aggregate }
     }
 

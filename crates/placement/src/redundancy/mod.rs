@@ -10,7 +10,7 @@
 //!    Where points are closer than a few steps of the grid take, it goes from knot to knot, with the points between interpolated (`knots`).
 //! 2. `joint_turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it is the
 //!    optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
-//! 3. `reference_dp`: only where that fails, dynamic programming over (beta, turns) in one posture.
+//! 3. `turns_dp`: only where that fails, dynamic programming over beta, the flip and the turns.
 //! 4. [`off_grid`]: beta off the grid, by dynamic programming on ever narrower grids around the plan.
 
 mod between;
@@ -21,9 +21,11 @@ mod knots;
 mod obstruction;
 pub mod off_grid;
 mod rate_limit;
+#[cfg(test)]
 mod reference_dp;
 mod segment;
 pub mod transition;
+mod turns_dp;
 
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};

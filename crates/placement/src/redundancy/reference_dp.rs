@@ -1,8 +1,7 @@
 //! Dynamic programming over (beta, turns) in one posture: where a flip or the turns of joints 1, 4 and 6 decide.
 //!
-//! Slower than [`super::transition`] and rarely needed, so it is written to be plainly right: every real configuration of every
-//! grid state is a node, and an edge is a change of beta within its limits with every real joint angle within its step. The
-//! tests use it as the judge of the fast planner.
+//! The judge of [`super::transition`] and [`super::turns_dp`] in the tests, written to be plainly right: every real configuration of
+//! every grid state is a node, and an edge is a change of beta within its limits with every real joint angle within its step.
 
 use super::super::evaluate::reference;
 use super::joint_turns::{JointPath, SegmentChoice, is_allowed};

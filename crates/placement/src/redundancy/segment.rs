@@ -2,7 +2,7 @@
 
 use super::super::evaluate::reference;
 use super::forward_pass::{ForwardPass, Pass};
-use super::{Planner, Workspace, joint_turns, reference_dp};
+use super::{Planner, Workspace, joint_turns};
 use crate::problem::Placement;
 use crate::sense::Sense;
 use std::ops::Range as Span;
@@ -83,7 +83,7 @@ impl Planner<'_> {
     ) -> bool {
         let Pass { span, placement, sense, is_by_knots, .. } = pass;
         let mut has_all = outcome.ends.iter().any(Option::is_some);
-        // The classes by rising cost; what `reference_dp` finds for a class can only cost more than its relaxation.
+        // The classes by rising cost; what flips and turns allow of a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
@@ -98,21 +98,32 @@ impl Planner<'_> {
                 break;
             }
             let postures: Vec<Posture> = class.postures().into_iter().filter(&is_asked).collect();
+            let path = |betas: &[usize]| {
+                let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
+                if is_by_knots {
+                    self.knots.spread(span, &mut path);
+                }
+                path
+            };
+            let drive = |path: &[f64], cost: f64| {
+                let choice =
+                    joint_turns::unwind(self.problem, span, placement, path, &postures, cost * sign, &self.steps)?;
+                if is_by_knots { self.recosted(placement, choice) } else { Some(choice) }
+            };
+            let follow =
+                |path: &[f64], cost: f64| drive(&self.followed(span, placement, *postures.first()?, path)?, cost);
             let betas = self.trace(pass, class, outcome, workspace);
-            let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-            let unwind = |path: &[f64]| {
-                joint_turns::unwind(self.problem, span, placement, path, &postures, cost * sign, &self.steps)
-            };
-            let choice = if is_by_knots {
-                self.knots.spread(span, &mut path);
-                let spread = unwind(&path).and_then(|choice| self.recosted(placement, choice));
-                spread.or_else(|| {
-                    let followed = self.followed(span, placement, *postures.first()?, &path)?;
-                    unwind(&followed).and_then(|choice| self.recosted(placement, choice))
-                })
-            } else {
-                unwind(&path).or_else(|| reference_dp::plan(self, span, placement, sense, &postures, workspace))
-            };
+            let relaxed = path(&betas);
+            let mut choice = drive(&relaxed, cost);
+            if choice.is_none() {
+                let flips = [false, true].map(|flip| postures.iter().any(|posture| posture.is_flipped() == flip));
+                let with_turns = self.path_with_turns(pass, class, flips, workspace);
+                let with_turns = with_turns.map(|found| (path(&found.betas), found.cost));
+                choice = with_turns.as_ref().and_then(|(path, cost)| drive(path, *cost));
+                if choice.is_none() && is_by_knots {
+                    choice = with_turns.and_then(|(path, cost)| follow(&path, cost)).or_else(|| follow(&relaxed, cost));
+                }
+            }
             has_all &= choice.is_some();
             found.extend(choice);
             found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));

@@ -1,0 +1,341 @@
+//! Dynamic programming over beta, the flip and the turns of the joints: where these decide.
+//!
+//! [`super::transition`] takes joint angles modulo a turn. Where the path that it finds winds a joint beyond its limits, as rounds of
+//! a contour do, states are told apart by their flip and their turns too. A joint steps by less than half a turn, so that the turns
+//! after a step follow from those before it: a step is checked once, for all flips and turns together.
+//! [`super::reference_dp`] does the same node by node, and is the judge of this in the tests.
+
+use super::forward_pass::Pass;
+use super::knots::{Knot, Place};
+use super::{Planner, Workspace};
+use crate::constraints::STEP_ROUNDING;
+use crate::evaluate::batch::StateGrid;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+use stead_model::robot::angles::ANGLE_ROUNDING;
+use stead_model::robot::{PostureClass, Robot, turns};
+
+/// Nodes whose predecessors are kept at the most; longer segments are gone through in blocks.
+const MAX_NODES: usize = 1 << 22;
+
+/// The turns that the joints of an arm may stand at, numbered in the order of joint 1 to 6, for either flip.
+#[derive(Debug, Clone)]
+struct Numbering {
+    ranges: [turns::Range; 6],
+    /// The lowest turn of each joint, and how many there are.
+    lowest: [i32; 6],
+    counts: [i32; 6],
+}
+
+impl Numbering {
+    fn new(robot: &Robot) -> Self {
+        let ranges: [turns::Range; 6] = std::array::from_fn(|j| turns::Range::of(&robot.joints()[j]));
+        // Real angles are counted from those of the flip with theta_5 not negative, half a turn off in joints 4 and 6.
+        let lowest = ranges.map(|range| ((range.min - ANGLE_ROUNDING - TAU) / TAU).ceil() as i32);
+        let highest = ranges.map(|range| ((range.max + ANGLE_ROUNDING + PI) / TAU).floor() as i32);
+        Self { ranges, lowest, counts: std::array::from_fn(|j| (highest[j] - lowest[j] + 1).max(1)) }
+    }
+
+    /// The most flips and turns that one state can have.
+    fn most(&self) -> usize {
+        let of = |range: &turns::Range| ((range.max - range.min + 2.0 * ANGLE_ROUNDING) / TAU) as usize + 1;
+        2 * self.ranges.iter().map(of).product::<usize>()
+    }
+
+    /// The numbers of the flips and turns in which joint angles (rad, theta_5 not negative) are inside the limits, ascending.
+    fn allowed(&self, angles: &[f64; 6], flips: [bool; 2], numbers: &mut Vec<u32>) {
+        for flip in [0, 1].into_iter().filter(|flip| flips[*flip]) {
+            let half_turn = PI * flip as f64;
+            let [q1, q2, q3, q4, q5, q6] = *angles;
+            let real = [q1, q2, q3, q4 + half_turn, if flip == 1 { -q5 } else { q5 }, q6 + half_turn];
+            let first = numbers.len();
+            numbers.push(flip as u32);
+            let mut start = first;
+            for j in 0..6 {
+                let range = &self.ranges[j];
+                let lowest = ((range.min - ANGLE_ROUNDING - real[j]) / TAU).ceil();
+                let more = ((range.max + ANGLE_ROUNDING - real[j]) / TAU).floor() - lowest;
+                let end = numbers.len();
+                for known in start..end {
+                    let number = numbers[known] * self.counts[j] as u32;
+                    let turn = lowest as i32 - self.lowest[j];
+                    (0..=more as i32).filter(|_| more >= 0.0).for_each(|k| numbers.push(number + (turn + k) as u32));
+                }
+                start = end;
+            }
+            numbers.drain(first..start);
+        }
+    }
+
+    /// The number with so many turns more in each joint, none where that leaves the numbering.
+    fn shifted(&self, number: u32, more: &[i32; 6]) -> Option<u32> {
+        let (mut rest, mut shifted, mut unit) = (number as i32, 0, 1);
+        for j in (0..6).rev() {
+            let turn = rest % self.counts[j] + more[j];
+            if turn < 0 || turn >= self.counts[j] {
+                return None;
+            }
+            shifted += turn * unit;
+            unit *= self.counts[j];
+            rest /= self.counts[j];
+        }
+        Some((shifted + rest * unit) as u32)
+    }
+}
+
+/// All nodes of one path point, states in one flip with their turns, in the order of beta.
+#[derive(Debug, Clone, Default)]
+struct Layer {
+    /// See [`Numbering`].
+    numbers: Vec<u32>,
+    /// Smallest signed costs up to here, infinite where a node is not reached.
+    costs: Vec<f64>,
+    /// How each was reached.
+    ways: Ways,
+    /// Joint angles over beta, modulo a turn, theta_5 not negative; meaningful where there are nodes. rad
+    angles: Vec<[f64; 6]>,
+}
+
+/// How the nodes of a path point were reached.
+#[derive(Debug, Clone, Default)]
+struct Ways {
+    /// The predecessors in the layer before.
+    from: Vec<u32>,
+    /// Where the nodes of each beta begin, and their end.
+    starts: Vec<u32>,
+}
+
+impl Ways {
+    fn of(&self, beta: usize) -> Range<usize> {
+        self.starts[beta] as usize..self.starts[beta + 1] as usize
+    }
+
+    /// The beta number of a node.
+    fn beta(&self, node: usize) -> usize {
+        self.starts.partition_point(|start| *start as usize <= node) - 1
+    }
+}
+
+impl Layer {
+    /// Fills in what is allowed of a posture class, without costs.
+    fn fill(&mut self, states: &StateGrid, class: PostureClass, flips: [bool; 2], numbering: &Numbering) {
+        self.numbers.clear();
+        self.ways.starts.clear();
+        self.angles.resize(states.count(), [0.0; 6]);
+        let (scores, pad) = (states.inner_scores(class), states.pad());
+        for beta in 0..states.count() {
+            self.ways.starts.push(self.numbers.len() as u32);
+            if !scores[beta].is_finite() {
+                continue;
+            }
+            for j in 0..6 {
+                let [sines, cosines] = states.directions(class, j);
+                self.angles[beta][j] = libm::atan2(sines[pad + beta], cosines[pad + beta]);
+            }
+            numbering.allowed(&self.angles[beta], flips, &mut self.numbers);
+        }
+        let count = self.numbers.len();
+        self.ways.starts.push(count as u32);
+        self.ways.from.clear();
+        self.ways.from.resize(count, 0);
+        self.costs.clear();
+        self.costs.resize(count, f64::INFINITY);
+    }
+
+    /// Whether any node is reached.
+    fn is_reached(&self) -> bool {
+        self.costs.iter().any(|cost| cost.is_finite())
+    }
+}
+
+/// The cheapest path of one posture class with regard to flips and turns.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TurnsPath {
+    /// Its cost, by the sense of the pass: the smaller the better.
+    pub cost: f64,
+    /// For every path point the beta number, that of the knot before where it is between knots.
+    pub betas: Vec<usize>,
+}
+
+/// What is planned.
+struct Search<'s> {
+    planner: &'s Planner<'s>,
+    pass: Pass<'s>,
+    class: PostureClass,
+    /// Whether the flip with theta_5 not negative, and the other, may be taken.
+    flips: [bool; 2],
+    numbering: Numbering,
+}
+
+impl Planner<'_> {
+    /// The cheapest path of a posture class in the flips asked for, with every joint inside its limits at the knots of a pass.
+    pub(super) fn path_with_turns(
+        &self,
+        pass: Pass<'_>,
+        class: PostureClass,
+        flips: [bool; 2],
+        workspace: &mut Workspace,
+    ) -> Option<TurnsPath> {
+        let numbering = Numbering::new(&self.problem.robot);
+        let most = self.grid.beta_count * numbering.most();
+        let knots = self.knot_count(pass);
+        let block = (MAX_NODES / most).max(knots.isqrt()).max(1);
+        Search { planner: self, pass, class, flips, numbering }.path(block, workspace)
+    }
+}
+
+impl Search<'_> {
+    /// The path, with the layers of so many knots kept at a time, and the first ones of the others, from which theirs are found
+    /// again.
+    fn path(&self, block: usize, workspace: &mut Workspace) -> Option<TurnsPath> {
+        let (planner, pass) = (self.planner, self.pass);
+        let knots = planner.knot_count(pass);
+        let mut firsts = vec![self.first(workspace)?];
+        let (mut kept, mut costs) = (Vec::new(), Vec::new());
+        for start in (0..knots).step_by(block) {
+            let mut layer = firsts.last()?.clone();
+            kept = self.block(&mut layer, start, (start + block).min(knots), workspace)?;
+            costs.clone_from(&layer.costs);
+            if start + block < knots {
+                self.advance(&mut layer, &mut Layer::default(), start + block, workspace)?;
+                firsts.push(layer);
+            }
+        }
+        let mut node = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
+        let cost = costs[node];
+        let mut betas = vec![0; pass.span.len()];
+        let mut number = knots;
+        for (place, first) in firsts.iter().enumerate().rev() {
+            if place + 1 < firsts.len() {
+                kept = self.block(&mut first.clone(), place * block, (place + 1) * block, workspace)?;
+            }
+            for ways in kept.iter().rev() {
+                number -= 1;
+                betas[planner.knot(pass, number) - pass.span.start] = ways.beta(node);
+                node = ways.from[node] as usize;
+            }
+        }
+        Some(TurnsPath { cost, betas })
+    }
+
+    /// The ways to the nodes of the knots at `from` up to `to`, the layer of the first given, which becomes that of the last.
+    fn block(&self, layer: &mut Layer, from: usize, to: usize, workspace: &mut Workspace) -> Option<Vec<Ways>> {
+        let mut kept = vec![layer.ways.clone()];
+        let mut next = Layer::default();
+        for number in from + 1..to {
+            self.advance(layer, &mut next, number, workspace)?;
+            kept.push(layer.ways.clone());
+        }
+        Some(kept)
+    }
+
+    /// Evaluates a path point in the posture class alone.
+    fn evaluate(&self, point: usize, workspace: &mut Workspace) {
+        let asked = PostureClass::ALL.map(|class| class == self.class);
+        self.pass.evaluator.evaluate_classes(point, self.pass.placement, asked, &mut workspace.now);
+    }
+
+    /// The layer of the first point, where it has states.
+    fn first(&self, workspace: &mut Workspace) -> Option<Layer> {
+        self.evaluate(self.pass.span.start, workspace);
+        let mut layer = Layer::default();
+        layer.fill(&workspace.now, self.class, self.flips, &self.numbering);
+        let scores = workspace.now.inner_scores(self.class);
+        for (beta, score) in scores.iter().enumerate() {
+            layer.costs[layer.ways.of(beta)].fill(score * self.pass.sense.sign());
+        }
+        Some(layer).filter(Layer::is_reached)
+    }
+
+    /// Goes on to a knot from the one before, where some of its states can be reached; `next` is room for its layer.
+    fn advance(&self, layer: &mut Layer, next: &mut Layer, number: usize, workspace: &mut Workspace) -> Option<()> {
+        let (planner, pass) = (self.planner, self.pass);
+        let point = planner.knot(pass, number);
+        for between in planner.knot(pass, number - 1) + 1..point {
+            self.evaluate(between, workspace);
+            if !planner.add_between(pass, between, self.class, workspace) {
+                return None;
+            }
+        }
+        self.evaluate(point, workspace);
+        let Place::Knot(knot) = planner.place(pass, point) else { return None };
+        next.fill(&workspace.now, self.class, self.flips, &self.numbering);
+        self.connect(layer, next, point, knot, workspace);
+        std::mem::swap(layer, next);
+        layer.is_reached().then_some(())
+    }
+
+    /// Gives each node its cheapest predecessor. Of equal ones the nearest in beta is taken.
+    fn connect(&self, before: &Layer, layer: &mut Layer, point: usize, knot: Knot, workspace: &Workspace) {
+        let (planner, sense) = (self.planner, self.pass.sense);
+        let count = planner.grid.beta_count;
+        let limits = planner.joint_limits(point, knot.points).map(|limit| limit + STEP_ROUNDING);
+        let aggregate = planner.problem.criterion.aggregate;
+        let (scores, pad) = (workspace.now.inner_scores(self.class), workspace.now.pad());
+        let joining = planner.joining(self.pass);
+        let between = (knot.points > 1).then(|| workspace.run_costs.of(self.class, knot.change.min, joining));
+        let cheapest = |beta| before.costs[before.ways.of(beta)].iter().copied().fold(f64::INFINITY, f64::min);
+        let cheapest: Vec<f64> = (0..count).map(cheapest).collect();
+        for beta in 0..count {
+            let own = layer.ways.of(beta);
+            if own.is_empty() {
+                continue;
+            }
+            let numbers = &layer.numbers[own.clone()];
+            let (costs, from) = (&mut layer.costs[own.clone()], &mut layer.ways.from[own]);
+            // The largest of its nodes' costs so far: what costs as much or more is not looked at.
+            let mut most = f64::INFINITY;
+            for shift in knot.change.shifts() {
+                let earlier = (beta as isize + shift).rem_euclid(count as isize) as usize;
+                let cost_between = between.map(|between| between.row(shift)[pad + beta]);
+                let join = |old: f64| cost_between.map_or(old, |between| aggregate.join_signed(sense, old, between));
+                let is_open = cheapest[earlier].is_finite() && cost_between.is_none_or(f64::is_finite);
+                if !is_open || join(cheapest[earlier]) >= most {
+                    continue;
+                }
+                let Some(turns) = crossings(&before.angles[earlier], &layer.angles[beta], &limits) else { continue };
+                let known = before.ways.of(earlier);
+                let (known_costs, known_numbers) = (&before.costs[known.clone()], &before.numbers[known.clone()]);
+                let mut take = |node: usize, old: usize| {
+                    let cost = join(known_costs[old]);
+                    if cost < costs[node] {
+                        (costs[node], from[node]) = (cost, (known.start + old) as u32);
+                    }
+                };
+                let is_same_turn = turns == [0; 6];
+                if is_same_turn && known_numbers == numbers {
+                    (0..numbers.len()).for_each(|node| take(node, node));
+                } else {
+                    let back = turns.map(|turn| -turn);
+                    for (node, number) in numbers.iter().enumerate() {
+                        let number = if is_same_turn { Some(*number) } else { self.numbering.shifted(*number, &back) };
+                        let old = number.and_then(|number| known_numbers.iter().position(|known| *known == number));
+                        old.into_iter().for_each(|old| take(node, old));
+                    }
+                }
+                most = costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            }
+            let score = scores[beta] * sense.sign();
+            for cost in costs.iter_mut().filter(|cost| cost.is_finite()) {
+                *cost = aggregate.join_signed(sense, *cost, score);
+            }
+        }
+    }
+}
+
+/// By how many turns each joint goes on in a step from some angles to others (rad, from -pi to pi), none where one steps by more
+/// than its limit.
+fn crossings(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> Option<[i32; 6]> {
+    let mut turns = [0; 6];
+    for j in 0..6 {
+        let apart = to[j] - from[j];
+        turns[j] = i32::from(apart < -PI) - i32::from(apart > PI);
+        if (apart + TAU * f64::from(turns[j])).abs() > limits[j] {
+            return None;
+        }
+    }
+    Some(turns)
+}
+
+#[cfg(test)]
+mod tests;
