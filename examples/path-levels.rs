@@ -7,7 +7,7 @@
 //!   other placements each; POINTS is the most points of a path (1200).
 //! - `adversarial`: NUMBER paths (20) of POINTS points (3000), of which ten neighbours decide; each is searched on subsets and by
 //!   all points.
-//! - `quality`: four paths of POINTS points (1500), each searched with NUMBER seeds (20) and once by all points; the best known is the
+//! - `quality`: five paths of POINTS points (1500), the last one of so many rounds that it winds joint 6 to its limits, each searched with NUMBER seeds (20) and once by all points; the best known is the
 //!   best of all these.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -62,6 +62,8 @@ struct Shape {
     segments: usize,
     /// By how much force and tool axis change at random from point to point: relative, and in rad.
     roughness: f64,
+    /// How often it goes round; drawn where none is given.
+    rounds: Option<f64>,
 }
 
 /// Rounds of a wavy circle of 0.4 m, the tool tilted by up to 30 deg, with a force that turns with the feed and varies by a factor of 2.
@@ -76,7 +78,8 @@ fn task(shape: Shape, random: &mut ChaCha8Rng) -> Result<Task, Failure> {
     let (tilt, heading, force) = (wave(0.28), wave(1.5), wave(0.18));
     let at =
         |wave: &[[f64; 3]; 3], t: f64| wave.iter().map(|[size, rate, phase]| size * libm::sin(rate * t + phase)).sum();
-    let rounds: f64 = random.random_range(0.5..3.0);
+    let drawn: f64 = random.random_range(0.5..3.0);
+    let rounds = shape.rounds.unwrap_or(drawn);
     let position = |t: f64| {
         let (sine, cosine) = libm::sincos(TAU * rounds * t);
         let radius: f64 = 0.2 + at(&radius, t);
@@ -107,8 +110,10 @@ fn coverage(run: &Run, paths: usize, most: usize) -> Result<(), Failure> {
         let segments = random.random_range(1..=20);
         let points = random.random_range(6 * (60 + segments)..=most.max(6 * (60 + segments)));
         let roughness = [0.0, 0.1, 0.5][random.random_range(0..3)];
-        let problem =
-            Problem { task: task(Shape { points, segments, roughness }, &mut random)?, ..run.problem.clone() };
+        let problem = Problem {
+            task: task(Shape { points, segments, roughness, rounds: None }, &mut random)?,
+            ..run.problem.clone()
+        };
         let planner = Planner::finer(&problem);
         let settings = SearchSettings { seed: path as u64, ..run.search };
         let Some(long) = LongPath::new(&planner, &settings, &silent) else {
@@ -156,7 +161,14 @@ fn placed(problem: &Problem, settings: &SearchSettings, run: &Run, what: &str) -
         let [search, refinement] = levels.subsets;
         format!(", on {} and {} points, {} decide", search.points, refinement.points, levels.deciding)
     });
-    println!("  {what}: {:.6} and {:.6} mm, {seconds:.1} s{levels}", figures[0], figures[1]);
+    let [x, y, z, yaw] = std::array::from_fn(|k| outcome.cases.best.placement[k]);
+    println!(
+        "  {what}: {:.6} and {:.6} mm, {seconds:.1} s{levels}; the best at {x:.3} {y:.3} {z:.3} m, yaw {:.1} deg",
+        figures[0],
+        figures[1],
+        yaw.to_degrees()
+    );
+
     Some((outcome, figures))
 }
 
@@ -177,7 +189,7 @@ fn adversarial(run: &Run, paths: usize, points: usize) -> Result<(), Failure> {
     let mut as_good = 0;
     for path in 0..paths {
         let mut random = ChaCha8Rng::seed_from_u64(1000 + path as u64);
-        let shape = Shape { points, segments: random.random_range(1..=30), roughness: 0.0 };
+        let shape = Shape { points, segments: random.random_range(1..=30), roughness: 0.0, rounds: None };
         let mut problem = Problem { task: task(shape, &mut random)?, ..run.problem.clone() };
         let first = unseen(&problem, 60 + shape.segments, random.random_range(0..points / 2));
         let kind =
@@ -231,14 +243,15 @@ fn unseen(problem: &Problem, count: usize, from: usize) -> usize {
         .unwrap_or_else(|| firsts.find(|first| is_free(&small, *first)).unwrap_or(from))
 }
 
-/// Four paths, with many seeds.
+/// Five paths, with many seeds.
 fn quality(run: &Run, seeds: usize, points: usize) -> Result<(), Failure> {
-    let plain = Shape { points, segments: 1, roughness: 0.0 };
+    let plain = Shape { points, segments: 1, roughness: 0.0, rounds: Some(1.0) };
     let shapes = [
         ("smooth", plain),
         ("rough", Shape { roughness: 0.5, ..plain }),
         ("one hard corner", plain),
         ("many segments", Shape { segments: 60, ..plain }),
+        ("many rounds", Shape { rounds: Some(2.5), ..plain }),
     ];
     for (path, (name, shape)) in shapes.into_iter().enumerate() {
         println!("{name}: {points} points");
