@@ -263,7 +263,7 @@ mod tests {
         assert_eq!(refusal(Path::new("nowhere"), "best.csv", b"", Unlisted::Refused), None);
         let outside = Manifest::default().with(set("place", true, &[("../best.csv", b"1")])).to_bytes().unwrap();
         let newer = Manifest { format: 2, ..Manifest::default() }.to_bytes().unwrap();
-        for bytes in [&b"{\"name\": \"a web page\"}"[..], b"{\"form", b"", &outside, &newer] {
+        for bytes in [&b"{\"name\": \"a web page\"}"[..], b"{\"form", b"", &outside[..], &newer[..]] {
             let folder = folder_with(bytes);
             let message = refusal(folder.path(), "best.csv", b"1", Unlisted::Refused).unwrap();
             assert!(message.contains("the manifest.json beside it is none of stead"), "{message}");
@@ -276,7 +276,8 @@ mod tests {
         let manifest = Manifest::default()
             .with(set("place", true, &[("best.csv", b"1"), ("summary.json", b"2")]))
             .with(set("compensate", true, &[("summary.json", b"3")]));
-        let names = |command| manifest.of(command).unwrap().files.iter().map(|file| &file.name).collect::<Vec<_>>();
+        let names =
+            |command| manifest.of(command).unwrap().files.iter().map(|file| file.name.as_str()).collect::<Vec<_>>();
         assert_eq!((names("place"), names("compensate")), (vec!["best.csv"], vec!["summary.json"]));
     }
 }
