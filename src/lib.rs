@@ -65,5 +65,5 @@ pub use stead_format::schema::schema;
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
-pub use stead_report::ReportError;
 pub use stead_report::document::Timing;
+pub use stead_report::{Folder, ReportError};

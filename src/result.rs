@@ -31,16 +31,25 @@ macro_rules! result {
     ($($name:ident),+) => { $(
         impl $name {
             /// Writes the files that the command of the same name leaves, byte for byte, into a folder that is made where it is
-            /// missing. Returns their paths.
+            /// missing, and `manifest.json` with their digests. Returns the paths of the files.
             ///
             /// # Errors
-            /// [`Error::Output`](crate::Error::Output): the folder or a file cannot be written; no file is left half written.
+            /// [`Error::Output`](crate::Error::Output): the folder or a file cannot be written, or another run writes to it; no file is
+            /// left half written.
             pub fn write(
                 &self,
                 folder: impl AsRef<std::path::Path>,
             ) -> Result<Vec<std::path::PathBuf>, crate::Error> {
-                let folder = stead_report::Folder::create(folder.as_ref())?;
-                crate::result::Report::files(self, &folder)
+                self.write_in(&stead_report::Folder::create(folder.as_ref())?)
+            }
+
+            /// As [`write`](Self::write), into a folder that this process holds already: taken before a long job, no other run can
+            /// take it in the meantime.
+            ///
+            /// # Errors
+            /// As [`write`](Self::write).
+            pub fn write_in(&self, folder: &stead_report::Folder) -> Result<Vec<std::path::PathBuf>, crate::Error> {
+                crate::result::Report::files(self, folder)
             }
 
             /// The JSON document that the command prints with `--json`. Units are in the names of the fields.

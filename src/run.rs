@@ -14,8 +14,10 @@ use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
 use stead_report::Folder;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
-use stead_report::document::Timing;
-use stead_report::placement::{Context, evaluation, place_json, placement_text, write_placement, write_score};
+use stead_report::document::{Timing, bytes};
+use stead_report::placement::{
+    Context, evaluation, place_json, placement_text, summary_json, write_placement, write_score,
+};
 use stead_study::{self as study, Placed, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
@@ -206,17 +208,23 @@ impl Placements {
         self.certificate.as_ref().map(certificate_text)
     }
 
-    /// Writes the files of the certificate alone, if there is one.
+    /// Writes the files of the certificate alone, if there is one, to the files of these placements or where there are no results.
     ///
     /// # Errors
-    /// [`Error::Output`]: the folder or a file cannot be written.
+    /// [`Error::Output`]: the folder or a file cannot be written, or has results of another run.
     pub fn write_certificate(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
-        self.certificate_files(&Folder::create(folder.as_ref())?)
+        self.write_certificate_in(&Folder::create(folder.as_ref())?)
     }
 
-    fn certificate_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    /// As [`write_certificate`](Self::write_certificate), into a folder that this process holds already.
+    ///
+    /// # Errors
+    /// As [`write_certificate`](Self::write_certificate).
+    pub fn write_certificate_in(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let Some(certificate) = &self.certificate else { return Ok(Vec::new()) };
-        Ok(write_certificate(folder, &self.run.problem, certificate, &self.run.inputs)?)
+        let problem = &self.run.problem;
+        let summary = bytes(&summary_json(problem, &self.outcome, &self.context));
+        Ok(write_certificate(folder, problem, certificate, &self.run.inputs, &summary)?)
     }
 
     /// How far from the best and the worst possible these placements are, where that was asked for.
@@ -247,7 +255,7 @@ pub struct Explanations {
 impl Report for Placements {
     fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
-        files.extend(self.certificate_files(folder)?);
+        files.extend(self.write_certificate_in(folder)?);
         Ok(files)
     }
 

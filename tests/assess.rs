@@ -74,6 +74,7 @@ fn files_are_the_same_for_any_number_of_threads() {
         "accuracy.csv",
         "circularity.csv",
         "indicators.svg",
+        "manifest.json",
         "map-kuka-kr-100-ha.csv",
         "map-kuka-kr-100-ha.svg",
         "map-kuka-kr-120-r3900.csv",

@@ -53,7 +53,7 @@ fn assert_holds(certificate: &Value, gap: std::ops::RangeInclusive<f64>) {
 fn a_certificate_is_stated_and_leaves_the_placement_as_it_is() {
     let bench = bench();
     assert_eq!(place(&bench, &[]).code, Some(0));
-    let plain = bench.tree("out");
+    let mut plain = bench.tree("out");
     let ended = place(&bench, &["--certify", "1", "--threads", "2"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     let certified = lasting(certificate(&bench));
@@ -76,6 +76,13 @@ fn a_certificate_is_stated_and_leaves_the_placement_as_it_is() {
         assert!(tree.remove(added).flatten().is_some_and(|bytes| bytes.len() > 50), "{added}");
     }
     tree.remove("open-region-worst.svg");
+    // All of them are listed as results of one run.
+    let manifest: Value = serde_json::from_slice(&tree.remove("manifest.json").flatten().unwrap()).unwrap();
+    assert_eq!((manifest["results"].as_array().unwrap().len(), &manifest["results"][0]["complete"]), (1, &true.into()));
+    let listed = manifest["results"][0]["files"].as_array().unwrap();
+    let listed: Vec<&str> = listed.iter().map(|file| file["name"].as_str().unwrap()).collect();
+    assert!(tree.keys().map(String::as_str).chain(ADDED).all(|name| listed.contains(&name)), "{listed:?}");
+    plain.remove("manifest.json");
     assert_eq!(tree, plain);
 
     // From the run file, on one thread, and as JSON: the same.

@@ -116,7 +116,8 @@ fn every_shipped_document_states_its_origin() {
     let folders = std::fs::read_dir(root().join("results")).unwrap();
     let files = folders.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap());
     let documents = files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "json"));
-    let documents: Vec<PathBuf> = documents.collect();
+    // A manifest states for each command what it has read.
+    let documents: Vec<PathBuf> = documents.filter(|path| !path.ends_with("manifest.json")).collect();
     assert!(documents.len() >= 12, "{documents:?}");
     for path in documents {
         let document = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();

@@ -39,7 +39,7 @@ fn the_reference_results_are_what_the_command_gives() {
     let ended = plan(&bench, &["--threads", "2"]);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/identify-plan-example");
-    let names = ["expected.csv", "plan.json", "plan.svg", "sheet.csv"];
+    let names = ["expected.csv", "manifest.json", "plan.json", "plan.svg", "sheet.csv"];
     let written: Vec<String> = bench.tree("results/identify-plan-example").into_keys().collect();
     assert_eq!(written, names);
     for name in names {

@@ -19,6 +19,7 @@ mod identify_plan;
 mod looks_wrong;
 mod opw_oracle;
 mod place;
+mod results_folder;
 mod score_explain;
 mod simulate;
 mod stability;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 15] = [
+pub const FILES: [&str; 16] = [
     "best-worst-plan.csv",
     "best.csv",
     "cell.svg",
@@ -17,6 +17,7 @@ pub const FILES: [&str; 15] = [
     "deflection-map-best.svg",
     "deflection-map-worst.csv",
     "deflection-map-worst.svg",
+    "manifest.json",
     "placements.csv",
     "refinements.csv",
     "summary.json",

@@ -46,7 +46,7 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert_eq!(document["fast"].as_bool(), Some(false));
     assert!(number(&document["real_time_factor"]) > 0.0);
 
-    let expected = ["forces.svg", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
+    let expected = ["forces.svg", "manifest.json", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
     let files = bench.tree("results/pass");
     assert!(files.keys().eq(&expected), "{:?}", files.keys());
     let series = bench.read("results/pass/series.csv");
@@ -170,7 +170,7 @@ fn an_unstable_run_ends_cleanly_with_the_verdict() {
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(bench.tree("results/pass").len(), 6);
+    assert_eq!(bench.tree("results/pass").len(), 7);
     assert!(simulate(&bench, &["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 

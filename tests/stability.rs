@@ -80,8 +80,15 @@ fn files_are_written_alike_with_any_number_of_threads() {
     }
     let first = bench.tree("out");
     let names: Vec<&str> = first.keys().map(String::as_str).collect();
-    let expected =
-        ["frequency-response.csv", "frequency-response.svg", "lobes.csv", "lobes.svg", "modes.csv", "summary.json"];
+    let expected = [
+        "frequency-response.csv",
+        "frequency-response.svg",
+        "lobes.csv",
+        "lobes.svg",
+        "manifest.json",
+        "modes.csv",
+        "summary.json",
+    ];
     assert_eq!(names, expected);
     stability(&bench, STEEL, &["--threads", "2"]);
     assert!(first == bench.tree("out"));

@@ -52,14 +52,17 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(bench.names("out"), files_without_maps());
     for (name, bytes) in bench.tree("out") {
-        // The summary names the run file's digest.
-        assert!(name == "summary.json" || bytes == before[&name], "{name}");
+        // These state the run file's digest.
+        assert!(["manifest.json", "summary.json"].contains(&name.as_str()) || bytes == before[&name], "{name}");
     }
     assert!(MAPS.iter().all(|map| before.contains_key(*map)));
 
     let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(bench.names("scored"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+    assert_eq!(
+        bench.names("scored"),
+        ["best-plan.csv", "manifest.json", "placement.svg", "score.json", "worst-plan.csv"]
+    );
 }
 
 #[test]
@@ -76,8 +79,15 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
         assert_eq!((&scored["placement_exact"], &scored["interrupted"]), (&case["placement_exact"], &false.into()));
     }
     let scored = with(&["--out", "scored"]);
-    let files =
-        ["best-plan.csv", "deflection-map.csv", "deflection-map.svg", "placement.svg", "score.json", "worst-plan.csv"];
+    let files = [
+        "best-plan.csv",
+        "deflection-map.csv",
+        "deflection-map.svg",
+        "manifest.json",
+        "placement.svg",
+        "score.json",
+        "worst-plan.csv",
+    ];
     assert_eq!(bench.names("scored"), files);
     assert_eq!(json_in(&bench, "scored/score.json"), scored.json());
     let header = |file: &str| bench.read(file).lines().next().unwrap().to_owned();
@@ -240,6 +250,9 @@ mod interrupt {
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
-        assert_eq!(bench.names("out"), ["best-plan.csv", "placement.svg", "score.json", "worst-plan.csv"]);
+        assert_eq!(
+            bench.names("out"),
+            ["best-plan.csv", "manifest.json", "placement.svg", "score.json", "worst-plan.csv"]
+        );
     }
 }

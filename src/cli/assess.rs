@@ -12,12 +12,11 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         .map_err(|error| Failure::at("--accuracy-mm and --force-n", error))?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
-    let shown = Terminal::start().show(None);
-    let assessment = on_threads(options.threads, || run.assess(&shown.monitor))?;
+    let shown = Terminal::start(Some(&out.folder)).show(None);
+    let assessment = on_threads(options.threads, || run.assess(&shown.monitor))??;
     drop(shown);
-    let assessment = assessment.inspect_err(|_| out.give_up())?;
     let timing = assessment.timing();
-    out.show(assessment.write(&out.path), &assessment, options.json, |folder| {
+    out.show(assessment.write_in(&out.folder), &assessment, options.json, |folder| {
         let folder = if folder.is_empty() { folder } else { format!("; results in {folder}") };
         format!("in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads)
     })

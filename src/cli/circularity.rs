@@ -10,9 +10,9 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     say_warnings(circularity.warnings());
     let mut folder = String::new();
     if let Some(out) = &options.out {
-        Folder::create(out).map_err(Failure::Output)?;
-        files_written(circularity.write(out))?;
-        folder = out.display().to_string();
+        let out = Folder::create(out).map_err(Failure::Output)?;
+        files_written(circularity.write_in(&out))?;
+        folder = out.path().display().to_string();
     }
     if options.json {
         return print_json(&circularity);

@@ -17,11 +17,10 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.not_compensated_json(failure));
         }
-        out.give_up();
     })?;
     say_notes(path.notes().get(run.notes().len()..).unwrap_or_default());
     say_warnings(path.warnings());
-    out.show(path.write(&out.path), &path, options.json, |folder| {
+    out.show(path.write_in(&out.folder), &path, options.json, |folder| {
         if folder.is_empty() { folder } else { format!("results in {folder}\n") }
     })
 }

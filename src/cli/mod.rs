@@ -57,6 +57,8 @@ enum Failure {
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
+            // It is no wrong folder, only a wrong time.
+            Failure::Output(ReportError::Locked { .. }) => 1,
             Failure::Usage(_) | Failure::Output(_) => 2,
             Failure::Stead(error) if error.is_bad_input() => 2,
             Failure::Stead(error) if error.is_interrupted() => 130,
@@ -148,19 +150,27 @@ fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -
     Ok(pool.install(job))
 }
 
-/// The folder that results go to.
+/// The folder that results go to, held for this run.
 struct OutFolder {
-    path: PathBuf,
-    is_new: bool,
+    folder: Folder,
+    /// Dropped after the folder, whose lock file is gone then.
+    _made: Option<MadeFolder>,
+}
+
+/// A folder that this run has made: removed in the end, if nothing has come into it.
+struct MadeFolder(PathBuf);
+
+impl Drop for MadeFolder {
+    fn drop(&mut self) {
+        // Goes only if it is empty.
+        let _ = std::fs::remove_dir(&self.0);
+    }
 }
 
 impl OutFolder {
-    /// Removes a folder that this run has made and put nothing into.
-    fn give_up(&self) {
-        if self.is_new {
-            // Goes only if it is empty, as it should be.
-            let _ = std::fs::remove_dir(&self.path);
-        }
+    /// Where it is, for people.
+    fn shown(&self) -> String {
+        self.folder.path().display().to_string()
     }
 
     /// Writes the files of a result and shows it, as a JSON document or as text with what `ending` says of the folder that its files
@@ -175,7 +185,7 @@ impl OutFolder {
         let printed = if is_json {
             print_json(result)
         } else {
-            let place = written.as_ref().map_or_else(|_| String::new(), |_| self.path.display().to_string());
+            let place = written.as_ref().map_or_else(|_| String::new(), |_| self.shown());
             print(format!("{result}{}", ending(place)).as_bytes())
         };
         files_written(written).and(printed)
@@ -198,8 +208,8 @@ fn results_in(folder: String) -> String {
     if folder.is_empty() { folder } else { format!("\nresults in {folder}\n") }
 }
 
-/// The folder asked for, or `results/` and the name of the config; tried before the long work, so that one that cannot be
-/// written to is found out now.
+/// The folder asked for, or `results/` and the name of the config; taken before the long work, so that one that cannot be
+/// written to is found out now, and that no other run takes it.
 fn out_folder(asked: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
     out_folder_named(asked, config, "")
 }
@@ -210,6 +220,6 @@ fn out_folder_named(asked: Option<&Path>, config: &Path, ending: &str) -> Result
     name.push(ending);
     let path = asked.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
-    Folder::create(&path).map_err(Failure::Output)?;
-    Ok(OutFolder { path, is_new })
+    let folder = Folder::create(&path).map_err(Failure::Output)?;
+    Ok(OutFolder { folder, _made: is_new.then_some(MadeFolder(path)) })
 }

@@ -20,7 +20,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());
 
-    let terminal = Terminal::start();
+    let terminal = Terminal::start(Some(&out.folder));
     let shown = terminal.show(None);
     let found = on_threads(options.threads, || run.search(&shown.monitor))?;
     let was_stopped = shown.monitor.should_stop();
@@ -30,17 +30,15 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.infeasible_json(nothing));
         }
-        out.give_up();
         if was_stopped {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
-    let mut written = files_written(placements.write(&out.path));
+    let mut written = files_written(placements.write_in(&out.folder));
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     if !options.json {
         let timing = placements.timing();
-        let folder =
-            written.as_ref().map_or_else(|_| String::new(), |()| format!("; results in {}", out.path.display()));
+        let folder = written.as_ref().map_or_else(|_| String::new(), |()| format!("; results in {}", out.shown()));
         let text = format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads);
         written = written.and(print(text.as_bytes()));
     }
@@ -52,7 +50,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
     drop(shown);
     if is_certified {
-        written = written.and(files_written(placements.write_certificate(&out.path)));
+        written = written.and(files_written(placements.write_certificate_in(&out.folder)));
         // What cannot be certified was said before.
         if run.certificate_warning().is_none() {
             say_warnings(placements.certificate().map_or(&[], |certificate| &certificate.warnings));

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_placement::certify::MAX_GAP_PERCENT;
+use stead_report::output::Folder;
 use stead_report::units::figures;
 
 /// Between two lines where standard error is no terminal.
@@ -35,13 +36,17 @@ impl Drop for Shown {
 }
 
 impl Terminal {
-    /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process.
-    pub fn start() -> Self {
+    /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process and with it the hold on
+    /// the folder of the results.
+    pub fn start(out: Option<&Folder>) -> Self {
         let terminal = Self::unstoppable();
+        let lock = out.map(|out| out.lock_file().to_owned());
         let (stop, bar) = (terminal.stop.clone(), Arc::clone(&terminal.bar));
         // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
         let _ = ctrlc::set_handler(move || {
             if stop.stop() {
+                // What stays of it would keep nobody out.
+                let _ = lock.as_ref().map(std::fs::remove_file);
                 // Nobody is left to return to.
                 std::process::exit(130);
             }

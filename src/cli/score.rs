@@ -12,14 +12,12 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         Some(results) => run.placement_of(results, options.place.case.unwrap_or(1))?,
         None => options.place.placement(),
     };
-    if let Some(out) = &options.out {
-        // Found out before the work is done.
-        Folder::create(out).map_err(Failure::Output)?;
-    }
+    // Taken before the work is done.
+    let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     say_notes(run.notes());
     let outside_cell = run.outside_cell(&placement);
     say_notes(outside_cell.as_slice());
-    let shown = Terminal::start().show(None);
+    let shown = Terminal::start(out.as_ref()).show(None);
     let score = on_threads(None, || {
         let mut score = run.score_with(&placement, &shown.monitor)?;
         if options.out.is_some() {
@@ -37,7 +35,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     // What was known before was said then.
     say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
     say_warnings(score.warnings());
-    let written = options.out.as_ref().map_or(Ok(()), |out| files_written(score.write(out)));
+    let written = out.as_ref().map_or(Ok(()), |out| files_written(score.write_in(out)));
     if options.json {
         print_json(&score)?;
     } else {

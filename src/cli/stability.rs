@@ -7,8 +7,8 @@ use stead::{Overrides, StabilityRun};
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
     let run = StabilityRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder_named(options.out.as_deref(), &options.config, "-stability")?;
-    let analysis = on_threads(options.threads, || run.analyse())?.inspect_err(|_| out.give_up())?;
+    let analysis = on_threads(options.threads, || run.analyse())??;
     say_notes(analysis.notes());
     say_warnings(analysis.warnings());
-    out.show(analysis.write(&out.path), &analysis, options.json, results_in)
+    out.show(analysis.write_in(&out.folder), &analysis, options.json, results_in)
 }

@@ -27,6 +27,7 @@
 
 use crate::deserialize::Node;
 use crate::input::{InputError, InputFile, input_file};
+use crate::manifest::{self, Unlisted};
 use crate::place::Place;
 use crate::toml_file::{TomlFile, shorten};
 use serde::de::DeserializeOwned;
@@ -116,7 +117,8 @@ impl Place<'_> {
     /// The file named here, by a path relative to the folder of this one, read.
     ///
     /// # Errors
-    /// [`InputError`] here when there is no name, or the file cannot be read.
+    /// [`InputError`] here when there is no name, or the file cannot be read; there when it is a result that its manifest does not vouch
+    /// for.
     pub fn named_file(&self) -> Result<NamedFile, InputError> {
         let name: String = self.read()?;
         let file = match self.file.file().parent() {
@@ -127,6 +129,7 @@ impl Place<'_> {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
             self.error(problem, "a readable file, its path relative to the folder of the file that names it")
         })?;
+        manifest::check(&file, &bytes, Unlisted::Accepted)?;
         Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
     }
 }

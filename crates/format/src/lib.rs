@@ -25,6 +25,7 @@ pub mod identify;
 pub mod inertial;
 pub mod init;
 pub mod input;
+pub mod manifest;
 pub mod place;
 mod placed;
 mod points;

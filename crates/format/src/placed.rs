@@ -1,6 +1,7 @@
 //! A placement out of the results of `stead place`: the exact one of a case, from `summary.json`.
 
 use crate::input::{InputError, InputFile};
+use crate::manifest::{self, Unlisted};
 use serde_json::Value;
 use std::path::Path;
 use stead_model::robot::angles::wrap;
@@ -15,11 +16,13 @@ const ALLOWED: &str = "a folder that `stead place` has written from the same run
 /// run that it is for.
 ///
 /// # Errors
-/// [`InputError`] for a folder that is no result of `stead place`, one of other input files, or one without that case.
+/// [`InputError`] for a folder that is no result of `stead place`, one that its manifest does not vouch for, one of other input files,
+/// or one without that case.
 pub fn read_placement_of(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<Placement, InputError> {
     let file = folder.join(SUMMARY);
     let error = |problem: String| InputError::new(&file, problem).allowed(ALLOWED);
     let text = std::fs::read_to_string(&file).map_err(|cause| error(format!("cannot be read: {cause}")))?;
+    manifest::check(&file, text.as_bytes(), Unlisted::Refused)?;
     let summary: Value = serde_json::from_str(&text).map_err(|cause| {
         let line = cause.line().max(1);
         error(format!("is no JSON document: {cause}")).at_line(line)

@@ -3,6 +3,7 @@
 use crate::input::csv_table::CsvTable;
 use crate::input::input_file;
 use crate::input::{InputError, InputFile};
+use crate::manifest::{self, Unlisted};
 use std::path::{Path, PathBuf};
 use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Measured, RoundnessError};
@@ -29,6 +30,7 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
     let bytes = std::fs::read(file).map_err(|e| {
         InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable CSV file of points")
     })?;
+    manifest::check(file, &bytes, Unlisted::Accepted)?;
     let mut table = CsvTable::new(file, &bytes)?;
     let fail =
         |name: &str, problem: &str| table.fail(name, problem, "a header with x_mm,y_mm or x_mm,y_mm,z_mm, each once");

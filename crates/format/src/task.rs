@@ -2,6 +2,7 @@
 
 use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
+use crate::manifest::{self, Unlisted};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
@@ -34,6 +35,7 @@ const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
 pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
     let bytes =
         std::fs::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")).in_field("task"))?;
+    manifest::check(file, &bytes, Unlisted::Accepted)?;
     parse_csv(file, &bytes)
 }
 

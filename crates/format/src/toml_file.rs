@@ -1,6 +1,7 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
 use crate::input::{InputError, InputFile, input_file};
+use crate::manifest::{self, Unlisted};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -18,11 +19,12 @@ impl TomlFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`InputError`] when the file cannot be read or is not UTF-8 text.
+    /// [`InputError`] when the file cannot be read or is not UTF-8 text, or is a result that its manifest does not vouch for.
     pub fn read(file: &Path) -> Result<Self, InputError> {
         let bytes = std::fs::read(file).map_err(|e| {
             InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable TOML file")
         })?;
+        manifest::check(file, &bytes, Unlisted::Accepted)?;
         Self::new(file, bytes)
     }
 

@@ -25,7 +25,7 @@ pub fn write_circularity(folder: &Folder, file: &PointFile, found: &Roundness) -
         ("deviations.csv", deviations(file, found)?),
         ("polar.svg", picture::polar(&file.input.name, found).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("circularity", std::slice::from_ref(&file.input)).write(&files)
 }
 
 /// Names of the four circles in files, in words, and what they are.

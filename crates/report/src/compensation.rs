@@ -38,7 +38,7 @@ pub fn write_compensation(
         ("summary.json", bytes(&compensation_json(run, outcome))),
         ("compensation.svg", picture::compensation(outcome).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("compensate", &run.inputs).write(&files)
 }
 
 const CORRECTED_PATH: &str = "\

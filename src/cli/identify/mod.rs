@@ -17,6 +17,6 @@ fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
     let run = FitRun::read(&options.config)?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
-    let robot = run.fit().inspect_err(|_| out.give_up())?;
-    out.show(robot.write(&out.path), &robot, options.json, results_in)
+    let robot = run.fit()?;
+    out.show(robot.write_in(&out.folder), &robot, options.json, results_in)
 }

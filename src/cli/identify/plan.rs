@@ -9,13 +9,12 @@ use stead_report::identification::plan::SHEET;
 pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let run = DesignRun::read_with(&options.config, options.seed)?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
-    run.check_folder(&out.path)?;
+    run.check_folder(out.folder.path())?;
     say_notes(run.notes());
-    let shown = Terminal::start().show(None);
-    let plan = on_threads(options.threads, || run.plan(&shown.monitor)).inspect_err(|_| out.give_up())?;
+    let shown = Terminal::start(Some(&out.folder)).show(None);
+    let plan = on_threads(options.threads, || run.plan(&shown.monitor))??;
     drop(shown);
-    let plan = plan.inspect_err(|_| out.give_up())?;
-    out.show(plan.write(&out.path), &plan, options.json, |folder| {
+    out.show(plan.write_in(&out.folder), &plan, options.json, |folder| {
         if folder.is_empty() {
             folder
         } else {

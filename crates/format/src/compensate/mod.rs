@@ -12,6 +12,7 @@ use super::robot::robot_from;
 use super::run::read_run;
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile, input_file};
+use crate::manifest::{self, Unlisted};
 use crate::quantity::Quantity;
 use rows::rows_from;
 use stations::placed;
@@ -43,7 +44,8 @@ pub struct CompensateRun {
 ///
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key or column, a value
-/// of the wrong kind or out of range, a plan that does not fit the run, a reality of another geometry than the run's robot.
+/// of the wrong kind or out of range, a plan that does not fit the run or that its manifest does
+/// not vouch for, a reality of another geometry than the run's robot.
 pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<CompensateRun, InputError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
@@ -60,6 +62,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         inputs.push(if is_run { InputFile { role: "run", name: run_file.name.clone(), ..read } } else { read });
     }
     let plan_file = at.key("plan").named_file()?;
+    manifest::check(&plan_file.file, &plan_file.bytes, Unlisted::Refused)?;
     let rows = rows_from(&plan_file.file, &plan_file.bytes, run.problem.task.path())?;
     let plan = placed(&plan_file.file, &rows, &run.problem)?;
     inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));

@@ -64,7 +64,7 @@ pub fn write_assessment(
         add("cutting-engagement.csv", cutting::entering(force_history)?);
         add("cutting-turn.csv", cutting::turn(force_history)?);
     }
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("assess", &context.inputs).write(&files)
 }
 
 /// Longest piece of a robot's name in a file name.

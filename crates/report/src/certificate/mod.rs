@@ -13,21 +13,25 @@ pub use text::certificate_text;
 use super::output::{Folder, ReportError};
 use super::picture;
 use crate::document::bytes;
+use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_placement::certify::Certificate;
 use stead_placement::problem::Problem;
 
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
-/// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. Returns the paths in that order.
+/// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. They join the results of
+/// the run whose `summary.json` has the content `summary`. Returns the paths in that order.
 ///
 /// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
+/// [`ReportError`]: nothing is written when a file cannot be made, or where results of another run are; no file is ever left half
+/// written.
 pub fn write_certificate(
     folder: &Folder,
     problem: &Problem,
     certificate: &Certificate,
     inputs: &[InputFile],
+    summary: &[u8],
 ) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = vec![
         ("certificate.json", bytes(&certificate_json(certificate, inputs))),
@@ -40,6 +44,5 @@ pub fn write_certificate(
             Err(_) => outdated.push(name),
         }
     }
-    outdated.into_iter().try_for_each(|name| folder.remove(name))?;
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results(PLACE, inputs).joining(SUMMARY, summary).without(outdated).write(&files)
 }

@@ -33,7 +33,7 @@ pub fn write_identified(folder: &Folder, run: &IdentifyRun, found: &Identified) 
         ("residuals.csv", tables::residuals(run, found)?),
         ("deflections.svg", picture::deflections(found).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("identify fit", &run.inputs).write(&files)
 }
 
 /// The key of a robot file for a number of the arm, and what a number in SI is multiplied by to stand there.

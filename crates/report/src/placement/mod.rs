@@ -64,6 +64,11 @@ impl Context {
     }
 }
 
+/// The command under which the manifest lists the files of a placement job and of its certificate.
+pub(crate) const PLACE: &str = "place";
+/// The file by which a certificate knows the run that it is about.
+pub(crate) const SUMMARY: &str = "summary.json";
+
 /// The files of the maps at the best and at the worst placement.
 const MAPS: [[&str; 2]; 2] =
     [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
@@ -100,16 +105,17 @@ pub fn write_score(
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
+    let mut outdated = Vec::new();
     let map_names = ["deflection-map.csv", "deflection-map.svg"];
     match map {
         Some(map) => files.extend(map_files(problem, map, [&best, &worst], map_names, "this placement")?),
-        None => map_names.into_iter().try_for_each(|name| folder.remove(name))?,
+        None => outdated.extend(map_names),
     }
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
         files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
     }
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("score", &context.inputs).without(outdated).write(&files)
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
@@ -129,6 +135,7 @@ pub fn write_placement(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
+    let mut outdated = Vec::new();
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
@@ -138,7 +145,7 @@ pub fn write_placement(
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
         ("transfers.csv", tables::transfers(&outcome.cases)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
-        ("summary.json", bytes(&summary)),
+        (SUMMARY, bytes(&summary)),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
@@ -152,7 +159,7 @@ pub fn write_placement(
             files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
             files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
         }
-        None => MAPS.into_iter().flatten().try_for_each(|name| folder.remove(name))?,
+        None => outdated.extend(MAPS.into_iter().flatten()),
     }
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results(PLACE, &context.inputs).without(outdated).write(&files)
 }

@@ -49,7 +49,7 @@ pub fn write_simulation(
         ("turns.svg", picture::turns(found, run.cut.spindle_speed).into_bytes()),
         ("wall.svg", picture::wall(found).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("simulate", &run.inputs).write(&files)
 }
 
 /// The word for how a run ended, and the reason if it ended early.

@@ -50,5 +50,5 @@ pub fn write_stability(
         ("frequency-response.svg", picture::frequency_response(analysis).into_bytes()),
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("stability", &run.inputs).write(&files)
 }

@@ -30,7 +30,7 @@ pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Design) -> Result<Vec<P
         ("expected.csv", tables::expected(plan)?),
         ("plan.svg", picture::measurement_plan(&run.request, plan).into_bytes()),
     ];
-    files.iter().map(|(name, bytes)| folder.write(name, bytes)).collect()
+    folder.results("identify plan", &run.inputs).with_form(SHEET).write(&files)
 }
 
 /// Whether a file is a sheet into which no reading has been filled yet, so that nothing is lost with it.

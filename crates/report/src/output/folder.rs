@@ -1,0 +1,150 @@
+//! A results folder that this process alone writes to.
+
+use super::lock::{Lock, LockError};
+use super::staged::{Staged, remove_stale};
+use super::transaction::Transaction;
+use super::{ReportError, transaction};
+use std::path::{Path, PathBuf};
+use stead_format::input::InputFile;
+
+/// The name of the lock file, which is there as long as a run writes.
+const LOCK: &str = ".stead.lock";
+
+/// An output folder, held by this process until this is dropped, whose files appear whole or not at all.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    lock: Lock,
+}
+
+impl Folder {
+    /// Takes a folder, making it and its parents where they are missing, and tries whether a file can be written to it. Temporary
+    /// files of runs that were killed are removed.
+    ///
+    /// # Errors
+    /// [`ReportError::Folder`] when there is none and none can be made, or when no file can be written to it;
+    /// [`ReportError::Locked`] when another run holds it; [`ReportError::OtherManifest`] when results would replace a `manifest.json`
+    /// that is none of stead.
+    pub fn create(path: &Path) -> Result<Self, ReportError> {
+        let fail = |cause| ReportError::Folder { path: path.to_owned(), cause };
+        if path.exists() && !path.is_dir() {
+            return Err(fail(std::io::Error::new(std::io::ErrorKind::NotADirectory, "a file of that name is there")));
+        }
+        std::fs::create_dir_all(path).map_err(fail)?;
+        let lock = Lock::take(&path.join(LOCK)).map_err(|error| match error {
+            LockError::Held { process } => ReportError::Locked { path: path.to_owned(), process },
+            LockError::System(cause) => fail(cause),
+        })?;
+        if lock.is_locked() {
+            remove_stale(path);
+        }
+        // Gone again as soon as it is dropped.
+        Staged::write(path, b"").map_err(fail)?;
+        transaction::manifest_in(path)?;
+        Ok(Self { path: path.to_owned(), lock })
+    }
+
+    /// Where the folder is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The lock file, for whoever ends the process without dropping this.
+    pub fn lock_file(&self) -> &Path {
+        self.lock.path()
+    }
+
+    /// The results of a run of a command, in place of those of its last run here.
+    pub fn results<'a>(&'a self, command: &'a str, inputs: &'a [InputFile]) -> Transaction<'a> {
+        Transaction::new(&self.path, command, inputs)
+    }
+
+    /// Writes one file that is no result, over an older one of that name, whole or not at all. Returns its path.
+    ///
+    /// # Errors
+    /// [`ReportError::File`] with the path of the file; what was there is left as it was.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
+        let path = self.path.join(name);
+        match Staged::write(&self.path, bytes).and_then(|staged| staged.put(&path)) {
+            Ok(()) => Ok(path),
+            Err(cause) => Err(ReportError::File { path, cause }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stead_format::manifest::MANIFEST;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn files_appear_whole_and_nothing_else_does() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a/b");
+        let folder = Folder::create(&path).unwrap();
+        assert_eq!(folder.path(), path);
+        folder.write("x.csv", b"old and longer").unwrap();
+        let file = folder.write("x.csv", b"new").unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert_eq!(names(&path), [LOCK, "x.csv"]);
+        drop(folder);
+        assert_eq!(names(&path), ["x.csv"]);
+    }
+
+    #[test]
+    fn errors_name_the_path_and_leave_no_temporary_file() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        let error = Folder::create(&file).unwrap_err();
+        assert!(matches!(error, ReportError::Folder { .. }));
+        let start = format!("{}: results cannot be written here: a file of that name", file.display());
+        assert!(error.to_string().starts_with(&start), "{error}");
+
+        let folder = Folder::create(&place.path().join("out")).unwrap();
+        std::fs::create_dir(folder.path().join("best.csv")).unwrap();
+        let best = folder.path().join("best.csv").display().to_string();
+        let error = folder.write("best.csv", b"1").unwrap_err();
+        assert!(error.to_string().contains(&best), "{error}");
+        let error = folder.results("place", &[]).write(&[("a.csv", b"1".to_vec()), ("best.csv", vec![])]).unwrap_err();
+        assert!(error.to_string().contains(&best), "{error}");
+        assert_eq!(names(folder.path()), [LOCK, "best.csv"]);
+
+        std::fs::remove_dir_all(folder.path()).unwrap();
+        assert!(matches!(folder.write("best.csv", b"1"), Err(ReportError::File { .. })));
+        assert!(matches!(folder.results("place", &[]).write(&[("best.csv", vec![])]), Err(ReportError::File { .. })));
+    }
+
+    #[test]
+    fn a_second_writer_is_refused_and_one_that_was_killed_is_cleared_up_after() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::create(place.path()).unwrap();
+        let message = Folder::create(place.path()).unwrap_err().to_string();
+        let process = format!("another run of stead (process {}) writes to this folder", std::process::id());
+        for part in [process.as_str(), "; allowed: another folder, or wait until the other run has ended"] {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+        drop(folder);
+        std::fs::write(place.path().join(LOCK), "1").unwrap();
+        Staged::write(place.path(), b"stale").unwrap().abandon();
+        drop(Folder::create(place.path()).unwrap());
+        assert!(names(place.path()).is_empty());
+    }
+
+    #[test]
+    fn a_manifest_of_something_else_is_left_alone() {
+        let place = tempfile::tempdir().unwrap();
+        std::fs::write(place.path().join(MANIFEST), "{\"name\": \"a web page\"}").unwrap();
+        let error = Folder::create(place.path()).unwrap_err();
+        assert!(matches!(error, ReportError::OtherManifest { .. }), "{error}");
+        assert!(error.to_string().contains("manifest.json: is none of stead and is left as it is: "), "{error}");
+        assert_eq!(names(place.path()), [MANIFEST]);
+    }
+}
