@@ -3,6 +3,7 @@
 //! What a search returns is evaluated by the planner in any case.
 
 use super::candidate::{Candidate, Objective, rank};
+use super::coordinate_search::{Directions, coordinate_search};
 use super::lookup::{self, BetaGrid, LookupTable};
 use super::outcome::Generation;
 use super::problem::Placement;
@@ -185,10 +186,7 @@ impl<'a> Evaluator<'a> {
         };
         let improved: Vec<(Candidate, usize)> = sorted[..sorted.len().min(CANDIDATES * max_count)]
             .par_iter()
-            .map_init(
-                || self.workspace(),
-                |workspace, start| self.coordinate_search(table, start, sense, monitor, workspace),
-            )
+            .map_init(|| self.workspace(), |workspace, start| self.improved(start, sense, monitor, workspace))
             .collect();
         let mut evaluations: usize = improved.iter().map(|(_, evaluations)| evaluations).sum();
         let mut ends: Vec<(&Candidate, Candidate)> =
@@ -236,24 +234,23 @@ impl<'a> Evaluator<'a> {
         SelectedBasins { basins: selected, evaluations, lookup_rejected }
     }
 
-    /// A candidate improved on the table, and the number of placements evaluated.
-    fn coordinate_search(
+    /// A candidate improved by coordinate search, by the table where there is one, and the number of placements evaluated.
+    pub fn improved(
         &self,
-        table: &LookupTable<'_>,
         start: &Candidate,
         sense: Sense,
         monitor: &Monitor,
         workspace: &mut Workspace,
     ) -> (Candidate, usize) {
-        match &mut workspace.table {
-            Some(space) if !monitor.should_stop() => {
-                let scheme = start.scheme.as_deref();
-                let (placement, objective, evaluations) =
-                    table.coordinate_search(&start.placement, sense, scheme, &self.grid, space, monitor);
-                (Candidate { placement, objective, ..start.clone() }, evaluations)
-            }
-            _ => (start.clone(), 0),
+        if monitor.should_stop() {
+            return (start.clone(), 0);
         }
+        let directions = if self.table.is_some() { Directions::WithoutAzimuth } else { Directions::All };
+        let objective = |placement: &Placement| self.objective(placement, start.scheme.as_deref(), workspace);
+        let problem = self.planner.problem();
+        let (placement, objective, evaluations) =
+            coordinate_search(problem, &start.placement, sense, directions, objective, monitor);
+        (Candidate { placement, objective, ..start.clone() }, evaluations)
     }
 
     /// States what the planner says of the best of every generation in place of what the table said of it, unless the caller asks

@@ -22,6 +22,7 @@ mod beta_step;
 pub mod candidate;
 pub mod certify;
 pub mod constraints;
+pub mod coordinate_search;
 pub mod criterion;
 pub mod evaluate;
 pub mod evaluator;

@@ -5,7 +5,7 @@
 //! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
 //! compliance there is sampled once per robot and spindle, by the reference geometry (`sample`, over the grid of `shape`). A placement
 //! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
-//! joint steps and turns (`objective`); `coordinate_search` descends on that. With n the wall normal and f the force, both as (radial,
+//! joint steps and turns (`objective`); the search descends on that. With n the wall normal and f the force, both as (radial,
 //! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
 //!
 //! ```text
@@ -17,7 +17,6 @@
 //! [`LookupTable::accuracy`] measures the error of the interpolation.
 
 mod accuracy;
-pub mod coordinate_search;
 mod interpolate;
 mod objective;
 mod polar;

@@ -9,6 +9,7 @@ use super::super::sense::Sense;
 use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;
 use super::*;
+use crate::coordinate_search::{Directions, coordinate_search};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -254,11 +255,14 @@ fn coordinate_search_gets_better_inside_the_cell() {
     for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let start = Placement::from(start);
         let before = table.objective(&start, &grid, None, &mut workspace);
-        let (end, objective, evaluations) =
-            table.coordinate_search(&start, sense, None, &grid, &mut workspace, &Monitor::silent());
-        assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
-        assert_eq!(objective, table.objective(&end, &grid, None, &mut workspace));
-        assert!(problem.cell.contains(&end), "{end:?}");
+        for directions in [Directions::WithoutAzimuth, Directions::All] {
+            let mut evaluate = |placement: &Placement| table.objective(placement, &grid, None, &mut workspace);
+            let (end, objective, evaluations) =
+                coordinate_search(&problem, &start, sense, directions, &mut evaluate, &Monitor::silent());
+            assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
+            assert_eq!(objective, evaluate(&end));
+            assert!(problem.cell.contains(&end), "{end:?}");
+        }
     }
 }
 

@@ -118,6 +118,9 @@ impl LongPath {
             };
             evaluations += searched.evaluations;
             let (mut found, lookup_summary) = (searched.found, searched.lookup_summary);
+            if searched.table.is_none() {
+                evaluations += improve(&thinned, &mut found, monitor);
+            }
             evaluations += self.search_on(problem, &wider, &mut found, monitor);
             let nearest = found[0].basins[0].clone();
             let mut deciding = Vec::new();
@@ -198,6 +201,29 @@ impl LongPath {
         found.basins = search::distinct(&whole.problem().cell, &allowed, basins);
         is_refused
     }
+}
+
+/// Improves the basins of both searches by coordinate search; returns how many placements were evaluated.
+fn improve(problem: &Problem, found: &mut [SearchResult; 2], monitor: &Monitor) -> usize {
+    let (planner, finer) = (Planner::new(problem), Planner::finer(problem));
+    let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
+    let improved: Vec<_> = SearchResult::jobs(found)
+        .into_par_iter()
+        .map_init(
+            || evaluator.workspace(),
+            |workspace, (sense, _, start)| (sense, evaluator.improved(start, sense, monitor, workspace)),
+        )
+        .collect();
+    found.iter_mut().for_each(|found| found.basins.clear());
+    let mut evaluations = 0;
+    for (sense, (candidate, number)) in improved {
+        found[usize::from(sense == Sense::Max)].basins.push(candidate);
+        evaluations += number;
+    }
+    for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+        found.basins.sort_by(|a, b| rank(sense, a.objective, b.objective));
+    }
+    evaluations
 }
 
 /// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path, and how far

@@ -1,0 +1,96 @@
+//! Coordinate search: from a placement to the bottom (or top) of its basin, one direction at a time.
+//!
+//! The directions are those in which the arm has its symmetry: away from axis 1, up, the yaw against the azimuth, which is kept while the
+//! others change, and, where asked for, about axis 1. Each has a step of its own that grows with success and shrinks without.
+
+use super::candidate::{Objective, rank};
+use super::problem::{Placement, Problem};
+use super::sense::Sense;
+use nalgebra::Vector2;
+use std::cmp::Ordering;
+use stead_numerics::monitor::Monitor;
+
+/// First steps: radius (m), height (m), yaw (rad), azimuth (rad).
+const FIRST: [f64; 4] = [0.03, 0.03, 0.06, 0.06];
+/// The search ends when every step is below this share of the first.
+const LAST: f64 = 0.01;
+/// A step that brings nothing is divided by this.
+const SHRINK: f64 = 3.0;
+/// A step that brings something is multiplied by this.
+const GROWTH: f64 = 1.7;
+/// Placements evaluated for each direction, at most.
+const MAX_EVALUATIONS: usize = 50;
+
+/// In which directions to search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Directions {
+    /// Radius, height and yaw: where the azimuth changes nothing, or hardly anything.
+    WithoutAzimuth = 3,
+    /// All.
+    All = 4,
+}
+
+/// The best placement (in the given sense) that steps from `start` (x, y, z in m, yaw in rad) lead to inside the cell of a problem, its
+/// objective, and the number of placements evaluated; never worse than the start. A stop ends it.
+pub fn coordinate_search(
+    problem: &Problem,
+    start: &Placement,
+    sense: Sense,
+    directions: Directions,
+    mut evaluate: impl FnMut(&Placement) -> Objective,
+    monitor: &Monitor,
+) -> (Placement, Objective, usize) {
+    let count = directions as usize;
+    let mut best = *start;
+    let mut objective = evaluate(start);
+    let mut evaluations = 1;
+    let mut steps = FIRST;
+    let may_go_on = |evaluations: usize| evaluations < MAX_EVALUATIONS * count && !monitor.should_stop();
+    while may_go_on(evaluations) && (0..count).any(|k| steps[k].abs() > LAST * FIRST[k]) {
+        for k in 0..count {
+            let found = [1.0, -1.0].into_iter().any(|side| {
+                let placement = moved(problem, &best, k, side * steps[k]);
+                if placement == best {
+                    return false;
+                }
+                evaluations += 1;
+                let there = evaluate(&placement);
+                let better = rank(sense, there, objective) == Ordering::Less;
+                if better {
+                    (best, objective) = (placement, there);
+                    // The next step goes the same way first.
+                    steps[k] *= side;
+                }
+                better
+            });
+            steps[k] = if found { steps[k] * GROWTH } else { steps[k] / SHRINK };
+        }
+    }
+    (best, objective, evaluations)
+}
+
+/// A placement moved along one direction, inside the cell.
+fn moved(problem: &Problem, placement: &Placement, direction: usize, step: f64) -> Placement {
+    let root = problem.robot.geometry().root_in_base;
+    let Placement { mut x, mut y, mut z, mut yaw } = *placement;
+    let away = Vector2::new(x - root.x, y - root.y);
+    match direction {
+        0 => {
+            let away = if away.norm() > 0.0 { away.normalize() } else { Vector2::x() };
+            x += away.x * step;
+            y += away.y * step;
+        }
+        1 => z += step,
+        2 => yaw += step,
+        _ => {
+            let (sine, cosine) = libm::sincos(step);
+            (x, y) = (root.x + cosine * away.x - sine * away.y, root.y + sine * away.x + cosine * away.y);
+        }
+    }
+    let cell = &problem.cell;
+    let inside = cell.clamp(&Placement { x, y, z, yaw });
+    // The yaw follows the azimuth.
+    let azimuth = |x: f64, y: f64| libm::atan2(y - root.y, x - root.x);
+    let turned = azimuth(inside.x, inside.y) - azimuth(placement.x, placement.y);
+    cell.clamp(&Placement { yaw: inside.yaw + turned, ..inside })
+}
