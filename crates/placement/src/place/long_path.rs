@@ -39,7 +39,9 @@ const REPEATS: usize = 4;
 const LAST_GENERATIONS: usize = 5;
 /// with the population divided by this.
 const SHARE: usize = 2;
-/// Candidates of a search that are planned on the whole path, for every basin asked for.
+/// Candidates of a search that are improved by coordinate search, for every basin asked for;
+const IMPROVED: usize = 6;
+/// and those that are planned on the whole path.
 const PROMOTED: usize = 3;
 
 /// The subsets of a long path.
@@ -111,7 +113,8 @@ impl LongPath {
         let whole = WholePath::new(full);
         loop {
             let thinned = self.search.of(problem);
-            let searched = match search_cell(&Planner::finer(&thinned), &wider, monitor) {
+            let widest = SearchSettings { basins: IMPROVED * settings.basins, ..*settings };
+            let searched = match search_cell(&Planner::finer(&thinned), &widest, monitor) {
                 Ok(searched) => searched,
                 Err(_) if repeats > 0 && !monitor.should_stop() => return search_cell(full, settings, monitor),
                 Err(none) => return Err(infeasible(full, &none.placement, None, true, monitor)),

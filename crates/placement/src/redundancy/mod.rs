@@ -94,7 +94,8 @@ pub struct Workspace {
 impl<'a> Planner<'a> {
     /// Prepares the planning of a problem on its grid of beta: for the search.
     pub fn new(problem: &'a Problem) -> Self {
-        Self::on_grid(problem, problem.redundancy, SEARCH_ROOM)
+        let room = if problem.task.path().is_thinned() { SUBSET_ROOM } else { SEARCH_ROOM };
+        Self::on_grid(problem, problem.redundancy, room)
     }
 
     /// Prepares the planning on a finer grid of beta, for what is refined and printed: divided until its step is at most a
@@ -383,6 +384,8 @@ const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
 
 /// Steps of the grid that the search wants between knots.
 const SEARCH_ROOM: knots::Room = knots::Room { neighbours: 1.0, knots: 2.0 };
+/// The same on subsets of a path, whose rate of beta must not depend on how far their points happen to be apart.
+const SUBSET_ROOM: knots::Room = knots::Room { neighbours: 2.0, knots: 3.0 };
 /// The same of plans that are printed.
 const FINAL_ROOM: knots::Room = knots::Room { neighbours: 6.0, knots: 6.0 };
 
