@@ -20,7 +20,9 @@ const REPEATS: usize = 5;
 /// Halvings of the way back to the start of a refinement that the whole path does not allow.
 const HALVINGS: usize = 6;
 /// Rounds of refinement on the whole path at the most.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
+/// Steps of a round at the most: the start comes from a refinement on a subset, and a step on the whole path is dear.
+const ITERATIONS: u64 = 12;
 /// A round that gains less than this share ends it.
 const GAIN: f64 = 1e-3;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
@@ -188,7 +190,9 @@ fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinemen
         if monitor.should_stop() {
             break;
         }
-        let run = solver::run(planner.problem(), &best.solution, monitor);
+        let run = solver::run_observed(planner.problem(), &best.solution, monitor, |executor| {
+            executor.configure(|state| state.max_iters(ITERATIONS))
+        });
         report.rounds += 1;
         report.iterations += run.iterations;
         report.statuses.push(run.status);
