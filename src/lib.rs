@@ -59,6 +59,7 @@ pub use run::{Explanations, PlacementScore, Placements, Run};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;

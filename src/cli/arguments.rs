@@ -2,13 +2,14 @@
 
 use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
-use super::values::{damping_scale, finite, gap, point, positive, rpm, sector, seed, threads, variant};
+use super::values::{damping_scale, field, finite, gap, point, positive, rpm, sector, seed, threads, variant};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
+use stead_format::field::FieldOverride;
 use stead_simulation::arm::Variant;
 
 /// Workpiece placement optimiser for robotic machining.
@@ -104,6 +105,9 @@ pub(super) struct ManOptions {
 pub(super) struct PlaceOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     /// Folder for the results [default: results/<name of the run file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -189,6 +193,9 @@ pub(super) struct IdentifyFitOptions {
 pub(super) struct ScoreOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: GivenPlacement,
     /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
@@ -203,6 +210,9 @@ pub(super) struct ScoreOptions {
 pub(super) struct ExplainOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Path point, counted from 0 in the order of the task file

@@ -1,6 +1,7 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
 use stead_assessment::roundness::Sector;
+use stead_format::field::FieldOverride;
 use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
 use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
@@ -8,6 +9,11 @@ use stead_simulation::arm::Variant;
 pub(super) fn variant(text: &str) -> Result<Variant, String> {
     let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
     found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+}
+
+/// A value for a field, by its path.
+pub(super) fn field(text: &str) -> Result<FieldOverride, String> {
+    FieldOverride::parse(text).map_err(|error| error.to_string())
 }
 
 pub(super) fn damping_scale(text: &str) -> Result<f64, String> {

@@ -119,8 +119,8 @@ impl<'a> Node<'a> {
             None => nearest().map(|known| format!(" (nearest known one: {known})")).unwrap_or_default(),
         };
         let file = self.place.file;
-        Err(InputError::new(file.file(), format!("unknown key{hint}"))
-            .at_line(file.line(key.span().start))
+        Err(file
+            .locate(InputError::new(file.file(), format!("unknown key{hint}")), key.span().start)
             .in_field(path)
             .found(file.quote(value.span()))
             .allowed(keys.join(", "))
