@@ -9,6 +9,9 @@ fn commands(bench: &Bench) -> Vec<Vec<String>> {
     for name in overview.lines().filter_map(|line| line.strip_prefix("  ")).filter_map(|line| line.split(' ').next()) {
         match name {
             "" | "help" | "-h," | "-V," => {}
+            "study" => {
+                ["run", "status"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
+            }
             "identify" => ["fit", "plan"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()])),
             _ => all.push(vec![name.to_owned()]),
         }

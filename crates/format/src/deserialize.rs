@@ -230,9 +230,14 @@ impl<'de, 'a> Deserializer<'de> for Node<'a> {
         Err(self.place.error(problem, &*allowed).into())
     }
 
+    /// Whatever is here is read by other means.
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Problem> {
+        visitor.visit_unit()
+    }
+
     serde::forward_to_deserialize_any! {
         i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char bytes byte_buf unit unit_struct newtype_struct tuple map enum
-        identifier ignored_any
+        identifier
     }
 }
 

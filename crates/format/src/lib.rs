@@ -40,6 +40,7 @@ mod sheet;
 pub mod simulation;
 mod sources;
 pub mod spindle;
+pub mod study;
 pub mod task;
 #[cfg(test)]
 mod testing;
@@ -55,5 +56,5 @@ pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
 pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify, read_run_with};
 pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
-pub use sources::Sources;
+pub use study::read_study;
 pub use tool::MAX_SPINDLE_SPEED_RPM;

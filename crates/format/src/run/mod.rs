@@ -12,7 +12,7 @@ mod tables;
 mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
-pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
+pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
 pub use output::OutputTable;
 pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;

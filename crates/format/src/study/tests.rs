@@ -1,0 +1,1 @@
+//! Studies that are read, and those that are refused.

@@ -1,0 +1,1 @@
+//! Shards, journals and tables.
