@@ -25,4 +25,5 @@ mod stability;
 mod standard_output;
 mod starting;
 mod stop;
+mod study;
 mod uncertainty;

@@ -85,9 +85,6 @@ pub fn read_study(file: &Path) -> Result<Study, InputError> {
     let base_source = base.toml()?;
     let base_document = base_source.parse()?;
     let is_certified = study.certify.unwrap_or(false);
-    if is_certified {
-        check_certificate(&base_document, &at.key("certify"))?;
-    }
     let keep = keep_of(study.keep.as_deref(), &at.key("keep"))?;
     let mut axes = Vec::new();
     for (table, number) in study.axis.iter().flatten().zip(1..) {
@@ -135,11 +132,13 @@ impl Study {
         let source = source.with_overrides(&case.overrides, self.sources.clone());
         let document = source.parse()?;
         let mut run = run_of(&source, &document, None)?;
-        if !self.is_certified {
+        if self.is_certified {
+            check_certificate(&document.root().key("certificate"))?;
+        } else {
             run.certificate = None;
         }
         let id = self.id(&document, &run.inputs);
-        let task = run.inputs.iter().find(|input| input.role == "task").map(|input| input.name.clone());
+        let task = run.inputs.iter().find(|input| input.role == "task").map(|input| file_name(&input.name));
         Ok(CaseRun { run, id, task: task.unwrap_or_default() })
     }
 
@@ -172,19 +171,16 @@ fn by_digest(value: &mut Value, inputs: &[InputFile]) {
     }
 }
 
-/// Refuses certificates that the base does not ask for, or that would depend on the machine.
-fn check_certificate(base: &Document<'_>, at: &Place<'_>) -> Result<(), InputError> {
-    let table = base.at("certificate");
-    if !table.is_given() {
-        let problem = "asks for certificates, but the run file has no table [certificate]";
-        return Err(at.error(problem, "false, or a table [certificate] with gap_percent in the run file"));
+/// Refuses a case that asks for no certificate though the study does, or for one that would depend on the machine.
+fn check_certificate(at: &Place<'_>) -> Result<(), InputError> {
+    let allowed =
+        "a table [certificate] with gap_percent and without time_limit_s, or certify = false in the study file";
+    if !at.is_given() {
+        return Err(at.error("is missing, but the study asks for certificates", allowed));
     }
-    if table.key("time_limit_s").is_given() {
-        let problem =
-            "asks for certificates, but those of the run file end by the clock, so that they depend on the machine";
-        return Err(at.error(problem, "false, or a table [certificate] without time_limit_s in the run file"));
-    }
-    Ok(())
+    let limit = at.key("time_limit_s");
+    let problem = "ends certificates by the clock, so that the results of the study would depend on the machine";
+    if limit.is_given() { Err(limit.error(problem, allowed)) } else { Ok(()) }
 }
 
 fn keep_of(keep: Option<&str>, at: &Place<'_>) -> Result<Keep, InputError> {
@@ -196,4 +192,9 @@ fn keep_of(keep: Option<&str>, at: &Place<'_>) -> Result<Keep, InputError> {
         }
         _ => Err(at.error("is unknown", "\"none\", \"all\", or as in \"best 20\"")),
     }
+}
+
+/// The name of a file without its folders, which say nothing of what is in it.
+fn file_name(name: &str) -> String {
+    name.rsplit('/').next().unwrap_or(name).to_owned()
 }

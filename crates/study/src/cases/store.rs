@@ -42,6 +42,11 @@ impl Shard {
     fn name(self) -> String {
         format!("{:04}-of-{:04}", self.index, self.count)
     }
+
+    /// How the names of its temporary files begin.
+    fn temporary(self) -> String {
+        format!(".stead-{}-", self.name())
+    }
 }
 
 impl std::fmt::Display for Shard {
@@ -91,7 +96,11 @@ impl Store {
     pub fn begin(&self, plan: &Plan) -> Result<(), StudyError> {
         let shards = self.shards();
         self.check(plan)?;
-        std::fs::create_dir_all(&shards).map_err(|cause| StudyError::write(&shards, cause))?;
+        std::fs::create_dir_all(&shards).map_err(|cause| StudyError::Folder {
+            path: self.folder.clone(),
+            problem: format!("results cannot be written here: {cause}"),
+            allowed: "a folder that can be made or written to".to_owned(),
+        })?;
         let _lock = self.lock()?;
         self.check(plan)?;
         let header = Header { format: 1, study: plan.name(), cases: plan.cases.len(), sha256: plan.digest() };
@@ -129,17 +138,21 @@ impl Store {
 
     /// The lock of the files that shards have in common.
     pub fn lock(&self) -> Result<Lock, StudyError> {
-        Lock::wait(&self.path("study.lock"))
+        let lock = Lock::wait(&self.path("study.lock"))?;
+        clean(&self.folder, OF_FOLDER)?;
+        Ok(lock)
     }
 
     /// The lock of a shard.
     pub fn lock_shard(&self, shard: Shard) -> Result<Lock, StudyError> {
-        Lock::take(&self.of_shard(shard, ".lock"), &format!("shard {shard} of the study"))
+        let lock = Lock::take(&self.of_shard(shard, ".lock"), &format!("shard {shard} of the study"))?;
+        clean(&self.shards(), &shard.temporary())?;
+        Ok(lock)
     }
 
     /// Writes a file whole: under another name first.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
-        write(&self.path(name), bytes)
+        write(&self.path(name), bytes, OF_FOLDER)
     }
 
     /// All shards that have left anything, in the order of their names.
@@ -192,10 +205,10 @@ impl Store {
     /// Makes the files of a shard that is done; its journal goes.
     pub fn close(&self, shard: Shard, entries: Vec<Entry>) -> Result<(), StudyError> {
         let timing = self.of_shard(shard, "-timing.csv");
-        write(&timing, &timing_table(&entries).to_csv()?)?;
+        write(&timing, &timing_table(&entries).to_csv()?, &shard.temporary())?;
         let row = |entry: Entry| std::iter::once(Cell::Text(entry.id)).chain(entry.row).collect();
         let table = Table { columns: shard_columns(), rows: entries.into_iter().map(row).collect() };
-        write(&self.of_shard(shard, ".parquet"), &table.to_parquet()?)?;
+        write(&self.of_shard(shard, ".parquet"), &table.to_parquet()?, &shard.temporary())?;
         let journal = self.of_shard(shard, ".jsonl");
         match std::fs::remove_file(&journal) {
             Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => Err(StudyError::write(&journal, cause)),
@@ -242,12 +255,30 @@ fn timing_table(entries: &[Entry]) -> Table {
     Table { columns, rows: entries.iter().map(row).collect() }
 }
 
+/// Temporary files of the folder itself, which are written under its lock.
+const OF_FOLDER: &str = ".stead-study-";
+/// What temporary files end with.
+const TEMPORARY: &str = ".tmp";
+
+/// Removes the temporary files that a killed process has left, by how their names begin: whoever writes such files holds the lock.
+fn clean(folder: &Path, prefix: &str) -> Result<(), StudyError> {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(TEMPORARY));
+        if is_ours {
+            let path = entry.path();
+            std::fs::remove_file(&path).map_err(|cause| StudyError::write(&path, cause))?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes a file whole: under another name in the same folder first, and on the disk before it is renamed.
-fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+fn write(path: &Path, bytes: &[u8], prefix: &str) -> Result<(), StudyError> {
     let fail = |cause| StudyError::write(path, cause);
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".stead-").suffix(".tmp");
+    builder.prefix(prefix).suffix(TEMPORARY);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
