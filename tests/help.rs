@@ -78,7 +78,7 @@ fn the_manual_has_a_page_for_every_command() {
     let bench = Bench::new();
     let ended = bench.stead(&["man", "pages/man1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned()];
+    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned(), "stead-study.1".to_owned()];
     expected.extend(commands(&bench).iter().map(|command| format!("stead-{}.1", command.join("-"))));
     let mut written: Vec<String> = bench.tree("pages/man1").into_keys().collect();
     expected.sort();

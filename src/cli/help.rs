@@ -102,13 +102,14 @@ Examples:
   stead study run configs/study-example.toml --shard 3/4
 
 Files written to the results folder:
-  study.csv, study.parquet           one row for each case, once every case is done; the same bytes for any threads and shards
+  study.csv, study.parquet           one row for each case, once every case is done
   study-timing.csv                   where and how long each case was computed
   cases/<number>-<digest>/           with keep in the study file: what `stead place` writes
   study.json, shards/                what is done so far
 
-The command may be killed at any moment: the same command goes on where it was. After an edit of the study file it does what the edit
-has changed. Shards may run at the same time, on many machines, in one folder that they share; the last one writes the table.
+The command may be killed at any moment: the same command goes on where it was. After an edit of the study file it does what the
+edit has changed. Shards may run at the same time, on many machines, in one folder that they share; the last one writes the table.
+The bytes of study.csv and study.parquet depend on neither threads nor shards.
 
 Exit codes:
   0  done; cases without a placement are rows with their reason

@@ -89,7 +89,8 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
         let path = store.of_shard(settings.shard, ".jsonl");
         let (_, whole) = journal::read(&path, &result_columns())?;
         let mut journal = Journal::open(&path, whole)?;
-        side_by_side(plan, &pending, settings, monitor, &mut |entry| {
+        let is_kept = plan.study.keep == Keep::All;
+        side_by_side(plan, &pending, settings, is_kept, monitor, &mut |entry| {
             journal.push(&entry)?;
             rows.insert(entry.id, entry.row);
             finished.now += 1;
@@ -137,7 +138,7 @@ fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Resu
         .filter(|case| !settings.keeping.is_kept(case))
         .collect();
     let mut done = 0;
-    side_by_side(plan, &missing, settings, monitor, &mut |_| {
+    side_by_side(plan, &missing, settings, true, monitor, &mut |_| {
         done += 1;
         monitor.report(Progress::Steps { stage: "best cases", done, total: missing.len() });
         Ok(())
@@ -149,6 +150,7 @@ fn side_by_side(
     plan: &Plan,
     cases: &[&PlannedCase],
     settings: &RunSettings<'_>,
+    is_kept: bool,
     monitor: &Monitor,
     take: &mut dyn FnMut(Entry) -> Result<(), StudyError>,
 ) -> Result<(), StudyError> {
@@ -174,7 +176,7 @@ fn side_by_side(
                     let Some(case) = cases.get(next.fetch_add(1, Ordering::SeqCst)) else { return };
                     let begun = Instant::now();
                     let timing = |seconds| Timing { seconds, threads, host: host.clone() };
-                    let done = pool.install(|| do_case(plan, case, settings.keeping, quiet));
+                    let done = pool.install(|| do_case(plan, case, is_kept.then_some(settings.keeping), quiet));
                     let seconds = begun.elapsed().as_secs_f64();
                     let row = match done.transpose() {
                         Some(row) => row,
@@ -201,12 +203,11 @@ fn side_by_side(
 fn do_case(
     plan: &Plan,
     case: &PlannedCase,
-    keeping: &dyn Keeping,
+    keeping: Option<&dyn Keeping>,
     monitor: &Monitor,
 ) -> Result<Option<Vec<Cell>>, StudyError> {
     let mut read = plan.study.case(&case.case)?.run;
-    let is_kept = plan.study.keep != Keep::None;
-    read.maps &= is_kept;
+    read.maps &= keeping.is_some();
     let placed = match place(&read, monitor) {
         Err(RunError::Infeasible(nothing)) if nothing.interrupted => return Ok(None),
         Err(error) => return Ok(Some(row_without(&error))),
@@ -222,7 +223,7 @@ fn do_case(
         return Ok(None);
     }
     let row = row_of(&read.problem, &placed, certificate.as_ref());
-    if is_kept {
+    if let Some(keeping) = keeping {
         keeping.keep(case, &read, placed, certificate).map_err(StudyError::Keep)?;
     }
     Ok(Some(row))
