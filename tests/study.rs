@@ -37,7 +37,9 @@ fn bench() -> Bench {
 
 fn run(bench: &Bench, out: &str, more: &[&str]) -> Ended {
     let ended = bench.stead(&[&["study", "run", STUDY, "--out", out], more].concat());
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{}", ended.stdout);
+    // A machine that is slow shows progress.
+    let is_quiet = ended.stderr.lines().all(|line| line.starts_with("progress: "));
+    assert!(ended.code == Some(0) && is_quiet, "{}{}", ended.stdout, ended.stderr);
     ended
 }
 

@@ -44,6 +44,7 @@ Examples:
   stead place configs/caro-2013.toml
   stead place configs/caro-2013.toml --seed 7 --out results/seed-7
   stead place configs/caro-2013.toml --certify 0.5
+  stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8
 
 Files written to the results folder:
   placements.csv                     the four cases: pose, postures, mean and largest deflection
