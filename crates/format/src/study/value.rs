@@ -38,7 +38,10 @@ pub(crate) fn toml(value: &DeValue<'_>) -> String {
         DeValue::String(text) => quoted(text),
         DeValue::Boolean(is) => is.to_string(),
         DeValue::Integer(integer) => integer.to_string(),
-        DeValue::Float(float) => float.to_string(),
+        // However it is written, the same number is the same text, and so the same input.
+        DeValue::Float(float) => {
+            number(value).filter(|n| n.is_finite()).map_or_else(|| float.to_string(), |n| format!("{n:?}"))
+        }
         DeValue::Datetime(time) => time.to_string(),
         DeValue::Array(array) => {
             let entries: Vec<String> = array.iter().map(|entry| toml(entry.get_ref())).collect();
@@ -74,10 +77,10 @@ mod tests {
     #[test]
     fn values_come_back_from_one_line() {
         for (text, expected) in [
-            ("[1,\n 2.50, 'a\"b']", "[1, 2.50, \"a\\\"b\"]"),
+            ("[1,\n 2.50, 'a\"b']", "[1, 2.5, \"a\\\"b\"]"),
             ("{ b = 1, a.c = [true] }", "{ \"a\" = { \"c\" = [true] }, \"b\" = 1 }"),
             ("0x1F", "0x1f"),
-            ("1e3", "1e3"),
+            ("1e3", "1000.0"),
             ("'a\tb'", "\"a\\tb\""),
         ] {
             let value = DeValue::parse(text).unwrap();
