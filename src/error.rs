@@ -5,6 +5,7 @@ use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
 use stead_placement::place::Infeasible;
 use stead_report::ReportError;
+use stead_study::cases::StudyError;
 
 /// Why a file could not be read, a job gave no result, or a result could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -28,6 +29,9 @@ pub enum Error {
     /// Some points of a path cannot be compensated.
     #[error(transparent)]
     NotCompensated(#[from] NotCompensated),
+    /// A study cannot go on; finished cases are kept.
+    #[error(transparent)]
+    Study(StudyError),
     /// The job itself failed.
     #[error("{0}")]
     Failed(String),
@@ -36,7 +40,10 @@ pub enum Error {
 impl Error {
     /// Whether the input or an argument is at fault, and not the job.
     pub fn is_bad_input(&self) -> bool {
-        matches!(self, Self::Input(_) | Self::Argument(_))
+        matches!(
+            self,
+            Self::Input(_) | Self::Argument(_) | Self::Study(StudyError::Folder { .. } | StudyError::Locked { .. })
+        )
     }
 
     /// Whether the caller stopped the job before it had a result.
@@ -64,6 +71,15 @@ impl From<stead_study::RunError> for Error {
         match error {
             stead_study::RunError::Infeasible(nothing) => Self::Infeasible(Box::new(nothing)),
             stead_study::RunError::Stability(error) => Self::failed(error),
+        }
+    }
+}
+
+impl From<StudyError> for Error {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Input(error) => Self::Input(error),
+            error => Self::Study(error),
         }
     }
 }

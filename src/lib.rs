@@ -20,6 +20,7 @@
 //! | [`Run`] | [`place`](Run::place) | [`Placements`] | `stead place` |
 //! | [`Run`] | [`score`](Run::score) | [`PlacementScore`] | `stead score` |
 //! | [`Run`] | [`explain`](Run::explain) | [`Explanations`] | `stead explain` |
+//! | [`Study`] | [`run`](Study::run) | [`Finished`] | `stead study run` |
 //! | [`AssessmentRun`] | [`assess`](AssessmentRun::assess) | [`RobotAssessment`] | `stead assess` |
 //! | [`FitRun`] | [`fit`](FitRun::fit) | [`IdentifiedRobot`] | `stead identify fit` |
 //! | [`DesignRun`] | [`plan`](DesignRun::plan) | [`MeasurementPlan`] | `stead identify plan` |
@@ -49,6 +50,7 @@ mod identification;
 mod result;
 mod run;
 mod simulation;
+mod study;
 
 pub use assessment::{AssessmentRun, RobotAssessment};
 pub use circularity::{Circularity, Profile};
@@ -59,6 +61,7 @@ pub use run::{Explanations, PlacementScore, Placements, Run};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;
@@ -67,3 +70,5 @@ pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
 pub use stead_report::document::Timing;
 pub use stead_report::{Folder, ReportError};
+pub use stead_study::cases::{Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table};
+pub use study::Study;

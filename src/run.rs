@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
+use stead_format::field::{FieldOverride, FieldOverrides};
 use stead_placement::certify::{self, Certificate};
 use stead_placement::feasibility::{self, DeflectionMap, Explanation};
 use stead_placement::outcome::{Cases, Outcome, left_out};
 use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::settings::CertificateSettings;
 use stead_report::Folder;
 use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
 use stead_report::document::{Timing, bytes};
@@ -43,6 +45,33 @@ impl Run {
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
         Ok(Self { run: Arc::new(format::read_run(file.as_ref())?) })
+    }
+
+    /// Reads a run file with values that take the place of its own, or of those of the files that it names: each by its path from the
+    /// run file on.
+    ///
+    /// # Errors
+    /// As [`Run::read`]; an error in such a value says which it is.
+    ///
+    /// ```
+    /// use stead::FieldOverride;
+    /// let values = ["cell.z_mm=[-602, -402]", "robot.joints[1].stiffness_mnm_per_rad=0.8"];
+    /// let values = values.map(FieldOverride::parse).into_iter().collect::<Result<Vec<_>, _>>()?;
+    /// let run = stead::Run::read_with("configs/caro-2013.toml", values)?;
+    /// assert_eq!(run.problem().cell.position[2].max, -0.402);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn read_with(file: impl AsRef<Path>, values: Vec<FieldOverride>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(format::read_run_with(file.as_ref(), &FieldOverrides(values))?) })
+    }
+
+    /// The same run with a certificate of this gap (relative), whatever the file says of one.
+    #[must_use]
+    pub fn with_certificate(mut self, gap: f64) -> Self {
+        let run = Arc::make_mut(&mut self.run);
+        let settings = run.certificate.unwrap_or(CertificateSettings::new(gap));
+        run.certificate = Some(CertificateSettings { gap, ..settings });
+        self
     }
 
     /// Reads a run file to be placed with a certificate of this gap (relative), whatever the file says of one.

@@ -9,6 +9,9 @@ fn commands(bench: &Bench) -> Vec<Vec<String>> {
     for name in overview.lines().filter_map(|line| line.strip_prefix("  ")).filter_map(|line| line.split(' ').next()) {
         match name {
             "" | "help" | "-h," | "-V," => {}
+            "study" => {
+                ["run", "status"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
+            }
             "identify" => ["fit", "plan"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()])),
             _ => all.push(vec![name.to_owned()]),
         }
@@ -75,7 +78,7 @@ fn the_manual_has_a_page_for_every_command() {
     let bench = Bench::new();
     let ended = bench.stead(&["man", "pages/man1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned()];
+    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned(), "stead-study.1".to_owned()];
     expected.extend(commands(&bench).iter().map(|command| format!("stead-{}.1", command.join("-"))));
     let mut written: Vec<String> = bench.tree("pages/man1").into_keys().collect();
     expected.sort();

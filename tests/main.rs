@@ -26,4 +26,5 @@ mod stability;
 mod standard_output;
 mod starting;
 mod stop;
+mod study;
 mod uncertainty;

@@ -2,14 +2,16 @@
 
 use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
-use super::values::{damping_scale, finite, gap, point, positive, rpm, sector, seed, threads, variant};
+use super::values::{damping_scale, field, finite, gap, point, positive, rpm, sector, seed, shard, threads, variant};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
 use stead_format::Overrides;
+use stead_format::field::FieldOverride;
 use stead_simulation::arm::Variant;
+use stead_study::cases::Shard;
 
 /// Workpiece placement optimiser for robotic machining.
 #[derive(Debug, Parser)]
@@ -30,6 +32,9 @@ pub(super) enum Command {
     /// Show which constraints each posture satisfies at one path point of a given placement
     #[command(after_long_help = help::EXPLAIN)]
     Explain(ExplainOptions),
+    /// Place many variants of a run, cell layouts by the thousand: one file, one table, resumable
+    #[command(subcommand)]
+    Study(StudyCommand),
     /// Compare robots by the circularity of a milled circle: maps, best zones, selection for a task
     #[command(after_long_help = help::ASSESS)]
     Assess(AssessOptions),
@@ -82,7 +87,7 @@ pub(super) enum Starter {
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaOptions {
-    /// Kind of file: run, robot, simulate, assess, identify-fit, identify-plan or compensate
+    /// Kind of file: run, robot, simulate, assess, identify-fit, identify-plan, compensate or study
     pub name: String,
 }
 
@@ -104,6 +109,9 @@ pub(super) struct ManOptions {
 pub(super) struct PlaceOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     /// Folder for the results [default: results/<name of the run file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -143,6 +151,40 @@ pub(super) struct AssessOptions {
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum StudyCommand {
+    /// Do what is left to do of a study, or of a shard of it; goes on where it was after a crash
+    #[command(after_long_help = help::STUDY_RUN)]
+    Run(StudyRunOptions),
+    /// Show how far a study is, shard by shard
+    #[command(after_long_help = help::STUDY_STATUS)]
+    Status(StudyStatusOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct StudyRunOptions {
+    /// Study file (TOML)
+    pub config: PathBuf,
+    /// Do part I of N: the cases I, I + N, and so on [default: all]
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub shard: Option<Shard>,
+    /// Folder for the results [default: results/<name of the study file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads; it does not change the result [default: number of processors]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct StudyStatusOptions {
+    /// Study file (TOML)
+    pub config: PathBuf,
+    /// Folder of the results [default: results/<name of the study file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -189,6 +231,9 @@ pub(super) struct IdentifyFitOptions {
 pub(super) struct ScoreOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: GivenPlacement,
     /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
@@ -203,6 +248,9 @@ pub(super) struct ScoreOptions {
 pub(super) struct ExplainOptions {
     /// Run file (TOML)
     pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Path point, counted from 0 in the order of the task file

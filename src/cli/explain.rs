@@ -5,7 +5,7 @@ use super::{Failure, print, print_json, say_notes};
 use stead::Run;
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
-    let run = Run::read(&options.config)?;
+    let run = Run::read_with(&options.config, options.set.clone())?;
     let placement = options.place.placement();
     let beta = options.beta_deg.to_radians();
     let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;

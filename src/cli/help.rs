@@ -2,8 +2,9 @@
 //! the question that they answer.
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
-const GROUPS: [(&str, &[&str]); 5] = [
+const GROUPS: [(&str, &[&str]); 6] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
+    ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
     ("How round a measured profile is", &["circularity"]),
@@ -43,6 +44,7 @@ Examples:
   stead place configs/caro-2013.toml
   stead place configs/caro-2013.toml --seed 7 --out results/seed-7
   stead place configs/caro-2013.toml --certify 0.5
+  stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8
 
 Files written to the results folder:
   placements.csv                     the four cases: pose, postures, mean and largest deflection
@@ -93,6 +95,38 @@ Files written: none.
 Exit codes:
   0  done, whether or not any posture is feasible
   2  wrong usage or bad input";
+
+pub(super) const STUDY_RUN: &str = "\
+Examples:
+  stead study run configs/study-example.toml
+  stead study run configs/study-example.toml --threads 1 --out results/again
+  stead study run configs/study-example.toml --shard 3/4
+
+Files written to the results folder:
+  study.csv, study.parquet           one row for each case, once every case is done
+  study-timing.csv                   where and how long each case was computed
+  cases/<number>-<digest>/           with keep in the study file: what `stead place` writes
+  study.json, shards/                what is done so far
+
+The command may be killed at any moment: the same command goes on where it was. After an edit of the study file it does what the
+edit has changed. Shards may run at the same time, on many machines, in one folder that they share; the last one writes the table.
+The bytes of study.csv and study.parquet depend on neither threads nor shards.
+
+Exit codes:
+  0  done; cases without a placement are rows with their reason
+  1  a file could not be written; finished cases are kept
+  2  wrong usage, bad input, the folder of another study, or a shard that another process works on
+130  Ctrl-C ended it; finished cases are kept";
+
+pub(super) const STUDY_STATUS: &str = "\
+Example:
+  stead study status configs/study-example.toml
+
+Files written: none.
+
+Exit codes:
+  0  done, whether or not the study is
+  2  wrong usage, bad input, or the folder of another study";
 
 pub(super) const ASSESS: &str = "\
 Examples:

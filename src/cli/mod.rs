@@ -21,6 +21,7 @@ mod schema;
 mod score;
 mod simulate;
 mod stability;
+mod study;
 mod values;
 
 use arguments::{Arguments, Command};
@@ -93,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
+        Command::Study(command) => study::run(&command),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),
         Command::Identify(command) => identify::run(&command),

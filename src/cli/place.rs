@@ -6,10 +6,10 @@ use super::{Failure, files_written, on_threads, out_folder, print, print_json, s
 use stead::{Error, Run};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let mut run = match options.certify {
-        Some(gap) => Run::read_to_certify(&options.config, gap)?,
-        None => Run::read(&options.config)?,
-    };
+    let mut run = Run::read_with(&options.config, options.set.clone())?;
+    if let Some(gap) = options.certify {
+        run = run.with_certificate(gap);
+    }
     if let Some(seed) = options.seed {
         run = run.with_seed(seed);
     }

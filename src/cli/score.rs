@@ -7,7 +7,7 @@ use stead::{Error, Run};
 use stead_report::Folder;
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
-    let run = Run::read(&options.config)?;
+    let run = Run::read_with(&options.config, options.set.clone())?;
     let placement = match options.place.placement_of() {
         Some(results) => run.placement_of(results, options.place.case.unwrap_or(1))?,
         None => options.place.placement(),

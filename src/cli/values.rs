@@ -1,13 +1,20 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
 use stead_assessment::roundness::Sector;
+use stead_format::field::FieldOverride;
 use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
 use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
+use stead_study::cases::Shard;
 
 pub(super) fn variant(text: &str) -> Result<Variant, String> {
     let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
     found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+}
+
+/// A value for a field, by its path.
+pub(super) fn field(text: &str) -> Result<FieldOverride, String> {
+    FieldOverride::parse(text).map_err(|error| error.to_string())
 }
 
 pub(super) fn damping_scale(text: &str) -> Result<f64, String> {
@@ -54,6 +61,11 @@ pub(super) fn quaternion(text: &str) -> Result<f64, String> {
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     const MAX: u64 = i64::MAX as u64;
     text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
+}
+
+/// A part of a study.
+pub(super) fn shard(text: &str) -> Result<Shard, String> {
+    Shard::parse(text).ok_or_else(|| format!("allowed: {}", Shard::ALLOWED))
 }
 
 pub(super) fn case(text: &str) -> Result<u8, String> {

@@ -6,6 +6,7 @@
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
+//! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`] |
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
 //! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
@@ -66,6 +67,10 @@ pub mod simulation_file {}
 pub mod stability {}
 #[doc = include_str!("starting.md")]
 pub mod starting {}
+#[doc = include_str!("study.md")]
+pub mod study {}
+#[doc = include_str!("study_file.md")]
+pub mod study_file {}
 #[doc = include_str!("tables.md")]
 pub mod tables {}
 #[doc = include_str!("troubleshooting.md")]

@@ -119,8 +119,8 @@ impl<'a> Node<'a> {
             None => nearest().map(|known| format!(" (nearest known one: {known})")).unwrap_or_default(),
         };
         let file = self.place.file;
-        Err(InputError::new(file.file(), format!("unknown key{hint}"))
-            .at_line(file.line(key.span().start))
+        Err(file
+            .locate(InputError::new(file.file(), format!("unknown key{hint}")), key.span().start)
             .in_field(path)
             .found(file.quote(value.span()))
             .allowed(keys.join(", "))
@@ -230,9 +230,14 @@ impl<'de, 'a> Deserializer<'de> for Node<'a> {
         Err(self.place.error(problem, &*allowed).into())
     }
 
+    /// Whatever is here is read by other means.
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Problem> {
+        visitor.visit_unit()
+    }
+
     serde::forward_to_deserialize_any! {
         i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char bytes byte_buf unit unit_struct newtype_struct tuple map enum
-        identifier ignored_any
+        identifier
     }
 }
 

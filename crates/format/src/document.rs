@@ -26,12 +26,15 @@
 //! ```
 
 use crate::deserialize::Node;
+use crate::field::{FieldOverride, FieldOverrides, put, shifted};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use crate::place::Place;
+use crate::sources::Sources;
 use crate::toml_file::{TomlFile, shorten};
 use serde::de::DeserializeOwned;
 use std::path::PathBuf;
+use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -43,14 +46,28 @@ pub struct Document<'a> {
 }
 
 /// A file that another one names, read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct NamedFile {
     /// The name as given in the naming file, with forward slashes.
     pub name: String,
     /// The name with the folder of the naming file before it.
     pub file: PathBuf,
     /// What is in it.
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<[u8]>,
+    /// Values that take the place of its own.
+    overrides: FieldOverrides,
+    /// Where it comes from.
+    pub(crate) sources: Sources,
+}
+
+impl NamedFile {
+    /// The file as TOML, with the values that take the place of its own.
+    ///
+    /// # Errors
+    /// As [`TomlFile::new`].
+    pub fn toml(&self) -> Result<TomlFile, InputError> {
+        Ok(TomlFile::new(&self.file, self.bytes.to_vec())?.with_overrides(&self.overrides, self.sources.clone()))
+    }
 }
 
 impl TomlFile {
@@ -68,7 +85,15 @@ impl TomlFile {
                 .allowed("a TOML file")
         })?;
         let span = tree.span();
-        Ok(Document { file: self, root: Spanned::new(span, DeValue::Table(tree.into_inner())) })
+        let mut root = Spanned::new(span, DeValue::Table(tree.into_inner()));
+        for (field, span) in self.overrides() {
+            let fail = |problem: &str| InputError::new(self.file(), problem).set_by(format!("--set {field}"));
+            let value = DeValue::parse(self.piece(span.clone()));
+            let value = value.map_err(|e| fail(&format!("is not readable as TOML: {}", e.message().trim())))?;
+            put(&mut root, field.steps(), shifted(value, span.start))
+                .map_err(|misfit| fail(&misfit.problem).in_field(misfit.field).allowed(misfit.allowed))?;
+        }
+        Ok(Document { file: self, root })
     }
 }
 
@@ -109,9 +134,10 @@ impl Place<'_> {
     /// # Errors
     /// As [`Place::named_file`] and [`TomlFile::new`].
     pub(crate) fn named_toml(&self, role: &'static str) -> Result<(TomlFile, InputFile), InputError> {
-        let NamedFile { name, file, bytes } = self.named_file()?;
-        let input = input_file(role, name, &bytes);
-        Ok((TomlFile::new(&file, bytes)?, input))
+        let file = self.named_file()?;
+        let source = file.toml()?;
+        let input = input_file(role, file.name, source.bytes());
+        Ok((source, input))
     }
 
     /// The file named here, by a path relative to the folder of this one, read.
@@ -121,16 +147,19 @@ impl Place<'_> {
     /// for.
     pub fn named_file(&self) -> Result<NamedFile, InputError> {
         let name: String = self.read()?;
-        let file = match self.file.file().parent() {
+        let set = self.value.and_then(|value| self.file.override_at(value.span().start));
+        let file = match set.and_then(FieldOverride::folder).or(self.file.file().parent()) {
             Some(folder) => folder.join(&name),
             None => PathBuf::from(&name),
         };
-        let bytes = std::fs::read(&file).map_err(|e| {
+        let sources = self.file.sources.clone();
+        let bytes = sources.read(&file).map_err(|e| {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
             self.error(problem, "a readable file, its path relative to the folder of the file that names it")
         })?;
         manifest::check(&file, &bytes, Unlisted::Accepted)?;
-        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes })
+        let overrides = self.file.overrides().iter().filter_map(|(field, _)| field.within(&self.path)).collect();
+        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes, overrides: FieldOverrides(overrides), sources })
     }
 }
 

@@ -19,7 +19,7 @@ pub struct InputFile {
 
 /// What is wrong in a file, where, what was found and what is allowed.
 ///
-/// Printed as `FILE:LINE: FIELD: PROBLEM, found VALUE; allowed: ALLOWED`, leaving out what is not known.
+/// Printed as `FILE:LINE: SET BY: FIELD: PROBLEM, found VALUE; allowed: ALLOWED`, leaving out what is not known.
 /// Boxed where it keeps a `Result` with this error small.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
@@ -27,6 +27,8 @@ pub struct InputError {
     pub file: Box<Path>,
     /// Line in the file, from 1.
     pub line: Option<usize>,
+    /// What put the value there, where it is not the file's own: `--set cell.z_mm=[0, 1]`, or the case of a study.
+    pub set_by: Option<Box<str>>,
     /// Field: dotted key of a TOML file, or column of a CSV file.
     pub field: Option<String>,
     /// What is wrong, as a sentence without its full stop.
@@ -41,12 +43,27 @@ impl InputError {
     /// A problem with a file as a whole.
     pub fn new(file: &Path, problem: impl Into<String>) -> Self {
         let problem: String = problem.into();
-        Self { file: file.into(), line: None, field: None, problem: problem.into(), found: None, allowed: None }
+        Self {
+            file: file.into(),
+            line: None,
+            set_by: None,
+            field: None,
+            problem: problem.into(),
+            found: None,
+            allowed: None,
+        }
     }
 
     /// Adds the line, from 1.
     pub fn at_line(mut self, line: usize) -> Self {
         self.line = Some(line);
+        self
+    }
+
+    /// Adds what put the value there.
+    pub fn set_by(mut self, origin: impl Into<String>) -> Self {
+        let origin: String = origin.into();
+        self.set_by = Some(origin.into());
         self
     }
 
@@ -82,6 +99,9 @@ impl fmt::Display for InputError {
             write!(f, ":{line}")?;
         }
         write!(f, ": ")?;
+        if let Some(origin) = &self.set_by {
+            write!(f, "{origin}: ")?;
+        }
         if let Some(field) = &self.field {
             write!(f, "{field}: ")?;
         }

@@ -21,6 +21,7 @@ pub mod assess;
 pub mod compensate;
 mod deserialize;
 pub mod document;
+pub mod field;
 pub mod identify;
 pub mod inertial;
 pub mod init;
@@ -38,7 +39,9 @@ pub mod schema;
 pub mod shapes;
 mod sheet;
 pub mod simulation;
+mod sources;
 pub mod spindle;
+pub mod study;
 pub mod task;
 #[cfg(test)]
 mod testing;
@@ -52,6 +55,7 @@ pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read
 pub use placed::read_placement_of;
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_robot};
-pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify};
+pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify, read_run_with};
 pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use study::read_study;
 pub use tool::MAX_SPINDLE_SPEED_RPM;

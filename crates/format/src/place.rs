@@ -12,28 +12,28 @@ pub struct Place<'a> {
     pub(crate) file: &'a TomlFile,
     /// `cell.x_mm`, `joints[3].min_deg`; nothing for the table that the whole file is.
     pub(crate) path: String,
-    /// Line of the table or array that the value is in, or would be in.
-    pub(crate) parent_line: usize,
+    /// Where the table or array begins that the value is in, or would be in.
+    pub(crate) parent: usize,
     pub(crate) value: Option<&'a Spanned<DeValue<'a>>>,
 }
 
 impl<'a> Place<'a> {
     pub(crate) fn root(file: &'a TomlFile, value: &'a Spanned<DeValue<'a>>) -> Self {
-        Self { file, path: String::new(), parent_line: 1, value: Some(value) }
+        Self { file, path: String::new(), parent: 0, value: Some(value) }
     }
 
     /// A key of the table that is here.
     pub fn key(&self, key: &str) -> Self {
         let value = self.value.and_then(|value| value.get_ref().as_table()).and_then(|table| table.get(key));
         let path = if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) };
-        Self { file: self.file, path, parent_line: self.line(), value }
+        Self { file: self.file, path, parent: self.byte(), value }
     }
 
     /// An element of the array that is here, counted from 1.
     pub fn element(&self, number: usize) -> Self {
         let array = self.value.and_then(|value| value.get_ref().as_array());
         let value = array.and_then(|array| array.get(number.wrapping_sub(1)));
-        Self { file: self.file, path: format!("{}[{number}]", self.path), parent_line: self.line(), value }
+        Self { file: self.file, path: format!("{}[{number}]", self.path), parent: self.byte(), value }
     }
 
     /// Whether the file has a value here.
@@ -43,10 +43,15 @@ impl<'a> Place<'a> {
 
     /// Line of the value, or of the table that lacks it, from 1.
     pub fn line(&self) -> usize {
+        self.file.line(self.byte())
+    }
+
+    /// Where in the text the value begins, or the table that lacks it.
+    fn byte(&self) -> usize {
         match self.value {
-            Some(_) if self.path.is_empty() => 1,
-            Some(value) => self.file.line(value.span().start),
-            None => self.parent_line,
+            Some(_) if self.path.is_empty() => 0,
+            Some(value) => value.span().start,
+            None => self.parent,
         }
     }
 
@@ -57,7 +62,7 @@ impl<'a> Place<'a> {
 
     /// An error here, with the value found.
     pub fn error(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
-        let error = InputError::new(self.file.file(), problem).at_line(self.line()).in_field(&self.path);
+        let error = self.file.locate(InputError::new(self.file.file(), problem).in_field(&self.path), self.byte());
         error.found_if(self.value.map(|_| self.written())).allowed(allowed)
     }
 

@@ -9,6 +9,7 @@ use crate::identify::IdentificationFile;
 use crate::robot::RobotFile;
 use crate::run::RunFile;
 use crate::simulation::SimulationFile;
+use crate::study::StudyFile;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Map, Value};
@@ -27,7 +28,7 @@ pub struct UnknownSchema {
 type Make = fn() -> Schema;
 
 /// Every kind of file, by the name of its schema.
-const SCHEMAS: [(&str, Make); 7] = [
+const SCHEMAS: [(&str, Make); 8] = [
     ("run", of::<RunFile>),
     ("robot", of::<RobotFile>),
     ("simulate", of::<SimulationFile>),
@@ -35,6 +36,7 @@ const SCHEMAS: [(&str, Make); 7] = [
     ("identify-fit", || requiring(of::<IdentificationFile>(), &["sheet"])),
     ("identify-plan", || requiring(of::<IdentificationFile>(), &["noise_mm", "plan"])),
     ("compensate", of::<CompensationFile>),
+    ("study", of::<StudyFile>),
 ];
 
 /// The names of all schemas.

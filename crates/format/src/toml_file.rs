@@ -1,15 +1,23 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
+use crate::field::{FieldOverride, FieldOverrides};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
+use crate::sources::Sources;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A TOML file read into memory, with its name for messages.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A TOML file read into memory, with its name for messages, and the values that take the place of its own.
+#[derive(Debug, Clone)]
 pub struct TomlFile {
     file: PathBuf,
+    /// The text of the file, and behind it the values that take the place of its own, a line each.
     text: String,
+    /// Length of the text of the file.
+    own: usize,
+    overrides: Vec<(FieldOverride, Range<usize>)>,
+    /// Where files that it names come from.
+    pub(crate) sources: Sources,
 }
 
 /// Longest piece of a file that is quoted in a message, in characters.
@@ -39,7 +47,42 @@ impl TomlFile {
             let error = InputError::new(file, "is not UTF-8 text").at_line(line_after(before)).allowed("UTF-8 text");
             error.found_if(rest.first().map(|byte| format!("byte 0x{byte:02x}")))
         })?;
-        Ok(Self { file: file.to_owned(), text })
+        let own = text.len();
+        Ok(Self { file: file.to_owned(), text, own, overrides: Vec::new(), sources: Sources::disk() })
+    }
+
+    /// The same file with values that take the place of its own and of those of the files that it names, which come from here.
+    pub(crate) fn with_overrides(mut self, overrides: &FieldOverrides, sources: Sources) -> Self {
+        for field in &overrides.0 {
+            self.text.push_str(&format!("\n{} = ", field.path()));
+            let start = self.text.len();
+            self.text.push_str(field.value());
+            self.overrides.push((field.clone(), start..self.text.len()));
+        }
+        Self { sources, ..self }
+    }
+
+    /// The values that take the place of its own, with where they are in the text.
+    pub(crate) fn overrides(&self) -> &[(FieldOverride, Range<usize>)] {
+        &self.overrides
+    }
+
+    /// Whether a value takes the place of one of its own.
+    pub(crate) fn is_overridden(&self) -> bool {
+        !self.overrides.is_empty()
+    }
+
+    /// The override whose value is at a byte of the text, if there it is one.
+    pub(crate) fn override_at(&self, byte: usize) -> Option<&FieldOverride> {
+        self.overrides.iter().find(|(_, value)| value.contains(&byte)).map(|(field, _)| field)
+    }
+
+    /// An error at a byte of the text: at its line, or at the value that takes the place of the file's.
+    pub(crate) fn locate(&self, error: InputError, byte: usize) -> InputError {
+        match self.override_at(byte) {
+            Some(field) => error.set_by(format!("--set {field}")),
+            None => error.at_line(self.line(byte)),
+        }
     }
 
     /// The file as the user named it.
@@ -47,19 +90,24 @@ impl TomlFile {
         &self.file
     }
 
-    /// The text, exactly as read.
+    /// The text of the file, exactly as read.
     pub(crate) fn text(&self) -> &str {
-        &self.text
+        &self.text[..self.own]
     }
 
-    /// The text as bytes, exactly as read.
+    /// A piece of the text, or of the values behind it.
+    pub(crate) fn piece(&self, span: Range<usize>) -> &str {
+        self.text.get(span).unwrap_or_default()
+    }
+
+    /// The text as bytes, exactly as read, and behind it the values that take the place of its own.
     pub fn bytes(&self) -> &[u8] {
         self.text.as_bytes()
     }
 
     /// The text without a first line that names its schema (`#:schema PATH`), which is true in the folder of the file alone.
     pub fn without_schema(&self) -> &str {
-        without_schema(&self.text)
+        without_schema(self.text())
     }
 
     /// The entry of a config among the files that a result came from: its name alone, wherever it lies.

@@ -8,3 +8,4 @@ pub mod monitor;
 pub mod rotation;
 pub mod scalar;
 pub mod simd;
+pub mod unit;

@@ -5,7 +5,6 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::robot::robot_from;
 use crate::scalars::{Whole, Word, words};
-use crate::toml_file::TomlFile;
 use crate::units::{Number, ZeroToTen, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -149,7 +148,7 @@ impl CriterionTable {
         for number in 1..=names.len() {
             let at = at.element(number);
             let file = at.named_file()?;
-            let source = TomlFile::new(&file.file, file.bytes)?;
+            let source = file.toml()?;
             let set = narrowed(robot_from(&source)?)?;
             if let Some(joint) = differs(robot, &set) {
                 let problem = format!("is an arm of another geometry or other limits at joint {joint}");

@@ -12,22 +12,24 @@ mod tables;
 mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
-pub use criterion::{CriterionTable, SegmentTable, WeightsTable};
+pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
 pub use output::OutputTable;
 pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
 
-use crate::document::NamedFile;
+use crate::document::{Document, NamedFile};
+use crate::field::FieldOverrides;
 use crate::input::{InputError, InputFile, input_file};
 use crate::place::Place;
 use crate::robot::{moving_robot_from, robot_from};
+use crate::sources::Sources;
 use crate::spindle::SpindleTable;
-use crate::task::{Imported, parse_csv};
+use crate::task::Imported;
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
-use notes::{direction_note, speed_note, tilt_note};
+use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
 use schemars::JsonSchema;
@@ -120,8 +122,25 @@ pub fn read_run(file: &Path) -> Result<Run, InputError> {
 /// # Errors
 /// Those of [`read_run`].
 pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputError> {
-    let source = TomlFile::read(file)?;
+    read_from(&TomlFile::read(file)?, gap)
+}
+
+/// Reads a run file as [`read_run`] does, with values that take the place of its own or of those of the files that it names.
+///
+/// # Errors
+/// Those of [`read_run`]; an error in such a value says which it is.
+pub fn read_run_with(file: &Path, overrides: &FieldOverrides) -> Result<Run, InputError> {
+    read_from(&TomlFile::read(file)?.with_overrides(overrides, Sources::disk()), None)
+}
+
+/// The run that a file already read asks for.
+pub(crate) fn read_from(source: &TomlFile, gap: Option<f64>) -> Result<Run, InputError> {
     let document = source.parse()?;
+    run_of(source, &document, gap)
+}
+
+/// The run that a parsed file asks for.
+pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64>) -> Result<Run, InputError> {
     let at = document.root();
     let run: RunFile = document.read()?;
     let spindle = match run.stability {
@@ -140,20 +159,21 @@ pub fn read_run_to_certify(file: &Path, gap: Option<f64>) -> Result<Run, InputEr
 
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
     let robot_file = robot_field.named_file()?;
-    let robot_source = TomlFile::new(&robot_file.file, robot_file.bytes)?;
+    let robot_source = robot_file.toml()?;
     let path_stability = match &run.stability {
         Some(table) => Some(table.analysis(&Cutting::required(cutting.as_ref(), &at)?, &at.key("stability"))?),
         None => None,
     };
-    let robot = match &path_stability {
-        Some(analysis) => moving_robot_from(&robot_source, analysis.variant >= Variant::Orthogonal)?,
-        None => robot_from(&robot_source)?,
-    };
+    let moving = path_stability.as_ref().map(|analysis| analysis.variant >= Variant::Orthogonal);
+    let robot = source.sources.robot(&robot_source, moving, |source| match moving {
+        Some(is_orthogonal) => moving_robot_from(source, is_orthogonal),
+        None => robot_from(source),
+    })?;
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let task_file = task_field.named_file()?;
-    let imported = parse_csv(&task_file.file, &task_file.bytes)?;
-    let mut notes: Vec<String> =
-        [tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten().collect();
+    let imported = source.sources.task(&task_file.file, &task_file.bytes)?;
+    let mut notes: Vec<String> = source.overrides().iter().map(|(field, _)| override_note(field)).collect();
+    notes.extend([tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten());
     let mut inputs = vec![
         source.as_config(),
         input_file("robot", robot_file.name, robot_source.bytes()),

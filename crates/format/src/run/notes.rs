@@ -1,10 +1,16 @@
 //! What the user should know about a run though it is not wrong, in sentences.
 
+use crate::field::FieldOverride;
 use stead_model::robot::Robot;
 use stead_model::task::{Task, ToolPath};
 
 /// A feed that misses the plane normal to the tool axis by no more than this is normal to it. deg
 const NORMAL_FEED_DEG: f64 = 0.1;
+
+/// A value that is not that of the files.
+pub(super) fn override_note(field: &FieldOverride) -> String {
+    format!("{} is {} in place of what the files say", field.path(), field.value())
+}
 
 /// The largest tilt of the feed, where there is one.
 pub(super) fn tilt_note(path: &ToolPath, lines: &[usize]) -> Option<String> {

@@ -1,0 +1,85 @@
+//! Where files come from: the disk, or what was read from it once for many runs.
+
+use crate::input::InputError;
+use crate::task::{Imported, parse_csv};
+use crate::toml_file::TomlFile;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use stead_model::robot::Robot;
+
+/// Where files come from. Clones share what was read.
+#[derive(Debug, Clone, Default)]
+pub struct Sources(Option<Arc<Shared>>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    files: Mutex<HashMap<PathBuf, Arc<[u8]>>>,
+    /// Robots of files without values put in place of theirs, and whether with what motion needs.
+    robots: Mutex<HashMap<(PathBuf, Option<bool>), Arc<Robot>>>,
+    tasks: Mutex<HashMap<PathBuf, Arc<Imported>>>,
+}
+
+impl Sources {
+    /// Files are read from the disk whenever they are needed.
+    pub(crate) fn disk() -> Self {
+        Self(None)
+    }
+
+    /// Every file is read and parsed once: all runs see the same bytes, whatever becomes of the file.
+    pub fn shared() -> Self {
+        Self(Some(Arc::default()))
+    }
+
+    /// The bytes of a file.
+    pub(crate) fn read(&self, file: &Path) -> std::io::Result<Arc<[u8]>> {
+        let Some(shared) = &self.0 else { return std::fs::read(file).map(Arc::from) };
+        once(&shared.files, file.to_owned(), || std::fs::read(file).map(Arc::from))
+    }
+
+    /// The robot of a file, read by a function for this kind of use.
+    pub(crate) fn robot(
+        &self,
+        source: &TomlFile,
+        kind: Option<bool>,
+        read: impl FnOnce(&TomlFile) -> Result<Robot, InputError>,
+    ) -> Result<Robot, InputError> {
+        let Some(shared) = self.0.as_ref().filter(|_| !source.is_overridden()) else { return read(source) };
+        let robot = once(&shared.robots, (source.file().to_owned(), kind), || read(source).map(Arc::new))?;
+        Ok(Robot::clone(&robot))
+    }
+
+    /// The tool path of a task file.
+    pub(crate) fn task(&self, file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
+        let Some(shared) = &self.0 else { return parse_csv(file, bytes) };
+        let task = once(&shared.tasks, file.to_owned(), || parse_csv(file, bytes).map(Arc::new))?;
+        Ok(Imported::clone(&task))
+    }
+
+    /// Offers a task under the name of a file that is not on the disk.
+    pub(crate) fn offer(&self, file: &Path, bytes: Vec<u8>, task: Imported) {
+        if let Some(shared) = &self.0 {
+            locked(&shared.files).insert(file.to_owned(), bytes.into());
+            locked(&shared.tasks).insert(file.to_owned(), Arc::new(task));
+        }
+    }
+}
+
+/// What is known under a key, or is made now. It may be made twice, by two threads, to the same value.
+fn once<K: Hash + Eq, T: Clone, E>(
+    map: &Mutex<HashMap<K, T>>,
+    key: K,
+    make: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    if let Some(known) = locked(map).get(&key) {
+        return Ok(known.clone());
+    }
+    let made = make()?;
+    Ok(locked(map).entry(key).or_insert(made).clone())
+}
+
+/// What a mutex guards: nothing in it is ever half made.
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

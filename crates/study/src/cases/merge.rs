@@ -1,0 +1,70 @@
+//! The rows of all shards as one table of results.
+
+use super::StudyError;
+use super::plan::Plan;
+use super::row::result_columns;
+use super::store::{Rows, Store};
+use super::table::{Cell, Column, Kind, Table};
+use std::path::Path;
+
+/// The table of results, one row for each case in the order of their numbers; nothing as long as cases are missing.
+///
+/// # Errors
+/// [`StudyError`]: the folder of another study, or a file that cannot be read.
+pub fn merged(plan: &Plan, folder: &Path) -> Result<Option<Table>, StudyError> {
+    let store = Store::at(folder);
+    store.check(plan)?;
+    Ok(table(plan, &store.rows(&mut Vec::new())?))
+}
+
+/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so.
+///
+/// # Errors
+/// [`StudyError`]: the folder of another study, or a file that cannot be read or written.
+pub fn merge(plan: &Plan, folder: &Path) -> Result<bool, StudyError> {
+    let store = Store::at(folder);
+    store.check(plan)?;
+    let _lock = store.lock()?;
+    let Some(table) = table(plan, &store.rows(&mut Vec::new())?) else { return Ok(false) };
+    store.write("study-timing.csv", &timing(plan, &store)?.to_csv()?)?;
+    store.write("study.parquet", &table.to_parquet()?)?;
+    store.write("study.csv", &table.to_csv()?)?;
+    Ok(true)
+}
+
+fn table(plan: &Plan, rows: &Rows) -> Option<Table> {
+    let columns = plan.columns();
+    let row = |case| Some([plan.cells(case, &columns), rows.get(&case.id)?.clone()].concat());
+    let rows = plan.cases.iter().map(row).collect::<Option<Vec<_>>>()?;
+    Some(Table { columns: columns.into_iter().chain(result_columns()).collect(), rows })
+}
+
+/// The numbers of the cases with the smallest objective, the smallest first.
+pub(super) fn best(plan: &Plan, folder: &Path, count: usize) -> Result<Vec<usize>, StudyError> {
+    let Some(table) = merged(plan, folder)? else { return Ok(Vec::new()) };
+    let Some(objective) = table.column("objective_mm") else { return Ok(Vec::new()) };
+    let figure = |(row, case): (&Vec<Cell>, usize)| match row[objective] {
+        Cell::Number(objective) => Some((objective, case)),
+        _ => None,
+    };
+    let mut placed: Vec<(f64, usize)> = table.rows.iter().zip(1..).filter_map(figure).collect();
+    placed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    Ok(placed.into_iter().take(count).map(|(_, case)| case).collect())
+}
+
+/// How long each case took, where, on how many threads.
+fn timing(plan: &Plan, store: &Store) -> Result<Table, StudyError> {
+    let timings = store.timings()?;
+    let kinds = [("case", Kind::Count), ("seconds", Kind::Number), ("threads", Kind::Count), ("host", Kind::Text)];
+    let rows = plan.cases.iter().map(|case| {
+        let timing = timings.get(&case.id).cloned().unwrap_or_default();
+        vec![
+            Cell::Count(case.case.number as i64),
+            Cell::Number(timing.seconds),
+            Cell::Count(timing.threads as i64),
+            Cell::Text(timing.host),
+        ]
+    });
+    let rows = rows.collect();
+    Ok(Table { columns: kinds.map(|(name, kind)| Column::new(name, kind)).to_vec(), rows })
+}

@@ -1,0 +1,110 @@
+//! All cases of a study in a fixed order.
+
+use super::StudyError;
+use super::row::result_columns;
+use super::table::{Cell, Column, Kind};
+use rayon::prelude::*;
+use stead_format::input::{InputError, sha256};
+use stead_format::study::{AxisValue, Study, StudyCase};
+
+/// A case with what its result is found by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedCase {
+    /// The case.
+    pub case: StudyCase,
+    /// The digest of all that its result depends on.
+    pub id: String,
+    /// Its task.
+    pub task: String,
+}
+
+/// All cases of a study, each read once and found sound.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The study file.
+    pub study: Study,
+    /// The cases, in the order of their numbers.
+    pub cases: Vec<PlannedCase>,
+}
+
+impl Plan {
+    /// Reads every case of a study, side by side, and computes its digest.
+    ///
+    /// # Errors
+    /// [`StudyError::Input`] at the first case that cannot be read, with its combination of values; and for an axis that has the name
+    /// of a column of the results.
+    pub fn of(study: Study) -> Result<Self, StudyError> {
+        let taken =
+            |name: &&String| fixed_columns().iter().chain(&result_columns()).any(|column| column.name == **name);
+        if let Some(name) = study.axes.iter().filter(|name| *name != TASK).find(taken) {
+            let error =
+                InputError::new(study.file(), "an axis has the name of a column of the results").in_field("axis");
+            return Err(error.found(name).allowed("a name of its own").into());
+        }
+        let read = |case: &StudyCase| {
+            let read = study.case(case)?;
+            Ok(PlannedCase { case: case.clone(), id: read.id, task: read.task })
+        };
+        let cases: Vec<Result<PlannedCase, InputError>> = study.cases.par_iter().map(read).collect();
+        let cases = cases.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { study, cases })
+    }
+
+    /// The name of the study: that of its file.
+    pub fn name(&self) -> String {
+        self.study.file().file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// The digest of the plan: of all its cases.
+    pub fn digest(&self) -> String {
+        let ids: String = self.cases.iter().map(|case| format!("{}\n", case.id)).collect();
+        sha256(ids.as_bytes())
+    }
+
+    /// The columns of the table of results that come from the plan.
+    pub(super) fn columns(&self) -> Vec<Column> {
+        let mut columns = fixed_columns();
+        for (index, name) in self.study.axes.iter().enumerate().filter(|(_, name)| *name != TASK) {
+            let is_number = |case: &PlannedCase| matches!(case.case.values[index], AxisValue::Number(_));
+            let kind = if self.cases.iter().all(is_number) { Kind::Number } else { Kind::Text };
+            columns.push(Column::new(name, kind));
+        }
+        columns
+    }
+
+    /// The values under [`Plan::columns`].
+    pub(super) fn cells(&self, planned: &PlannedCase, columns: &[Column]) -> Vec<Cell> {
+        let PlannedCase { case, id, task } = planned;
+        let mut cells = vec![
+            Cell::Count(case.number as i64),
+            Cell::Text(id.clone()),
+            Cell::Text(task.clone()),
+            Cell::Number(case.weight),
+        ];
+        let values = self.study.axes.iter().zip(&case.values).filter(|(name, _)| *name != TASK);
+        let kinds = columns[cells.len()..].iter().map(|column| column.kind);
+        let values: Vec<Cell> = values
+            .zip(kinds)
+            .map(|((_, value), kind)| match (value, kind) {
+                (AxisValue::Number(number), Kind::Number) => Cell::Number(*number),
+                (AxisValue::Number(number), _) => Cell::Text(number.to_string()),
+                (AxisValue::Text(text), _) => Cell::Text(text.clone()),
+            })
+            .collect();
+        cells.extend(values);
+        cells
+    }
+}
+
+/// The axis of the tasks has a column in any case.
+const TASK: &str = "task";
+
+/// The columns that every table of results begins with.
+fn fixed_columns() -> Vec<Column> {
+    vec![
+        Column::new("case", Kind::Count),
+        Column::new("id", Kind::Text),
+        Column::new(TASK, Kind::Text),
+        Column::new("task_weight", Kind::Number),
+    ]
+}

@@ -1,0 +1,182 @@
+//! What is known of a case once it is done: one row of the table of results.
+
+use super::table::{Cell, Column, Kind};
+use crate::run::{Placed, RunError};
+use std::collections::BTreeSet;
+use stead_model::robot::Posture;
+use stead_numerics::unit::Unit;
+use stead_placement::certify::{Certificate, Proof, Status};
+use stead_placement::limit::{ActiveBound, Limit, Side};
+use stead_placement::outcome::{Case, DeflectionFigures, Plan};
+use stead_placement::problem::Problem;
+
+/// Whether a case has a placement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CaseStatus {
+    /// It has.
+    Placed,
+    /// No placement satisfies the constraints.
+    Infeasible,
+    /// The job failed.
+    Failed,
+}
+
+impl CaseStatus {
+    /// The word in the table of results.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Placed => "placed",
+            Self::Infeasible => "infeasible",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// Names of the four cases of a placement, in the order of their numbers.
+const CASES: [&str; 4] = ["best", "best_worst_plan", "worst", "worst_worst_plan"];
+
+/// Columns of what is found, behind the figures of the four cases.
+const FIGURES: [(&str, Kind); 19] = [
+    ("objective_mm", Kind::Number),
+    ("cycle_s", Kind::Number),
+    ("min_inverse_condition", Kind::Number),
+    ("min_joint_margin_deg", Kind::Number),
+    ("min_base_distance_mm", Kind::Number),
+    ("max_feed_mm_per_s", Kind::Number),
+    ("x_mm", Kind::Number),
+    ("y_mm", Kind::Number),
+    ("z_mm", Kind::Number),
+    ("q4", Kind::Number),
+    ("yaw_deg", Kind::Number),
+    ("postures", Kind::Count),
+    ("active_bounds", Kind::Text),
+    ("certificate_best_mm", Kind::Number),
+    ("certificate_best_gap_percent", Kind::Number),
+    ("certificate_best_status", Kind::Text),
+    ("certificate_worst_mm", Kind::Number),
+    ("certificate_worst_gap_percent", Kind::Number),
+    ("certificate_worst_status", Kind::Text),
+];
+
+/// The columns of what is found: status, reason, figures.
+pub fn result_columns() -> Vec<Column> {
+    let mut columns = vec![Column::new("status", Kind::Text), Column::new("reason", Kind::Text)];
+    for case in CASES {
+        for part in ["wall", "axis", "total"] {
+            columns.extend(["mean", "max"].map(|of| Column::new(format!("{case}_{of}_{part}_mm"), Kind::Number)));
+        }
+    }
+    columns.extend(FIGURES.map(|(name, kind)| Column::new(name, kind)));
+    columns
+}
+
+/// The row of a case without a placement.
+pub(super) fn row_without(error: &RunError) -> Vec<Cell> {
+    let status = match error {
+        RunError::Infeasible(_) => CaseStatus::Infeasible,
+        RunError::Stability(_) => CaseStatus::Failed,
+    };
+    let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut row = vec![Cell::Text(status.word().to_owned()), Cell::Text(reason)];
+    row.resize(result_columns().len(), Cell::None);
+    row
+}
+
+/// The row of a case with its placement.
+pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Certificate>) -> Vec<Cell> {
+    let cases = &placed.outcome.cases;
+    let mut row = vec![Cell::Text(CaseStatus::Placed.word().to_owned()), Cell::None];
+    for case in cases.all() {
+        let DeflectionFigures { wall, axis, total, .. } = case.plan.deflection;
+        row.extend(
+            [wall, axis, total]
+                .into_iter()
+                .flat_map(|figures| [figures.mean, figures.max].map(|value| number(Unit::DEFLECTION_MM, Some(value)))),
+        );
+    }
+    row.extend(figures(problem, &cases.best));
+    row.extend(bound(certificate.map(|certificate| certificate.best.as_ref().map_err(ToString::to_string))));
+    row.extend(bound(certificate.map(|certificate| certificate.worst.as_ref().map_err(ToString::to_string))));
+    row
+}
+
+/// What is found of the best placement with its best plan.
+fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
+    let Case { placement, plan, cycle, .. } = best;
+    let postures: BTreeSet<Posture> = plan.postures.iter().copied().collect();
+    let bounds = best.active_bounds.iter().flatten().map(|ActiveBound { side, .. }| name_of(*side));
+    let bounds = bounds.collect::<Vec<_>>().join(" ");
+    let smallest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
+    let inverse_condition = smallest(&mut plan.points.iter().map(|point| point.inverse_condition));
+    let base_distance = smallest(&mut plan.points.iter().map(|point| libm::hypot(point.position.x, point.position.y)));
+    vec![
+        number(Unit::DEFLECTION_MM, Some(plan.objective)),
+        number(Unit::TIME_S, cycle.total()),
+        number(Unit::PLAIN, inverse_condition),
+        number(Unit::ANGLE_DEG, smallest(&mut joint_margins(problem, plan))),
+        number(Unit::PLACE_MM, base_distance),
+        number(Unit::SPEED_MM_PER_S, cycle.feed.highest().map(|limit| limit.feed)),
+        number(Unit::PLACE_MM, Some(placement.x)),
+        number(Unit::PLACE_MM, Some(placement.y)),
+        number(Unit::PLACE_MM, Some(placement.z)),
+        number(Unit::PLAIN, Some(placement.q4())),
+        number(Unit::ANGLE_DEG, Some(placement.yaw)),
+        Cell::Count(postures.len() as i64),
+        if bounds.is_empty() { Cell::None } else { Cell::Text(bounds) },
+    ]
+}
+
+/// How far each joint is from its nearer limit at each point of a plan, what the run file keeps free included. rad
+fn joint_margins<'p>(problem: &'p Problem, plan: &'p Plan) -> impl Iterator<Item = f64> + 'p {
+    let (limits, kept) = (problem.robot.joints(), problem.constraints.joint_margin);
+    plan.points.iter().flat_map(move |point| {
+        point.joints.iter().zip(limits).map(move |(angle, joint)| kept + (angle - joint.min).min(joint.max - angle))
+    })
+}
+
+/// Bound, gap and status of one side of a certificate.
+fn bound(proof: Option<Result<&Proof, String>>) -> [Cell; 3] {
+    match proof {
+        None => [Cell::None, Cell::None, Cell::None],
+        Some(Err(reason)) => [Cell::None, Cell::None, Cell::Text(reason)],
+        Some(Ok(proof)) => [
+            Cell::number(Some(proof.bound_mm())),
+            Cell::number(Some(proof.gap_percent()).filter(|_| proof.is_of_use())),
+            Cell::Text(status_of(proof.bound.status).to_owned()),
+        ],
+    }
+}
+
+/// How a proof ended, in the words of `certificate.json`.
+fn status_of(status: Status) -> &'static str {
+    match status {
+        Status::Reached => "reached",
+        Status::Exhausted => "exhausted",
+        Status::TimeLimit => "time_limit",
+        Status::Memory => "memory",
+        Status::Interrupted => "interrupted",
+    }
+}
+
+/// A number in the unit and with the decimals of the results files.
+fn number(unit: Unit, value: Option<f64>) -> Cell {
+    Cell::number(value.map(|value| unit.number(value)))
+}
+
+/// The name of a bound: `z_max`, `joint_2_min`.
+fn name_of(Side { limit, is_upper }: Side) -> String {
+    let limit = match limit {
+        Limit::CellX => "x".to_owned(),
+        Limit::CellY => "y".to_owned(),
+        Limit::CellZ => "z".to_owned(),
+        Limit::CellYaw => "yaw".to_owned(),
+        Limit::Joint(joint) => format!("joint_{joint}"),
+        Limit::JointStep(joint) => format!("joint_{joint}_step"),
+        Limit::Conditioning => "inverse_condition".to_owned(),
+        Limit::BetaRate => "beta_rate".to_owned(),
+        Limit::SpindleTurn => "spindle_turn".to_owned(),
+        Limit::MaxDeflection => "deflection".to_owned(),
+        Limit::BaseDistance => "base_distance".to_owned(),
+    };
+    format!("{limit}_{}", if is_upper { "max" } else { "min" })
+}

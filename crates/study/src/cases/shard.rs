@@ -1,0 +1,236 @@
+//! A shard of a study, done: cases side by side, each finished one on the disk before the next is begun.
+
+use super::StudyError;
+use super::journal::{self, Entry, Journal, Timing};
+use super::merge::{best, merge};
+use super::plan::{Plan, PlannedCase};
+use super::row::{CaseStatus, result_columns, row_of, row_without};
+use super::store::{Rows, Shard, Store};
+use super::table::Cell;
+use crate::run::{Placed, RunError, place};
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
+use stead_format::Run;
+use stead_format::study::Keep;
+use stead_numerics::monitor::{Monitor, Progress};
+use stead_placement::certify::{Certificate, certify};
+
+/// Puts the files of a case into a folder of its own.
+pub trait Keeping: Sync {
+    /// Whether they are there already.
+    fn is_kept(&self, case: &PlannedCase) -> bool;
+
+    /// Writes them.
+    ///
+    /// # Errors
+    /// What is wrong, as one line.
+    fn keep(
+        &self,
+        case: &PlannedCase,
+        run: &Run,
+        placed: Placed,
+        certificate: Option<Certificate>,
+    ) -> Result<(), String>;
+}
+
+/// Where and how a shard is done.
+#[derive(Clone, Copy)]
+pub struct RunSettings<'s> {
+    /// The folder of the study.
+    pub folder: &'s Path,
+    /// The shard.
+    pub shard: Shard,
+    /// Threads; their number does not change a result.
+    pub threads: usize,
+    /// Where the files of cases go.
+    pub keeping: &'s dyn Keeping,
+}
+
+/// How a run of a shard ended.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Finished {
+    /// Cases of the shard.
+    pub planned: usize,
+    /// Of those, cases that had been finished before.
+    pub before: usize,
+    /// Cases finished now.
+    pub now: usize,
+    /// Whether the caller stopped it before its end.
+    pub interrupted: bool,
+    /// Whether every case of the study is done, so that the table of results was written.
+    pub is_complete: bool,
+    /// What was found wrong in the folder and done again, in sentences.
+    pub problems: Vec<String>,
+}
+
+/// Does what is left to do of a shard, and writes the table of results once every case of the study is done. A stop that the monitor asks
+/// for leaves the finished cases in the journal.
+///
+/// # Errors
+/// [`StudyError`]: the folder of another study, a shard that another process works on, a disk that is full; finished cases are kept.
+pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<Finished, StudyError> {
+    let store = Store::at(settings.folder);
+    store.begin(plan)?;
+    let _lock = store.lock_shard(settings.shard)?;
+    let mut finished = Finished::default();
+    let mut rows = store.rows(&mut finished.problems)?;
+    let mine: Vec<&PlannedCase> = unique(plan.cases.iter().filter(|case| settings.shard.has(case.case.number)));
+    finished.planned = mine.len();
+    let is_done = |case: &PlannedCase, rows: &Rows| {
+        rows.get(&case.id)
+            .is_some_and(|row| plan.study.keep != Keep::All || !is_placed(row) || settings.keeping.is_kept(case))
+    };
+    let pending: Vec<&PlannedCase> = mine.iter().copied().filter(|case| !is_done(case, &rows)).collect();
+    finished.before = mine.len() - pending.len();
+    if !pending.is_empty() {
+        let path = store.of_shard(settings.shard, ".jsonl");
+        let (_, whole) = journal::read(&path, &result_columns())?;
+        let mut journal = Journal::open(&path, whole)?;
+        let is_kept = plan.study.keep == Keep::All;
+        side_by_side(plan, &pending, settings, is_kept, monitor, &mut |entry| {
+            journal.push(&entry)?;
+            rows.insert(entry.id, entry.row);
+            finished.now += 1;
+            let done = finished.before + finished.now;
+            monitor.report(Progress::Steps { stage: "cases", done, total: mine.len() });
+            Ok(())
+        })?;
+    }
+    if monitor.should_stop() {
+        finished.interrupted = finished.before + finished.now < mine.len();
+    }
+    if finished.before + finished.now < mine.len() {
+        return Ok(finished);
+    }
+    let mut timings = store.timings()?;
+    let entry = |case: &&PlannedCase| {
+        let timing = timings.remove(&case.id).unwrap_or_default();
+        rows.get(&case.id).map(|row| Entry { id: case.id.clone(), row: row.clone(), timing })
+    };
+    store.close(settings.shard, mine.iter().filter_map(entry).collect())?;
+    finished.is_complete = merge(plan, settings.folder)?;
+    if finished.is_complete {
+        keep_best(plan, settings, monitor)?;
+    }
+    Ok(finished)
+}
+
+/// The first of all cases with the same digest.
+fn unique<'p>(cases: impl Iterator<Item = &'p PlannedCase>) -> Vec<&'p PlannedCase> {
+    let mut seen = HashSet::new();
+    cases.filter(|case| seen.insert(case.id.as_str())).collect()
+}
+
+fn is_placed(row: &[Cell]) -> bool {
+    row.first() == Some(&Cell::Text(CaseStatus::Placed.word().to_owned()))
+}
+
+/// Places the cases with the smallest objective once more, where their files are to be kept and are not there.
+fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<(), StudyError> {
+    let Keep::Best(count) = plan.study.keep else { return Ok(()) };
+    let cases: HashMap<usize, &PlannedCase> = plan.cases.iter().map(|case| (case.case.number, case)).collect();
+    let missing: Vec<&PlannedCase> = best(plan, settings.folder, count)?
+        .into_iter()
+        .filter_map(|number| cases.get(&number).copied())
+        .filter(|case| !settings.keeping.is_kept(case))
+        .collect();
+    let mut done = 0;
+    side_by_side(plan, &missing, settings, true, monitor, &mut |_| {
+        done += 1;
+        monitor.report(Progress::Steps { stage: "best cases", done, total: missing.len() });
+        Ok(())
+    })
+}
+
+/// Does cases, as many at a time as there are threads, and hands each to a function as it is finished.
+fn side_by_side(
+    plan: &Plan,
+    cases: &[&PlannedCase],
+    settings: &RunSettings<'_>,
+    is_kept: bool,
+    monitor: &Monitor,
+    take: &mut dyn FnMut(Entry) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    let workers = settings.threads.min(cases.len()).max(1);
+    let threads = (settings.threads / workers).max(1);
+    let (next, has_failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (sender, receiver) = mpsc::channel();
+    let quiet = Monitor::silent().with_stop(monitor.stop_handle());
+    let host = host();
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            let (sender, quiet, host, next, has_failed) = (sender.clone(), &quiet, &host, &next, &has_failed);
+            scope.spawn(move || {
+                let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+                    Ok(pool) => pool,
+                    Err(cause) => {
+                        // The receiver is there as long as any worker.
+                        let _ = sender.send(Err(StudyError::Keep(format!("the threads cannot be started: {cause}"))));
+                        return;
+                    }
+                };
+                while !monitor.should_stop() && !has_failed.load(Ordering::SeqCst) {
+                    let Some(case) = cases.get(next.fetch_add(1, Ordering::SeqCst)) else { return };
+                    let begun = Instant::now();
+                    let timing = |seconds| Timing { seconds, threads, host: host.clone() };
+                    let done = pool.install(|| do_case(plan, case, is_kept.then_some(settings.keeping), quiet));
+                    let seconds = begun.elapsed().as_secs_f64();
+                    let row = match done.transpose() {
+                        Some(row) => row,
+                        None => return,
+                    };
+                    let id = case.id.clone();
+                    let _ = sender.send(row.map(|row| Entry { id, row, timing: timing(seconds) }));
+                }
+            });
+        }
+        drop(sender);
+        let mut result = Ok(());
+        for entry in receiver {
+            if result.is_ok() {
+                result = entry.and_then(&mut *take);
+                has_failed.store(result.is_err(), Ordering::SeqCst);
+            }
+        }
+        result
+    })
+}
+
+/// Does one case; nothing where it was stopped.
+fn do_case(
+    plan: &Plan,
+    case: &PlannedCase,
+    keeping: Option<&dyn Keeping>,
+    monitor: &Monitor,
+) -> Result<Option<Vec<Cell>>, StudyError> {
+    let mut read = plan.study.case(&case.case)?.run;
+    read.maps &= keeping.is_some();
+    let placed = match place(&read, monitor) {
+        Err(RunError::Infeasible(nothing)) if nothing.interrupted => return Ok(None),
+        Err(error) => return Ok(Some(row_without(&error))),
+        Ok(placed) if placed.outcome.interrupted => return Ok(None),
+        Ok(placed) => placed,
+    };
+    let certificate = read.certificate.map(|settings| {
+        let cases = &placed.outcome.cases;
+        let found = (&cases.best.placement, cases.best.plan.mean);
+        certify(&read.problem, found, &cases.worst.placement, settings, monitor)
+    });
+    if monitor.should_stop() {
+        return Ok(None);
+    }
+    let row = row_of(&read.problem, &placed, certificate.as_ref());
+    if let Some(keeping) = keeping {
+        keeping.keep(case, &read, placed, certificate).map_err(StudyError::Keep)?;
+    }
+    Ok(Some(row))
+}
+
+/// The name of this machine, where it tells.
+fn host() -> String {
+    let name = std::fs::read_to_string("/proc/sys/kernel/hostname");
+    name.map_or_else(|_| "unknown".to_owned(), |name| name.trim().to_owned())
+}

@@ -1,0 +1,291 @@
+//! The folder of a study: what is where, and which rows are done.
+
+use super::StudyError;
+use super::journal::{self, Entry, Timing};
+use super::lock::Lock;
+use super::plan::Plan;
+use super::row::result_columns;
+use super::table::{Cell, Column, Kind, Table};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// One of several parts of a study: the cases I, I + N, and so on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Shard {
+    /// Its number, from 1.
+    pub index: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Shard {
+    /// The whole study.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// What is allowed, in words.
+    pub const ALLOWED: &'static str = "I/N with whole numbers, N from 1 to 9999 and I from 1 to N";
+
+    /// The shard of a text `I/N`.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (index, count) = text.split_once('/')?;
+        let shard = Self { index: index.parse().ok()?, count: count.parse().ok()? };
+        ((1..=9999).contains(&shard.count) && (1..=shard.count).contains(&shard.index)).then_some(shard)
+    }
+
+    /// Whether a case (from 1) is in it.
+    pub fn has(self, case: usize) -> bool {
+        case % self.count == self.index % self.count
+    }
+
+    fn name(self) -> String {
+        format!("{:04}-of-{:04}", self.index, self.count)
+    }
+
+    /// How the names of its temporary files begin.
+    fn temporary(self) -> String {
+        format!(".stead-{}-", self.name())
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+/// What `study.json` says.
+#[derive(Debug, Serialize, Deserialize)]
+struct Header {
+    format: u32,
+    study: String,
+    cases: usize,
+    /// The digest of all cases.
+    sha256: String,
+}
+
+/// The folder of a study.
+#[derive(Debug, Clone)]
+pub(super) struct Store {
+    folder: PathBuf,
+}
+
+impl Store {
+    pub fn at(folder: &Path) -> Self {
+        Self { folder: folder.to_owned() }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    fn shards(&self) -> PathBuf {
+        self.path("shards")
+    }
+
+    /// A file of a shard, by its ending.
+    pub fn of_shard(&self, shard: Shard, ending: &str) -> PathBuf {
+        self.shards().join(format!("{}{ending}", shard.name()))
+    }
+
+    /// Makes the folder and says in it which study it is of.
+    ///
+    /// # Errors
+    /// [`StudyError::Folder`] for the folder of another study, [`StudyError::File`] where it cannot be written.
+    pub fn begin(&self, plan: &Plan) -> Result<(), StudyError> {
+        let shards = self.shards();
+        self.check(plan)?;
+        std::fs::create_dir_all(&shards).map_err(|cause| StudyError::Folder {
+            path: self.folder.clone(),
+            problem: format!("results cannot be written here: {cause}"),
+            allowed: "a folder that can be made or written to".to_owned(),
+        })?;
+        let _lock = self.lock()?;
+        self.check(plan)?;
+        let header = Header { format: 1, study: plan.name(), cases: plan.cases.len(), sha256: plan.digest() };
+        let mut bytes = serde_json::to_vec_pretty(&header).map_err(|cause| StudyError::format("study.json", &cause))?;
+        bytes.push(b'\n');
+        self.write("study.json", &bytes)
+    }
+
+    /// Refuses the folder of another study. One whose file was edited is the same study.
+    ///
+    /// # Errors
+    /// [`StudyError::Folder`].
+    pub fn check(&self, plan: &Plan) -> Result<(), StudyError> {
+        let path = self.path("study.json");
+        let folder = |problem: String| StudyError::Folder {
+            path: path.clone(),
+            problem,
+            allowed: "a folder of this study, or a new one".to_owned(),
+        };
+        match std::fs::read(&path) {
+            Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(()),
+            Err(cause) => Err(StudyError::read(&path, cause)),
+            Ok(bytes) => {
+                let header: Header = serde_json::from_slice(&bytes)
+                    .map_err(|cause| folder(format!("is no description of a study: {cause}")))?;
+                let is_same = header.study == plan.name();
+                if is_same {
+                    Ok(())
+                } else {
+                    Err(folder(format!("is of another study, {}, and not of {}", header.study, plan.name())))
+                }
+            }
+        }
+    }
+
+    /// The lock of the files that shards have in common.
+    pub fn lock(&self) -> Result<Lock, StudyError> {
+        let lock = Lock::wait(&self.path("study.lock"))?;
+        clean(&self.folder, OF_FOLDER)?;
+        Ok(lock)
+    }
+
+    /// The lock of a shard.
+    pub fn lock_shard(&self, shard: Shard) -> Result<Lock, StudyError> {
+        let lock = Lock::take(&self.of_shard(shard, ".lock"), &format!("shard {shard} of the study"))?;
+        clean(&self.shards(), &shard.temporary())?;
+        Ok(lock)
+    }
+
+    /// Writes a file whole: under another name first.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+        write(&self.path(name), bytes, OF_FOLDER)
+    }
+
+    /// All shards that have left anything, in the order of their names.
+    pub fn found(&self) -> Vec<Shard> {
+        let entries = std::fs::read_dir(self.shards()).into_iter().flatten().flatten();
+        let shard = |name: &str| {
+            let (name, ending) = name.split_at_checked("0001-of-0001".len())?;
+            let (index, count) = name.split_once("-of-")?;
+            let is_result = [".jsonl", ".parquet"].contains(&ending);
+            Shard::parse(&format!("{}/{}", index.parse::<usize>().ok()?, count.parse::<usize>().ok()?))
+                .filter(|_| is_result)
+        };
+        let mut shards: Vec<Shard> = entries.filter_map(|entry| shard(entry.file_name().to_str()?)).collect();
+        shards.sort_by_key(|shard| (shard.count, shard.index));
+        shards.dedup();
+        shards
+    }
+
+    /// What a shard has finished, by the digests of the cases: of its Parquet file and its journal. What is wrong with the Parquet
+    /// file is said.
+    pub fn rows_of(&self, shard: Shard, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
+        let mut rows = Rows::default();
+        let path = self.of_shard(shard, ".parquet");
+        if path.exists() {
+            match Table::from_parquet(&path, &shard_columns()) {
+                Ok(table) => rows.extend(table.rows.into_iter().filter_map(|mut row| match row.remove(0) {
+                    Cell::Text(id) => Some((id, row)),
+                    _ => None,
+                })),
+                Err(problem) => problems.push(format!(
+                    "{}: is no whole Parquet file of this study: {problem}; its cases are done again",
+                    path.display()
+                )),
+            }
+        }
+        let (entries, _) = journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())?;
+        rows.extend(entries.into_iter().map(|entry| (entry.id, entry.row)));
+        Ok(rows)
+    }
+
+    /// What all shards have finished.
+    pub fn rows(&self, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
+        let mut rows = Rows::default();
+        for shard in self.found() {
+            rows.extend(self.rows_of(shard, problems)?);
+        }
+        Ok(rows)
+    }
+
+    /// Makes the files of a shard that is done; its journal goes.
+    pub fn close(&self, shard: Shard, entries: Vec<Entry>) -> Result<(), StudyError> {
+        let timing = self.of_shard(shard, "-timing.csv");
+        write(&timing, &timing_table(&entries).to_csv()?, &shard.temporary())?;
+        let row = |entry: Entry| std::iter::once(Cell::Text(entry.id)).chain(entry.row).collect();
+        let table = Table { columns: shard_columns(), rows: entries.into_iter().map(row).collect() };
+        write(&self.of_shard(shard, ".parquet"), &table.to_parquet()?, &shard.temporary())?;
+        let journal = self.of_shard(shard, ".jsonl");
+        match std::fs::remove_file(&journal) {
+            Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => Err(StudyError::write(&journal, cause)),
+            _ => Ok(()),
+        }
+    }
+
+    /// How long finished cases took, by their digests.
+    pub fn timings(&self) -> Result<HashMap<String, Timing>, StudyError> {
+        let mut timings = HashMap::new();
+        for shard in self.found() {
+            let (entries, _) = journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())?;
+            timings.extend(entries.into_iter().map(|entry| (entry.id, entry.timing)));
+            let Ok(mut reader) = csv::Reader::from_path(self.of_shard(shard, "-timing.csv")) else { continue };
+            for row in reader.records().flatten() {
+                let at = |index: usize| row.get(index).unwrap_or_default();
+                let (seconds, threads) = (at(1).parse().unwrap_or(0.0), at(2).parse().unwrap_or(0));
+                timings.insert(at(0).to_owned(), Timing { seconds, threads, host: at(3).to_owned() });
+            }
+        }
+        Ok(timings)
+    }
+}
+
+/// Rows of results by the digests of their cases.
+pub(super) type Rows = HashMap<String, Vec<Cell>>;
+
+/// The columns of the file of a shard.
+fn shard_columns() -> Vec<Column> {
+    std::iter::once(Column::new("id", Kind::Text)).chain(result_columns()).collect()
+}
+
+fn timing_table(entries: &[Entry]) -> Table {
+    let kinds = [("id", Kind::Text), ("seconds", Kind::Number), ("threads", Kind::Count), ("host", Kind::Text)];
+    let row = |entry: &Entry| {
+        vec![
+            Cell::Text(entry.id.clone()),
+            Cell::Number(entry.timing.seconds),
+            Cell::Count(entry.timing.threads as i64),
+            Cell::Text(entry.timing.host.clone()),
+        ]
+    };
+    let columns = kinds.map(|(name, kind)| Column::new(name, kind)).to_vec();
+    Table { columns, rows: entries.iter().map(row).collect() }
+}
+
+/// Temporary files of the folder itself, which are written under its lock.
+const OF_FOLDER: &str = ".stead-study-";
+/// What temporary files end with.
+const TEMPORARY: &str = ".tmp";
+
+/// Removes the temporary files that a killed process has left, by how their names begin: whoever writes such files holds the lock.
+fn clean(folder: &Path, prefix: &str) -> Result<(), StudyError> {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(TEMPORARY));
+        if is_ours {
+            let path = entry.path();
+            std::fs::remove_file(&path).map_err(|cause| StudyError::write(&path, cause))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes a file whole: under another name in the same folder first, and on the disk before it is renamed.
+fn write(path: &Path, bytes: &[u8], prefix: &str) -> Result<(), StudyError> {
+    let fail = |cause| StudyError::write(path, cause);
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(prefix).suffix(TEMPORARY);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder).map_err(fail)?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(fail)?;
+    file.persist(path).map_err(|error| fail(error.error))?;
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! A table of results: typed columns, as CSV and as Parquet.
+
+use super::StudyError;
+use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
+use parquet::column::writer::ColumnWriter;
+use parquet::data_type::ByteArray;
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::record::Field;
+use parquet::schema::types::Type;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Texts.
+    Text,
+    /// Numbers.
+    Number,
+    /// Whole numbers.
+    Count,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, with the unit.
+    pub name: String,
+    /// What it holds.
+    pub kind: Kind,
+}
+
+impl Column {
+    /// A column of a name.
+    pub fn new(name: impl Into<String>, kind: Kind) -> Self {
+        Self { name: name.into(), kind }
+    }
+}
+
+/// One value of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// No value.
+    None,
+    /// A text.
+    Text(String),
+    /// A finite number.
+    Number(f64),
+    /// A whole number.
+    Count(i64),
+}
+
+impl Cell {
+    /// A number, where there is one that is finite.
+    pub fn number(value: Option<f64>) -> Self {
+        value.filter(|value| value.is_finite()).map_or(Self::None, Self::Number)
+    }
+
+    /// The value as a field of a CSV file: empty where there is none, numbers with as many digits as tell them from all others.
+    pub fn written(&self) -> String {
+        match self {
+            Self::None => String::new(),
+            Self::Text(text) => text.clone(),
+            Self::Number(number) => number.to_string(),
+            Self::Count(count) => count.to_string(),
+        }
+    }
+
+    /// The value of a field of a CSV file, in a column of this kind.
+    pub fn read(text: &str, kind: Kind) -> Option<Self> {
+        Some(match kind {
+            _ if text.is_empty() => Self::None,
+            Kind::Text => Self::Text(text.to_owned()),
+            Kind::Number => Self::Number(text.parse().ok()?),
+            Kind::Count => Self::Count(text.parse().ok()?),
+        })
+    }
+}
+
+/// Rows under columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// The rows, each with a value for each column.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// The table as CSV.
+    ///
+    /// # Errors
+    /// [`StudyError::Format`] when the writer fails.
+    pub fn to_csv(&self) -> Result<Vec<u8>, StudyError> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let fail = |cause: csv::Error| StudyError::format("the table", &cause);
+        writer.write_record(self.columns.iter().map(|column| &column.name)).map_err(fail)?;
+        for row in &self.rows {
+            writer.write_record(row.iter().map(Cell::written)).map_err(fail)?;
+        }
+        writer.into_inner().map_err(|cause| StudyError::format("the table", &cause))
+    }
+
+    /// The table as Parquet, compressed by Snappy; every column is optional.
+    ///
+    /// # Errors
+    /// [`StudyError::Format`] when the writer fails.
+    pub fn to_parquet(&self) -> Result<Vec<u8>, StudyError> {
+        let fail = |cause: ParquetError| StudyError::format("the Parquet file", &cause);
+        let schema = Arc::new(self.schema().map_err(fail)?);
+        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
+        let properties = Arc::new(properties.set_created_by("stead".to_owned()).build());
+        let mut bytes = Vec::new();
+        let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties).map_err(fail)?;
+        let mut group = writer.next_row_group().map_err(fail)?;
+        let mut index = 0;
+        while let Some(mut column) = group.next_column().map_err(fail)? {
+            let cells = || self.rows.iter().map(|row| &row[index]);
+            let levels: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::None)).collect();
+            match column.untyped() {
+                ColumnWriter::ByteArrayColumnWriter(writer) => {
+                    let texts: Vec<ByteArray> = cells()
+                        .filter(|cell| **cell != Cell::None)
+                        .map(|cell| ByteArray::from(cell.written().into_bytes()))
+                        .collect();
+                    writer.write_batch(&texts, Some(&levels), None).map_err(fail)?;
+                }
+                ColumnWriter::DoubleColumnWriter(writer) => {
+                    let numbers = cells().filter_map(|cell| if let Cell::Number(n) = cell { Some(*n) } else { None });
+                    writer.write_batch(&numbers.collect::<Vec<_>>(), Some(&levels), None).map_err(fail)?;
+                }
+                ColumnWriter::Int64ColumnWriter(writer) => {
+                    let counts = cells().filter_map(|cell| if let Cell::Count(n) = cell { Some(*n) } else { None });
+                    writer.write_batch(&counts.collect::<Vec<_>>(), Some(&levels), None).map_err(fail)?;
+                }
+                _ => return Err(StudyError::format("the Parquet file", &"a column of an unknown kind")),
+            }
+            column.close().map_err(fail)?;
+            index += 1;
+        }
+        group.close().map_err(fail)?;
+        writer.close().map_err(fail)?;
+        Ok(bytes)
+    }
+
+    /// The schema of the Parquet file.
+    fn schema(&self) -> Result<Type, ParquetError> {
+        let column = |column: &Column| {
+            let (physical, logical) = match column.kind {
+                Kind::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
+                Kind::Number => (PhysicalType::DOUBLE, None),
+                Kind::Count => (PhysicalType::INT64, None),
+            };
+            let builder = Type::primitive_type_builder(&column.name, physical);
+            builder.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build().map(Arc::new)
+        };
+        let columns = self.columns.iter().map(column).collect::<Result<Vec<_>, _>>()?;
+        Type::group_type_builder("study").with_fields(columns).build()
+    }
+
+    /// Reads a table from a Parquet file with these columns.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub fn from_parquet(file: &Path, columns: &[Column]) -> Result<Self, String> {
+        let words = |cause: ParquetError| cause.to_string();
+        let opened = std::fs::File::open(file).map_err(|cause| cause.to_string())?;
+        let reader = SerializedFileReader::new(opened).map_err(words)?;
+        let fields = reader.metadata().file_metadata().schema_descr();
+        let is_same = fields.num_columns() == columns.len()
+            && fields.columns().iter().zip(columns).all(|(found, column)| found.name() == column.name);
+        if !is_same {
+            return Err("has other columns".to_owned());
+        }
+        let mut rows = Vec::new();
+        for row in reader.get_row_iter(None).map_err(words)? {
+            let row = row.map_err(words)?;
+            rows.push(row.get_column_iter().map(|(_, field)| cell(field)).collect::<Result<Vec<_>, _>>()?);
+        }
+        Ok(Self { columns: columns.to_vec(), rows })
+    }
+
+    /// Where a column is.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+}
+
+fn cell(field: &Field) -> Result<Cell, String> {
+    match field {
+        Field::Null => Ok(Cell::None),
+        Field::Str(text) => Ok(Cell::Text(text.clone())),
+        Field::Double(number) => Ok(Cell::Number(*number)),
+        Field::Long(count) => Ok(Cell::Count(*count)),
+        _ => Err("has a value of an unknown kind".to_owned()),
+    }
+}

@@ -1,0 +1,20 @@
+//! `stead study`: many cases of one run.
+
+mod run;
+mod status;
+
+use super::Failure;
+use super::arguments::StudyCommand;
+use std::path::{Path, PathBuf};
+
+pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
+    match command {
+        StudyCommand::Run(options) => run::run(options),
+        StudyCommand::Status(options) => status::run(options),
+    }
+}
+
+/// The folder asked for, or `results/` and the name of the study.
+fn folder(asked: Option<&Path>, config: &Path) -> PathBuf {
+    asked.map_or_else(|| Path::new("results").join(config.file_stem().unwrap_or_default()), Path::to_owned)
+}

@@ -1,0 +1,36 @@
+//! `stead study status`: how far a study is.
+
+use super::folder;
+use crate::cli::arguments::StudyStatusOptions;
+use crate::cli::{Failure, on_threads, print, say};
+use std::fmt::Write;
+use stead::Study;
+
+pub(super) fn run(options: &StudyStatusOptions) -> Result<(), Failure> {
+    let study = on_threads(None, || Study::read(&options.config))??;
+    let status = study.status(folder(options.out.as_deref(), &options.config))?;
+    for problem in &status.problems {
+        say(&format!("warning: {problem}"));
+    }
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{} of {} cases done, {} infeasible, {} failed",
+        status.done, status.planned, status.infeasible, status.failed
+    );
+    if !status.shards.is_empty() {
+        let _ = writeln!(text, "\n{:>9} {:>8} {:>8} {:>18}  state", "shard", "planned", "done", "without placement");
+    }
+    for shard in &status.shards {
+        let state = match (shard.is_running, shard.done == shard.planned) {
+            (true, _) => "running",
+            (false, true) => "done",
+            (false, false) if shard.done == 0 => "",
+            (false, false) => "stopped",
+        };
+        let name = shard.shard.to_string();
+        let _ = writeln!(text, "{name:>9} {:>8} {:>8} {:>18}  {state}", shard.planned, shard.done, shard.without);
+    }
+    print(text.as_bytes())
+}

@@ -1,0 +1,125 @@
+//! Studies: many cases of one run.
+
+use crate::{Error, Monitor};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stead_format as format;
+use stead_format::manifest::{self, Unlisted};
+use stead_placement::certify::Certificate;
+use stead_report::Folder;
+use stead_report::certificate::write_certificate;
+use stead_report::document::bytes;
+use stead_report::placement::{Context, summary_json, write_placement};
+use stead_study::Placed;
+use stead_study::cases::{self, Finished, Keeping, Plan, PlannedCase, RunSettings, Shard, StudyStatus, Table};
+
+/// A study file with all its cases, read and checked.
+///
+/// ```
+/// let study = stead::Study::read("configs/study-example.toml")?;
+/// assert_eq!(study.cases().len(), 12);
+/// # Ok::<(), stead::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Study {
+    plan: Arc<Plan>,
+}
+
+impl Study {
+    /// Reads a study file, the run file that it varies, and every case once.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed, and where a case is wrong with its combination of
+    /// values.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { plan: Arc::new(Plan::of(format::read_study(file.as_ref())?)?) })
+    }
+
+    /// All cases, in the order of their numbers.
+    pub fn cases(&self) -> &[PlannedCase] {
+        &self.plan.cases
+    }
+
+    /// Does what is left to do of a shard, on the threads of the rayon pool that it is called in, and writes the table of results once
+    /// every case is done. It may be killed at any moment and goes on where it was; a stop that the monitor asks for is answered soon.
+    ///
+    /// # Errors
+    /// [`Error::Study`]: the folder of another study, a shard that another process works on, a disk that is full; finished cases are
+    /// kept.
+    ///
+    /// ```no_run
+    /// use stead::{Monitor, Shard, Study};
+    /// let study = Study::read("configs/study-example.toml")?;
+    /// let finished = study.run("results/study-example", Shard::WHOLE, &Monitor::silent())?;
+    /// assert!(finished.is_complete);
+    /// # Ok::<(), stead::Error>(())
+    /// ```
+    pub fn run(&self, folder: impl AsRef<Path>, shard: Shard, monitor: &Monitor) -> Result<Finished, Error> {
+        let folder = folder.as_ref();
+        let keeping = CaseFolders { folder: folder.join("cases") };
+        let threads = rayon::current_num_threads();
+        Ok(cases::run(&self.plan, &RunSettings { folder, shard, threads, keeping: &keeping }, monitor)?)
+    }
+
+    /// How far the study is in a folder, which need not be there.
+    ///
+    /// # Errors
+    /// [`Error::Study`]: the folder of another study, or a file that cannot be read.
+    pub fn status(&self, folder: impl AsRef<Path>) -> Result<StudyStatus, Error> {
+        Ok(cases::status(&self.plan, folder.as_ref())?)
+    }
+
+    /// The table of results, one row for each case; nothing as long as cases are missing.
+    ///
+    /// # Errors
+    /// As [`Study::status`].
+    pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
+        Ok(cases::merged(&self.plan, folder.as_ref())?)
+    }
+
+    /// Writes `study.csv`, `study.parquet` and `study-timing.csv` from the shards where every case is done, and says whether it is so.
+    ///
+    /// # Errors
+    /// As [`Study::status`], and where a file cannot be written.
+    pub fn merge(&self, folder: impl AsRef<Path>) -> Result<bool, Error> {
+        Ok(cases::merge(&self.plan, folder.as_ref())?)
+    }
+}
+
+/// The folders of cases, each with what `stead place` leaves.
+struct CaseFolders {
+    folder: PathBuf,
+}
+
+impl CaseFolders {
+    fn path(&self, case: &PlannedCase) -> PathBuf {
+        self.folder.join(format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default()))
+    }
+}
+
+impl Keeping for CaseFolders {
+    fn is_kept(&self, case: &PlannedCase) -> bool {
+        let file = self.path(case).join("placements.csv");
+        std::fs::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
+    }
+
+    fn keep(
+        &self,
+        case: &PlannedCase,
+        run: &format::Run,
+        placed: Placed,
+        certificate: Option<Certificate>,
+    ) -> Result<(), String> {
+        let Placed { outcome, stability } = placed;
+        let mut context = Context { stability, warnings: outcome.warnings.clone(), ..Context::new(run, run.search) };
+        context.notes.extend(outcome.notes.iter().cloned());
+        let folder = Folder::create(&self.path(case)).map_err(|error| error.to_string())?;
+        write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;
+        if let Some(certificate) = &certificate {
+            let summary = bytes(&summary_json(&run.problem, &outcome, &context));
+            write_certificate(&folder, &run.problem, certificate, &run.inputs, &summary)
+                .map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+}
