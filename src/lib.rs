@@ -70,5 +70,5 @@ pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
 pub use stead_report::document::Timing;
 pub use stead_report::{Folder, ReportError};
-pub use stead_study::cases::{Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table};
+pub use stead_study::cases::{Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table, slurm_script};
 pub use study::Study;

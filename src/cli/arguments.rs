@@ -2,7 +2,9 @@
 
 use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
-use super::values::{damping_scale, field, finite, gap, point, positive, rpm, sector, seed, shard, threads, variant};
+use super::values::{
+    damping_scale, field, finite, gap, point, positive, rpm, sector, seed, shard, shards, threads, variant,
+};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -158,6 +160,9 @@ pub(super) enum StudyCommand {
     /// Do what is left to do of a study, or of a shard of it; goes on where it was after a crash
     #[command(after_long_help = help::STUDY_RUN)]
     Run(StudyRunOptions),
+    /// Print the script of a Slurm array that does a study, one shard an element
+    #[command(after_long_help = help::STUDY_SLURM)]
+    Slurm(StudySlurmOptions),
     /// Show how far a study is, shard by shard
     #[command(after_long_help = help::STUDY_STATUS)]
     Status(StudyStatusOptions),
@@ -176,6 +181,21 @@ pub(super) struct StudyRunOptions {
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct StudySlurmOptions {
+    /// Study file (TOML)
+    pub config: PathBuf,
+    /// Elements of the array, each with one shard of the study
+    #[arg(long, value_name = "N", value_parser = shards, allow_negative_numbers = true)]
+    pub shards: usize,
+    /// Processors and threads of each element
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads, allow_negative_numbers = true)]
+    pub threads: usize,
+    /// Folder for the results, which all nodes see [default: results/<name of the study file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -118,6 +118,16 @@ Exit codes:
   2  wrong usage, bad input, the folder of another study, or a shard that another process works on
 130  Ctrl-C ended it; finished cases are kept";
 
+pub(super) const STUDY_SLURM: &str = "\
+Example:
+  stead study slurm big.toml --shards 40 --threads 4 > big.sh && sbatch big.sh
+
+Files written: none. An element that is killed or requeued goes on where it was; the last one writes the table.
+
+Exit codes:
+  0  done
+  2  wrong usage, or bad input";
+
 pub(super) const STUDY_STATUS: &str = "\
 Example:
   stead study status configs/study-example.toml

@@ -68,6 +68,16 @@ pub(super) fn shard(text: &str) -> Result<Shard, String> {
     Shard::parse(text).ok_or_else(|| format!("allowed: {}", Shard::ALLOWED))
 }
 
+/// Slurm's largest array, as it is set up at first.
+const MAX_SHARDS: usize = 1000;
+
+pub(super) fn shards(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=MAX_SHARDS).contains(n))
+        .ok_or_else(|| format!("allowed: a whole number from 1 to {MAX_SHARDS}"))
+}
+
 pub(super) fn case(text: &str) -> Result<u8, String> {
     text.parse().ok().filter(|case| [1, 3].contains(case)).ok_or_else(|| "allowed: 1 or 3".to_owned())
 }

@@ -1,6 +1,7 @@
 //! `stead study`: many cases of one run.
 
 mod run;
+mod slurm;
 mod status;
 
 use super::Failure;
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
     match command {
         StudyCommand::Run(options) => run::run(options),
+        StudyCommand::Slurm(options) => slurm::run(options),
         StudyCommand::Status(options) => status::run(options),
     }
 }

@@ -13,6 +13,7 @@ mod plan;
 mod progress;
 mod row;
 mod shard;
+mod slurm;
 mod store;
 mod table;
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub use plan::{Plan, PlannedCase};
 pub use progress::{ShardStatus, StudyStatus, status};
 pub use row::{CaseStatus, result_columns};
 pub use shard::{Finished, Keeping, RunSettings, run};
+pub use slurm::slurm_script;
 pub use store::Shard;
 pub use table::{Cell, Column, Kind, Table};
 
