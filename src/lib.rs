@@ -70,5 +70,6 @@ pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
 pub use stead_report::document::Timing;
 pub use stead_report::{Folder, ReportError};
+pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
 pub use stead_study::cases::{Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table, slurm_script};
-pub use study::Study;
+pub use study::{Study, StudyReport};

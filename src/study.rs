@@ -1,6 +1,8 @@
 //! Studies: many cases of one run.
 
+use crate::result::{Report, result};
 use crate::{Error, Monitor};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_format as format;
@@ -10,8 +12,12 @@ use stead_report::Folder;
 use stead_report::certificate::write_certificate;
 use stead_report::document::bytes;
 use stead_report::placement::{Context, summary_json, write_placement};
+use stead_report::study::{study_json, study_text, write_study};
 use stead_study::Placed;
-use stead_study::cases::{self, Finished, Keeping, Plan, PlannedCase, RunSettings, Shard, StudyStatus, Table};
+use stead_study::analysis::{Analysis, Question};
+use stead_study::cases::{
+    self, Finished, Keeping, Plan, PlannedCase, RunSettings, Shard, StudyError, StudyStatus, Table,
+};
 
 /// A study file with all its cases, read and checked.
 ///
@@ -84,7 +90,66 @@ impl Study {
     pub fn merge(&self, folder: impl AsRef<Path>) -> Result<bool, Error> {
         Ok(cases::merge(&self.plan, folder.as_ref())?)
     }
+
+    /// What a study that is done says: which layout is best, which compromises there are, what each axis does, and what failed and why.
+    ///
+    /// # Errors
+    /// As [`Study::status`]; [`Error::Study`] too where cases are missing; [`Error::Argument`] for a column or an axis that is not there,
+    /// or a column without numbers.
+    ///
+    /// ```no_run
+    /// use stead::{Study, StudyQuestion};
+    /// let study = Study::read("configs/study-example.toml")?;
+    /// let question = StudyQuestion { by: Some("best_max_total_mm".to_owned()), ..StudyQuestion::default() };
+    /// let report = study.report("results/study-example", &question)?;
+    /// println!("{report}");
+    /// report.write("results/study-example")?;
+    /// # Ok::<(), stead::Error>(())
+    /// ```
+    pub fn report(&self, folder: impl AsRef<Path>, question: &Question) -> Result<StudyReport, Error> {
+        let folder = folder.as_ref();
+        let Some(table) = self.results(folder)? else {
+            let StudyStatus { done, planned, .. } = self.status(folder)?;
+            return Err(Error::Study(StudyError::Folder {
+                path: folder.to_owned(),
+                problem: format!("only {done} of {planned} cases of the study are done"),
+                allowed: "the folder of a study that is done (stead study run)".to_owned(),
+            }));
+        };
+        let analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
+        Ok(StudyReport { plan: Arc::clone(&self.plan), analysis })
+    }
 }
+
+/// What a study says.
+#[derive(Debug, Clone)]
+pub struct StudyReport {
+    plan: Arc<Plan>,
+    analysis: Analysis,
+}
+
+impl StudyReport {
+    /// Ranking, front, effects, map and failures.
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
+    }
+}
+
+impl Report for StudyReport {
+    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.plan.study.inputs)?)
+    }
+
+    fn document(&self) -> Value {
+        study_json(&self.plan.name(), &self.analysis, &self.plan.study.inputs)
+    }
+
+    fn table(&self) -> String {
+        study_text(&self.plan.name(), &self.analysis)
+    }
+}
+
+result!(StudyReport);
 
 /// The folders of cases, each with what `stead place` leaves.
 struct CaseFolders {

@@ -10,7 +10,9 @@ fn commands(bench: &Bench) -> Vec<Vec<String>> {
         match name {
             "" | "help" | "-h," | "-V," => {}
             "study" => {
-                ["run", "status"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
+                ["run", "status", "report"]
+                    .iter()
+                    .for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
             }
             "identify" => ["fit", "plan"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()])),
             _ => all.push(vec![name.to_owned()]),

@@ -3,7 +3,7 @@
 use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
 use super::values::{
-    damping_scale, field, finite, gap, point, positive, rpm, sector, seed, shard, shards, threads, variant,
+    damping_scale, field, finite, gap, noise, point, positive, rpm, sector, seed, shard, shards, threads, variant,
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -166,6 +166,33 @@ pub(super) enum StudyCommand {
     /// Show how far a study is, shard by shard
     #[command(after_long_help = help::STUDY_STATUS)]
     Status(StudyStatusOptions),
+    /// Rank the layouts of a study that is done, with fronts, effects and pictures
+    #[command(after_long_help = help::STUDY_REPORT)]
+    Report(StudyReportOptions),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct StudyReportOptions {
+    /// Study file (TOML)
+    pub config: PathBuf,
+    /// Folder of the results, which the report goes to too [default: results/<name of the study file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Column of study.csv to rank by, with :min or :max behind it to say which is better [default: objective_mm]
+    #[arg(long, value_name = "COLUMN")]
+    pub by: Option<String>,
+    /// Columns of the front [default: best_mean_total_mm,cycle_s]
+    #[arg(long, value_name = "COLUMN,COLUMN", value_delimiter = ',')]
+    pub front: Option<Vec<String>>,
+    /// Axes of the map [default: the two with the largest effects]
+    #[arg(long, value_name = "AXIS,AXIS", value_delimiter = ',')]
+    pub map: Option<Vec<String>>,
+    /// Difference in per cent up to which figures of searches are ties
+    #[arg(long, value_name = "N", default_value = "0.2", value_parser = noise, allow_hyphen_values = true)]
+    pub noise_percent: f64,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -138,6 +138,24 @@ Exit codes:
   0  done, whether or not the study is
   2  wrong usage, bad input, or the folder of another study";
 
+pub(super) const STUDY_REPORT: &str = "\
+Examples:
+  stead study report configs/study-example.toml
+  stead study report configs/study-example.toml --by max_feed_mm_per_s:max
+  stead study report configs/study-example.toml --front best_mean_total_mm,cycle_s,min_joint_margin_deg
+
+Files written to the folder of the study:
+  study-ranking.csv                  every layout with its rank; ties share one
+  study-front.{csv,svg}              layouts that no other is better than in every column of the front
+  study-effects.{csv,svg}            what each axis does to the column of the ranking
+  study-map.svg                      that column over two axes
+  study-report.json                  what --json prints
+
+Exit codes:
+  0  done
+  1  a file could not be written
+  2  wrong usage, bad input, or a study that is not done";
+
 pub(super) const ASSESS: &str = "\
 Examples:
   stead assess configs/klimchik-2017.toml

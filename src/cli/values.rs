@@ -63,6 +63,12 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
 }
 
+/// Per cent in, a share out.
+pub(super) fn noise(text: &str) -> Result<f64, String> {
+    let percent = finite(text).ok().filter(|percent| (0.0..100.0).contains(percent));
+    percent.map(|percent| percent / 100.0).ok_or_else(|| "allowed: a number from 0 to below 100".to_owned())
+}
+
 /// A part of a study.
 pub(super) fn shard(text: &str) -> Result<Shard, String> {
     Shard::parse(text).ok_or_else(|| format!("allowed: {}", Shard::ALLOWED))

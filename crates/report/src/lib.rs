@@ -17,6 +17,7 @@ pub mod picture;
 pub mod placement;
 pub mod simulation;
 pub mod stability;
+pub mod study;
 pub mod units;
 
 #[cfg(test)]

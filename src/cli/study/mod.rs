@@ -1,5 +1,6 @@
 //! `stead study`: many cases of one run.
 
+mod report;
 mod run;
 mod slurm;
 mod status;
@@ -13,6 +14,7 @@ pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
         StudyCommand::Run(options) => run::run(options),
         StudyCommand::Slurm(options) => slurm::run(options),
         StudyCommand::Status(options) => status::run(options),
+        StudyCommand::Report(options) => report::run(options),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::canvas::{Canvas, Place, TextStyle};
 use super::colour::{GRID, INK};
 use crate::units::fixed;
+use std::borrow::Cow;
 
 /// A linear scale from numbers to pixels.
 #[derive(Clone, Copy)]
@@ -54,12 +55,14 @@ pub(super) struct Ticks {
     pub decimals: usize,
     /// Whether the labels are powers of ten with the numbers as exponents.
     pub of_ten: bool,
+    /// Labels in place of numbers: that of 0, of 1, and so on.
+    pub names: Vec<String>,
 }
 
 impl Ticks {
     /// No ticks at all.
     pub fn none() -> Self {
-        Self { values: vec![], decimals: 0, of_ten: false }
+        Self { values: vec![], decimals: 0, of_ten: false, names: vec![] }
     }
 
     /// Multiples of 1, 2 or 5 times a power of ten, at most `max` of them.
@@ -73,13 +76,13 @@ impl Ticks {
                 }
             }
         }
-        Self { values: vec![scale.from, scale.to], decimals: 0, of_ten: false }
+        Self { values: vec![scale.from, scale.to], ..Self::none() }
     }
 
     /// Multiples of a step.
     pub fn every(scale: &Scale, step: f64, decimals: usize) -> Self {
         let (first, last) = ((scale.from / step - 1e-9).ceil() as i64, (scale.to / step + 1e-9).floor() as i64);
-        Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals, of_ten: false }
+        Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals, ..Self::none() }
     }
 
     /// Whole exponents on a scale of common logarithms.
@@ -87,8 +90,16 @@ impl Ticks {
         Self { of_ten: true, ..Self::every(scale, 1.0, 0) }
     }
 
+    /// Names at 0, 1, 2 and so on.
+    pub fn named(names: Vec<String>) -> Self {
+        Self { values: (0..names.len()).map(|k| k as f64).collect(), names, ..Self::none() }
+    }
+
     /// The label of a tick.
     pub fn label(&self, value: f64) -> String {
+        if let Some(name) = self.names.get(value as usize) {
+            return name.clone();
+        }
         if self.of_ten {
             let decimals = (-value).max(0.0).round() as usize;
             return fixed(libm::pow(10.0, value), decimals);
@@ -108,9 +119,9 @@ pub(super) struct Panel {
     /// Ticks of the vertical axis.
     pub y_ticks: Ticks,
     /// Label of the horizontal axis, with its unit.
-    pub x_label: &'static str,
+    pub x_label: Cow<'static, str>,
     /// Label of the vertical axis, with its unit.
-    pub y_label: &'static str,
+    pub y_label: Cow<'static, str>,
 }
 
 /// The smallest and the largest of some numbers and two given ones.
@@ -130,7 +141,8 @@ pub(super) fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Windo
 
 impl Panel {
     /// A panel with at most so many ticks at round numbers along each axis.
-    pub fn new(x: Scale, y: Scale, ticks: [usize; 2], [x_label, y_label]: [&'static str; 2]) -> Self {
+    pub fn new(x: Scale, y: Scale, ticks: [usize; 2], labels: [impl Into<Cow<'static, str>>; 2]) -> Self {
+        let [x_label, y_label] = labels.map(Into::into);
         Self { x_ticks: Ticks::round(&x, ticks[0]), y_ticks: Ticks::round(&y, ticks[1]), x, y, x_label, y_label }
     }
 
@@ -170,8 +182,8 @@ impl Panel {
             canvas.text(&label, (left - 8, y), style.ending());
         }
         let style = TextStyle::new(13.0).centred();
-        canvas.text(self.x_label, ((left + right) / 2, bottom + 34), style);
-        canvas.text(self.y_label, (left - 8 - widest - 14, (top + bottom) / 2), style.upwards())
+        canvas.text(&self.x_label, ((left + right) / 2, bottom + 34), style);
+        canvas.text(&self.y_label, (left - 8 - widest - 14, (top + bottom) / 2), style.upwards())
     }
 }
 
@@ -191,5 +203,8 @@ mod tests {
         let ticks = Ticks::decades(&Scale::new(-2.3, 1.7, 0, 100));
         let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
         assert_eq!(labels, ["0.01", "0.1", "1", "10"]);
+        let ticks = Ticks::named(["low", "high"].map(str::to_owned).to_vec());
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["low", "high"]);
     }
 }

@@ -131,7 +131,7 @@ impl<'a> Picture<'a> {
             _ => Ticks::round(&y, 7),
         };
         let [x_label, y_label] = self.view.labels;
-        let panel = Panel { x, y, x_ticks, y_ticks, x_label, y_label };
+        let panel = Panel { x, y, x_ticks, y_ticks, x_label: x_label.into(), y_label: y_label.into() };
         let Some(found) = self.found(elbow) else { return panel.draw_frame(canvas) };
         let name = match elbow {
             Elbow::Up => "Elbow up",
@@ -177,7 +177,7 @@ impl<'a> Picture<'a> {
             scale: Scale::new(range.from, range.to, self.bottom, TOP),
             labels: labelled,
             beyond: (largest > range.to).then(|| figures(largest)),
-            title: "circularity (mm)",
+            title: "circularity (mm)".into(),
             gap: 14,
         }
         .draw(canvas);

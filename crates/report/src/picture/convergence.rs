@@ -36,7 +36,7 @@ fn search(canvas: &mut Canvas, sense: Sense, generations: &[&Generation], refine
     let x = Scale::new(0.0, last as f64, 85, 880);
     let y = Scale::new((low - margin).max(0.0), high + margin, bottom, top);
     let mut chart = LineChart::new(Panel::new(x, y, [12, 8], ["generation", "mean deflection (mm)"]));
-    chart.marks.push(Mark::Heading(title, colour));
+    chart.marks.push(Mark::Heading(title.into(), colour));
     chart.marks.push(Mark::Dashed(refined * 1e3, BLACK));
     for (colour, value) in
         [(BLUE, (|generation| generation.average) as fn(&Generation) -> Option<f64>), (colour, |state| state.best)]

@@ -57,8 +57,14 @@ impl<'a> Picture<'a> {
         let x = Scale::new(-0.5, points as f64 - 0.5, LEFT, RIGHT);
         let y = Scale::new(-180.0, 180.0, BOTTOM, TOP);
         let (x_ticks, y_ticks) = (Ticks::round(&x, 12), Ticks::every(&y, 45.0, 0));
-        let panel =
-            Panel { x, y, x_ticks, y_ticks, x_label: "path point", y_label: "angle β about the tool axis (deg)" };
+        let panel = Panel {
+            x,
+            y,
+            x_ticks,
+            y_ticks,
+            x_label: "path point".into(),
+            y_label: "angle β about the tool axis (deg)".into(),
+        };
         let mut ascending: Vec<f64> = scores(map).collect();
         ascending.sort_by(f64::total_cmp);
         let colours = ColourRange::below_peaks(0.0, &ascending);
@@ -156,7 +162,7 @@ impl<'a> Picture<'a> {
             scale,
             labels: ColourBar::labels(&Ticks::round(&scale, 9)),
             beyond: (largest > self.colours.to).then(|| fixed(largest * 1e3, 2)),
-            title: "deflection normal to the feed (mm)",
+            title: "deflection normal to the feed (mm)".into(),
             gap: 16,
         }
         .draw(canvas);

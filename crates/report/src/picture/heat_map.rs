@@ -4,6 +4,7 @@ use super::axes::{Scale, Ticks};
 use super::canvas::{Canvas, Pixel, TextStyle};
 use super::colour::{Colour, INK, LEVELS, WHITE, viridis};
 use super::merged_cells::merged_cells;
+use std::borrow::Cow;
 
 /// A grid of cells, each with a content that has a colour, or with none.
 pub(super) struct HeatMap<T> {
@@ -89,7 +90,7 @@ pub(super) struct ColourBar {
     /// The largest value, where it is beyond the scale.
     pub beyond: Option<String>,
     /// What the values are, with their unit.
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     /// Space between labels and title. Pixels
     pub gap: i32,
 }
@@ -121,7 +122,7 @@ impl ColourBar {
             canvas.text(label, (right + 8, y), style);
         }
         let place = (right + 8 + widest + self.gap, (top + bottom) / 2);
-        canvas.text(self.title, place, TextStyle::new(13.0).centred().upwards());
+        canvas.text(&self.title, place, TextStyle::new(13.0).centred().upwards());
     }
 }
 

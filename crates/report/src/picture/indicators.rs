@@ -136,7 +136,7 @@ fn draw_row(canvas: &mut Canvas, robots: &[RobotResult], (top, room): Pixel, kno
     let y = Scale::new(0.0, FULL, top + ROWS[1], top);
     let (x_ticks, y_ticks) = (Ticks::none(), Ticks::every(&y, 0.2, 1));
     let y_label = "relative to the best robot, which has 1";
-    let panel = Panel { x, y, x_ticks, y_ticks, x_label: "robot", y_label };
+    let panel = Panel { x, y, x_ticks, y_ticks, x_label: "robot".into(), y_label: y_label.into() };
     panel.draw_grid(canvas);
     for (index, robot) in robots.iter().enumerate() {
         let (left, right) = (panel.x.pixel(index as f64), panel.x.pixel(index as f64 + 1.0));

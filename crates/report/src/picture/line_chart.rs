@@ -3,6 +3,7 @@
 use super::axes::Panel;
 use super::canvas::{Canvas, Pixel, Place, TextStyle};
 use super::colour::{Colour, INK, SHADE};
+use std::borrow::Cow;
 
 /// A chart of curves. The grid lies over the shaded ranges and under the marks, the frame over everything.
 pub(super) struct LineChart {
@@ -17,7 +18,7 @@ pub(super) struct LineChart {
 /// Something drawn on a chart, in the numbers of its axes.
 pub(super) enum Mark {
     /// A heading over the upper left corner of the chart.
-    Heading(&'static str, Colour),
+    Heading(Cow<'static, str>, Colour),
     /// A curve through points; a single point is a dot.
     Curve(Vec<[f64; 2]>, Colour),
     /// A disc of a radius in pixels about a point.

@@ -27,6 +27,7 @@ mod path_stability;
 mod plane_view;
 mod polar;
 mod simulation;
+mod study;
 
 pub use cell::{cell, cell_with};
 pub use circularity_map::circularity_map;
@@ -43,6 +44,7 @@ pub use open_region::open_region;
 pub use path_stability::path_stability;
 pub use polar::polar;
 pub use simulation::{forces, turns, wall};
+pub use study::{effects as study_effects, front as study_front, map as study_map};
 
 #[cfg(test)]
 mod assessment_tests;

@@ -1,0 +1,210 @@
+//! What matters of a study, in words.
+
+use super::cases;
+use crate::columns::{aligned, line};
+use crate::units::fixed;
+use stead_placement::sense::Sense;
+use stead_study::analysis::{Analysis, AxisEffect, Failures, Front, Layouts, Measure, Method, Ranking};
+
+/// Most rows of a table; the files have all.
+const ROWS: usize = 10;
+
+/// The best layout and by how much, what each axis does, the front, and what failed and why.
+pub fn study_text(name: &str, analysis: &Analysis) -> String {
+    let failures = &analysis.failures;
+    let mut text = format!("{name}: {} cases, {} placed", failures.cases, failures.cases - failures.count());
+    for (count, what) in [(failures.infeasible, "infeasible"), (failures.failed, "failed")] {
+        if count > 0 {
+            text.push_str(&format!(", {count} {what}"));
+        }
+    }
+    line(&mut text, "");
+    if !analysis.layouts.tasks().is_empty() {
+        let (layouts, tasks) = (analysis.layouts.all.len(), analysis.layouts.tasks().len());
+        line(
+            &mut text,
+            &format!(
+                "{layouts} layouts with {tasks} tasks each: means over the tasks by their weights, margins the smallest"
+            ),
+        );
+    }
+    best(&mut text, analysis);
+    if !analysis.tasks.is_empty() {
+        line(&mut text, "\nBest for each task:");
+        text.push_str(&aligned(&task_rows(analysis), &[0, 2]));
+    }
+    effects(&mut text, analysis);
+    if let Some(front) = &analysis.front {
+        front_text(&mut text, front, &analysis.layouts);
+    }
+    failures_text(&mut text, failures);
+    text
+}
+
+/// A value with five digits.
+fn digits(value: f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { libm::floor(libm::log10(value.abs())) };
+    if (-5.0..9.0).contains(&exponent) {
+        fixed(value, (4.0 - exponent).max(0.0) as usize)
+    } else {
+        format!("{value:.4e}")
+    }
+}
+
+fn percent(share: f64) -> String {
+    fixed(100.0 * share, 1)
+}
+
+fn better(measure: &Measure) -> &'static str {
+    if measure.sense == Sense::Min { "smaller is better" } else { "larger is better" }
+}
+
+/// A layout by its cases and the values of the axes.
+fn layout(layouts: &Layouts, index: usize) -> String {
+    let layout = &layouts.all[index];
+    let word = if layout.cases.len() > 1 { "cases" } else { "case" };
+    let words = layouts.words(layout);
+    let words = if words.is_empty() { words } else { format!(" ({words})") };
+    format!("{word} {}{words}", cases(layout))
+}
+
+fn best(text: &mut String, analysis: &Analysis) {
+    let (ranking, layouts) = (&analysis.ranking, &analysis.layouts);
+    let Measure { name, .. } = &ranking.measure;
+    let [first, ties @ ..] = ranking.best() else {
+        return line(text, &format!("No case has a value of {name}."));
+    };
+    let noise = percent(analysis.noise);
+    line(
+        text,
+        &format!(
+            "\nBy {name} ({}; within {noise} % layouts tie, for a search is no more exact):",
+            better(&ranking.measure)
+        ),
+    );
+    line(text, &format!("  best      {}  {}", digits(first.value), layout(layouts, first.layout)));
+    for tie in ties.iter().take(ROWS) {
+        line(text, &format!("  tie       {}  {}", digits(tie.value), layout(layouts, tie.layout)));
+    }
+    if ties.len() > ROWS {
+        line(text, &format!("  and {} more ties (study-ranking.csv)", ties.len() - ROWS));
+    }
+    match ranking.next() {
+        None => line(text, "  all others tie with it"),
+        Some(next) => {
+            let behind = next.behind.map_or_else(String::new, |behind| format!(", {} % behind", percent(behind)));
+            line(text, &format!("  next      {}  {}{behind}", digits(next.value), layout(layouts, next.layout)));
+            if let Some(last) = ranking.ranked.last().filter(|last| last.layout != next.layout) {
+                let behind = last.behind.map_or_else(String::new, |behind| format!(", {} % behind", percent(behind)));
+                line(text, &format!("  last      {}  {}{behind}", digits(last.value), layout(layouts, last.layout)));
+            }
+        }
+    }
+}
+
+fn task_rows(analysis: &Analysis) -> Vec<Vec<String>> {
+    let name = analysis.ranking.measure.name.clone();
+    let mut rows = vec![vec!["task".to_owned(), name, "layout".to_owned(), "next %".to_owned()]];
+    for task in &analysis.tasks {
+        let ranking: &Ranking = &task.ranking;
+        let next = ranking.next().and_then(|next| next.behind).map_or_else(|| "–".to_owned(), percent);
+        rows.push(match ranking.best() {
+            [] => vec![task.task.clone(), "–".to_owned(), "no placement".to_owned(), next],
+            [first, ties @ ..] => {
+                let ties = if ties.is_empty() { String::new() } else { format!(" and {} ties", ties.len()) };
+                let words = format!("{}{ties}", layout(&task.layouts, first.layout));
+                vec![task.task.clone(), digits(first.value), words, next]
+            }
+        });
+    }
+    rows
+}
+
+fn effects(text: &mut String, analysis: &Analysis) {
+    let effects = &analysis.effects;
+    if effects.axes.is_empty() {
+        return;
+    }
+    let name = &effects.measure.name;
+    match &effects.axes[..] {
+        [first, ..] if first.share.is_some_and(|share| share > 0.0) => {
+            let share = first.share.map_or_else(String::new, percent);
+            line(text, &format!("\nWhat matters most for {name} is {}: {share} % of the variance.", first.name));
+        }
+        _ => line(text, &format!("\nNo axis changes {name}.")),
+    }
+    let mut rows = vec![["axis", "% of variance", "range", "best value", "by"].map(str::to_owned).to_vec()];
+    rows.extend(effects.axes.iter().map(|axis| effect_row(axis, effects.measure.sense)));
+    text.push_str(&aligned(&rows, &[0, 3, 4]));
+    if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
+        line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
+    }
+    let says = |method: Method| effects.axes.iter().any(|axis| axis.method == method);
+    if says(Method::AdjustedMeans) {
+        line(
+            text,
+            "adjusted means: cases are missing or come unequally often, so that all axes were fitted together by least squares",
+        );
+    }
+    if says(Method::Line) {
+        line(
+            text,
+            "line: too many values for means; a straight line fitted with all other axes; beside it the rank correlation",
+        );
+    }
+    if says(Method::MixedMeans) {
+        line(
+            text,
+            "mixed means: axes that vary together cannot be told apart; each has the effects of the others in it",
+        );
+    }
+}
+
+fn effect_row(axis: &AxisEffect, sense: Sense) -> Vec<String> {
+    let best = axis.best(sense).map_or_else(String::new, |level| level.label.clone());
+    let correlation = axis.rank_correlation.filter(|_| axis.method == Method::Line);
+    let method = correlation
+        .map_or_else(|| axis.method.word().to_owned(), |c| format!("line, rank correlation {}", fixed(c, 2)));
+    let share = axis.share.map_or_else(|| "–".to_owned(), percent);
+    vec![axis.name.clone(), share, digits(axis.range), best, method]
+}
+
+fn front_text(text: &mut String, front: &Front, layouts: &Layouts) {
+    let names: Vec<String> =
+        front.measures.iter().map(|measure| format!("{} ({})", measure.name, better(measure))).collect();
+    let ties = front.members.iter().filter(|member| member.is_tie).count();
+    let close = if ties == 0 { String::new() } else { format!(", and {ties} behind them within the noise") };
+    let clear = front.members.len() - ties;
+    line(text, &format!("\nOn the front of {}: {clear} of {}{close}", names.join(" and "), front.compared.len()));
+    let mut rows = vec![vec!["cases".to_owned()]];
+    rows[0].extend(front.measures.iter().map(|measure| measure.name.clone()));
+    rows[0].push("layout".to_owned());
+    for member in front.members.iter().filter(|member| !member.is_tie).take(ROWS) {
+        let found = &layouts.all[member.layout];
+        let mut row = vec![cases(found)];
+        row.extend(member.values.iter().map(|value| digits(*value)));
+        row.push(layouts.words(found));
+        rows.push(row);
+    }
+    text.push_str(&aligned(&rows, &[front.measures.len() + 1]));
+    if clear > ROWS {
+        line(text, &format!("and {} more (study-front.csv)", clear - ROWS));
+    }
+}
+
+fn failures_text(text: &mut String, failures: &Failures) {
+    if failures.count() == 0 {
+        return;
+    }
+    line(text, &format!("\nWithout a placement: {} of {} cases", failures.count(), failures.cases));
+    for (reason, count, first) in failures.reasons.iter().take(ROWS) {
+        let which = if *count > 1 { format!("{count} cases, as case {first}") } else { format!("case {first}") };
+        line(text, &format!("  {which}: {reason}"));
+    }
+    if failures.reasons.len() > ROWS {
+        line(text, &format!("  and {} more reasons (study.csv)", failures.reasons.len() - ROWS));
+    }
+    for lost in failures.lost.iter().take(ROWS) {
+        line(text, &format!("  none of the {} cases with {} = {} has one", lost.cases, lost.axis, lost.level));
+    }
+}

@@ -1,0 +1,78 @@
+//! A column that layouts are compared by.
+
+use super::AnalysisError;
+use crate::cases::{Cell, Column, Kind};
+use stead_placement::sense::Sense;
+
+/// A column of numbers, which of them are better, and which are the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// Where the column is.
+    pub column: usize,
+    /// Its name, with the unit.
+    pub name: String,
+    /// Whether smaller or larger values are better.
+    pub sense: Sense,
+    /// The relative difference up to which values are ties.
+    pub noise: f64,
+}
+
+impl Measure {
+    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Columns of axes have no noise.
+    pub(super) fn of(columns: &[Column], axes: &[usize], asked: &str, noise: f64) -> Result<Self, AnalysisError> {
+        let find = |name: &str| columns.iter().position(|column| column.name == name);
+        let (column, sense) = match (find(asked), asked.rsplit_once(':')) {
+            (Some(column), _) => (Some(column), None),
+            (None, Some((name, "min"))) => (find(name), Some(Sense::Min)),
+            (None, Some((name, "max"))) => (find(name), Some(Sense::Max)),
+            _ => (None, None),
+        };
+        let column = column.ok_or_else(|| AnalysisError::Unknown {
+            asked: asked.to_owned(),
+            kind: "column of study.csv",
+            nearest: nearest(asked, columns.iter().map(|column| column.name.as_str())),
+            allowed: "a column of study.csv with numbers, and :min or :max behind it".to_owned(),
+        })?;
+        let name = columns[column].name.clone();
+        if columns[column].kind == Kind::Text {
+            return Err(AnalysisError::NoNumbers(name));
+        }
+        let sense = sense.unwrap_or(usual_sense(&name));
+        Ok(Self { column, name, sense, noise: if axes.contains(&column) { 0.0 } else { noise } })
+    }
+
+    /// The value of a row.
+    pub fn value(&self, row: &[Cell]) -> Option<f64> {
+        match row.get(self.column)? {
+            Cell::Number(number) => Some(*number),
+            Cell::Count(count) => Some(*count as f64),
+            Cell::None | Cell::Text(_) => None,
+        }
+    }
+
+    /// Whether the difference of two values is within the noise.
+    pub fn is_tie(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= self.noise * a.abs().max(b.abs())
+    }
+
+    /// Whether the first value is at least as good as the second.
+    pub fn is_as_good(&self, a: f64, b: f64) -> bool {
+        self.sense.compare(a, b).is_le()
+    }
+
+    /// Whether the first value is better than the second by more than the noise.
+    pub fn is_clearly_better(&self, a: f64, b: f64) -> bool {
+        self.sense.compare(a, b).is_lt() && !self.is_tie(a, b)
+    }
+}
+
+/// Margins, the feed that is held and the payload are better the larger they are; all else the smaller.
+fn usual_sense(name: &str) -> Sense {
+    let is_larger_better = name.starts_with("min_") || name.starts_with("max_feed") || name.starts_with("payload");
+    if is_larger_better { Sense::Max } else { Sense::Min }
+}
+
+/// The nearest of some names.
+pub(super) fn nearest<'n>(asked: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    names.max_by(|a, b| strsim::jaro(a, asked).total_cmp(&strsim::jaro(b, asked))).map(str::to_owned)
+}

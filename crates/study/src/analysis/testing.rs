@@ -1,0 +1,61 @@
+//! Small studies for the tests of this room.
+
+use super::layouts::Layouts;
+use super::measure::Measure;
+use crate::cases::{Cell, Column, Kind, Table};
+use stead_placement::sense::Sense;
+
+/// A table with axes and columns of figures: for each case the texts of its axes (numbers where all are), and its figures. A case
+/// without figures is infeasible.
+pub(super) fn table(axes: &[&str], names: &[&str], cases: &[(Vec<&str>, Option<Vec<f64>>)]) -> Table {
+    let mut columns = vec![
+        Column::new("case", Kind::Count),
+        Column::new("id", Kind::Text),
+        Column::new("task", Kind::Text),
+        Column::new("task_weight", Kind::Number),
+    ];
+    let is_number = |axis: usize| cases.iter().all(|(values, _)| values[axis].parse::<f64>().is_ok());
+    let kind = |axis: usize| if is_number(axis) { Kind::Number } else { Kind::Text };
+    columns.extend(axes.iter().enumerate().map(|(axis, name)| Column::new(*name, kind(axis))));
+    columns.extend([Column::new("status", Kind::Text), Column::new("reason", Kind::Text)]);
+    columns.extend(names.iter().map(|name| Column::new(*name, Kind::Number)));
+    let words = |text: &str| Cell::Text(text.to_owned());
+    let rows = (1..).zip(cases).map(|(number, (values, figures))| {
+        let mut row = vec![Cell::Count(number), words("id"), words("t.csv"), Cell::Number(1.0)];
+        row.extend(values.iter().enumerate().map(|(axis, text)| match kind(axis) {
+            Kind::Number => Cell::Number(text.parse().unwrap()),
+            _ => words(text),
+        }));
+        row.extend(match figures {
+            Some(_) => [words("placed"), Cell::None],
+            None => [words("infeasible"), words("out of reach")],
+        });
+        row.extend((0..names.len()).map(|k| figures.as_ref().map_or(Cell::None, |figures| Cell::Number(figures[k]))));
+        row
+    });
+    Table { columns, rows: rows.collect() }
+}
+
+/// The layouts of a table with the one column `figure_mm`.
+pub(super) fn layouts(axes: &[&str], cases: &[(Vec<&str>, Option<f64>)]) -> Layouts {
+    let cases: Vec<_> =
+        cases.iter().map(|(values, figure)| (values.clone(), figure.map(|figure| vec![figure]))).collect();
+    Layouts::of(&table(axes, &["figure_mm"], &cases))
+}
+
+pub(super) fn measure(layouts: &Layouts, asked: &str, noise: f64) -> Measure {
+    layouts.measure(asked, noise).unwrap()
+}
+
+/// Layouts with nothing but figures.
+pub(super) fn figures(rows: &[Vec<f64>], noise: f64, senses: &[Sense]) -> (Layouts, Vec<Measure>) {
+    let names = ["a", "b", "c"];
+    let cases: Vec<_> = rows.iter().map(|row| (vec![], Some(row.clone()))).collect();
+    let layouts = Layouts::of(&table(&[], &names[..senses.len()], &cases));
+    let measures = names.iter().zip(senses).map(|(name, sense)| {
+        let direction = if *sense == Sense::Min { "min" } else { "max" };
+        measure(&layouts, &format!("{name}:{direction}"), noise)
+    });
+    let measures = measures.collect();
+    (layouts, measures)
+}
