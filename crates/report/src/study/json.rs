@@ -117,7 +117,7 @@ fn failures(found: &Failures) -> Value {
             .map(|(reason, cases, first)| json!({ "reason": reason, "cases": cases, "first_case": first }))
             .collect::<Value>(),
         "never_placed": found.lost.iter()
-            .map(|lost| json!({ "axis": lost.axis, "value": lost.level, "cases": lost.cases }))
+            .map(|lost| json!({ "values": lost.values.iter().map(|[axis, value]| json!({ "axis": axis, "value": value })).collect::<Value>(), "cases": lost.cases }))
             .collect::<Value>(),
     })
 }

@@ -11,8 +11,9 @@ use stead_study::analysis::{Analysis, Effects, Front, Layout, Layouts};
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn ranking_table(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let (layouts, ranking) = (&analysis.layouts, &analysis.ranking);
+    let axes = layouts.varied();
     let mut header = vec!["rank".to_owned(), "cases".to_owned()];
-    header.extend(axis_names(layouts));
+    header.extend(axes.iter().map(|axis| layouts.columns[*axis].name.clone()));
     header.extend([
         ranking.measure.name.clone(),
         "behind_best_percent".to_owned(),
@@ -22,7 +23,7 @@ pub fn ranking_table(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
     let row = |layout: usize, [rank, value, behind]: [String; 3]| {
         let layout = &layouts.all[layout];
         let mut row = vec![rank, cases(layout)];
-        row.extend(axis_values(layouts, layout));
+        row.extend(axis_values(layout, &axes));
         row.extend([value, behind]);
         row.extend(layouts.status(layout));
         row
@@ -40,14 +41,15 @@ pub fn ranking_table(analysis: &Analysis) -> Result<Vec<u8>, ReportError> {
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn front_table(front: &Front, layouts: &Layouts) -> Result<Vec<u8>, ReportError> {
+    let axes = layouts.varied();
     let mut header = vec!["cases".to_owned()];
-    header.extend(axis_names(layouts));
+    header.extend(axes.iter().map(|axis| layouts.columns[*axis].name.clone()));
     header.extend(front.measures.iter().map(|measure| measure.name.clone()));
     header.push("behind_within_noise".to_owned());
     let rows = front.members.iter().map(|member| {
         let layout = &layouts.all[member.layout];
         let mut row = vec![cases(layout)];
-        row.extend(axis_values(layouts, layout));
+        row.extend(axis_values(layout, &axes));
         row.extend(member.values.iter().map(ToString::to_string));
         row.push(member.is_tie.to_string());
         row
@@ -80,10 +82,6 @@ pub fn effects_table(effects: &Effects) -> Result<Vec<u8>, ReportError> {
     table("the effects", header, rows)
 }
 
-fn axis_names(layouts: &Layouts) -> impl Iterator<Item = String> {
-    layouts.varied().into_iter().map(|axis| layouts.columns[axis].name.clone())
-}
-
-fn axis_values(layouts: &Layouts, layout: &Layout) -> impl Iterator<Item = String> {
-    layouts.varied().into_iter().map(|axis| layout.row[axis].written())
+fn axis_values(layout: &Layout, axes: &[usize]) -> impl Iterator<Item = String> {
+    axes.iter().map(|axis| layout.row[*axis].written())
 }

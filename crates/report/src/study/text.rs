@@ -178,15 +178,16 @@ fn front_text(text: &mut String, front: &Front, layouts: &Layouts) {
     line(text, &format!("\nOn the front of {}: {clear} of {}{close}", names.join(" and "), front.compared.len()));
     let mut rows = vec![vec!["cases".to_owned()]];
     rows[0].extend(front.measures.iter().map(|measure| measure.name.clone()));
-    rows[0].push("layout".to_owned());
+    let axes = layouts.varied();
+    rows[0].extend(axes.iter().map(|axis| layouts.columns[*axis].name.clone()));
     for member in front.members.iter().filter(|member| !member.is_tie).take(ROWS) {
         let found = &layouts.all[member.layout];
         let mut row = vec![cases(found)];
         row.extend(member.values.iter().map(|value| digits(*value)));
-        row.push(layouts.words(found));
+        row.extend(axes.iter().map(|axis| found.row[*axis].written()));
         rows.push(row);
     }
-    text.push_str(&aligned(&rows, &[front.measures.len() + 1]));
+    text.push_str(&aligned(&rows, &(front.measures.len() + 1..rows[0].len()).collect::<Vec<_>>()));
     if clear > ROWS {
         line(text, &format!("and {} more (study-front.csv)", clear - ROWS));
     }
@@ -205,6 +206,7 @@ fn failures_text(text: &mut String, failures: &Failures) {
         line(text, &format!("  and {} more reasons (study.csv)", failures.reasons.len() - ROWS));
     }
     for lost in failures.lost.iter().take(ROWS) {
-        line(text, &format!("  none of the {} cases with {} = {} has one", lost.cases, lost.axis, lost.level));
+        let values: Vec<String> = lost.values.iter().map(|[axis, value]| format!("{axis} = {value}")).collect();
+        line(text, &format!("  none of the {} cases with {} has one", lost.cases, values.join(" and ")));
     }
 }

@@ -2,14 +2,13 @@
 
 use super::layouts::{Layouts, text};
 use crate::cases::{CaseStatus, Table};
+use std::collections::HashMap;
 
-/// A value of an axis that no case with a placement has.
+/// A value of an axis, or a pair of values of two, that no case with a placement has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LostLevel {
-    /// The axis.
-    pub axis: String,
-    /// The value.
-    pub level: String,
+    /// The axes, one or two, each with the value.
+    pub values: Vec<[String; 2]>,
     /// How many cases have it.
     pub cases: usize,
 }
@@ -26,7 +25,7 @@ pub struct Failures {
     /// Reasons with the number of their cases and the first of them, the most frequent first. Reasons that differ in numbers alone are
     /// one, in the words of its first case.
     pub reasons: Vec<(String, usize, String)>,
-    /// Values of axes with no placement at all.
+    /// Values of axes with no placement at all, and pairs of values of which neither is alone to blame.
     pub lost: Vec<LostLevel>,
 }
 
@@ -67,26 +66,33 @@ pub fn failures(table: &Table) -> Failures {
     found
 }
 
+/// Values without any placement, and then pairs that hold none of these. Of an axis of many numbers each value is nearly alone and says
+/// nothing: only what two cases or more share is named.
 fn lost(cases: &Layouts) -> Vec<LostLevel> {
-    let mut lost = Vec::new();
-    for axis in cases.varied() {
-        let mut levels: Vec<(String, usize, bool)> = Vec::new();
-        for layout in &cases.all {
-            let level = text(&layout.row[axis]);
-            let is_placed = cases.status(layout)[0] == CaseStatus::Placed.word();
-            match levels.iter_mut().find(|(known, ..)| *known == level) {
-                Some((_, count, placed)) => (*count, *placed) = (*count + 1, *placed || is_placed),
-                None => levels.push((level, 1, is_placed)),
+    let varied = cases.varied();
+    let is_placed: Vec<bool> =
+        cases.all.iter().map(|layout| cases.status(layout)[0] == CaseStatus::Placed.word()).collect();
+    let of = |axes: &[usize]| {
+        let mut levels: Vec<(Vec<[String; 2]>, usize, bool)> = Vec::new();
+        let mut places: HashMap<Vec<String>, usize> = HashMap::new();
+        for (layout, is_placed) in cases.all.iter().zip(&is_placed) {
+            let values: Vec<String> = axes.iter().map(|axis| text(&layout.row[*axis])).collect();
+            let place = *places.entry(values.clone()).or_insert(levels.len());
+            if place == levels.len() {
+                let names = axes.iter().map(|axis| cases.columns[*axis].name.clone());
+                levels.push((names.zip(values).map(|(name, value)| [name, value]).collect(), 0, false));
             }
+            let (_, count, any) = &mut levels[place];
+            (*count, *any) = (*count + 1, *any || *is_placed);
         }
-        // Of an axis of many numbers each value is alone, and says nothing.
-        let alone = levels.iter().filter(|(_, count, _)| *count == 1).count();
-        if 2 * alone > levels.len() && levels.len() > 4 {
-            continue;
-        }
-        let axis = &cases.columns[axis].name;
-        let of = |(level, cases, _)| LostLevel { axis: axis.clone(), level, cases };
-        lost.extend(levels.into_iter().filter(|(.., placed)| !placed).map(of));
+        let lost = levels.into_iter().filter(|(_, count, any)| *count > 1 && !any);
+        lost.map(|(values, cases, _)| LostLevel { values, cases }).collect::<Vec<_>>()
+    };
+    let mut lost: Vec<LostLevel> = varied.iter().flat_map(|axis| of(&[*axis])).collect();
+    let alone: Vec<[String; 2]> = lost.iter().flat_map(|lost| lost.values.clone()).collect();
+    let pairs = varied.iter().enumerate().flat_map(|(k, b)| varied[..k].iter().map(|a| [*a, *b]));
+    for pair in pairs {
+        lost.extend(of(&pair).into_iter().filter(|lost| !lost.values.iter().any(|value| alone.contains(value))));
     }
     lost
 }
@@ -133,6 +139,20 @@ mod tests {
         assert_eq!((found.cases, found.infeasible, found.failed), (6, 3, 0));
         let reasons = [("joint 2 at -12.5 deg", 2, "2"), ("out of reach", 1, "6")];
         assert_eq!(found.reasons, reasons.map(|(reason, count, first)| (reason.to_owned(), count, first.to_owned())));
-        assert_eq!(found.lost, [LostLevel { axis: "robot".to_owned(), level: "b".to_owned(), cases: 2 }]);
+        assert_eq!(found.lost, [LostLevel { values: vec![["robot", "b"].map(str::to_owned)], cases: 2 }]);
+    }
+
+    #[test]
+    fn a_pair_is_named_where_neither_value_is_alone_to_blame() {
+        let mut cases = Vec::new();
+        for (robot, height) in [("a", "1"), ("a", "2"), ("b", "1"), ("b", "2")] {
+            for side in ["l", "r"] {
+                let is_placed = (robot, height) != ("b", "2");
+                cases.push((vec![robot, height, side], is_placed.then(|| vec![1.0])));
+            }
+        }
+        let found = failures(&table(&["robot", "height", "side"], &["figure_mm"], &cases));
+        let values = [["robot", "b"], ["height", "2"]].map(|value| value.map(str::to_owned)).to_vec();
+        assert_eq!(found.lost, [LostLevel { values, cases: 2 }]);
     }
 }

@@ -8,9 +8,9 @@ use super::{cut, fitting, percent, roomy};
 use stead_study::analysis::{AxisEffect, Effects, Layouts, Level, Method};
 
 /// Panels in a row, their left edges, width, first upper edge, height, and the distance of rows. Pixels
-const COLUMNS: usize = 3;
-const LEFT: [i32; COLUMNS] = [95, 440, 785];
-const WIDTH: i32 = 290;
+const COLUMNS: usize = 2;
+const LEFT: [i32; COLUMNS] = [95, 650];
+const WIDTH: i32 = 425;
 const TOP: i32 = 116;
 const HEIGHT: i32 = 240;
 const ROW: i32 = 340;
@@ -50,7 +50,7 @@ fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEff
         let labels: Vec<String> = axis.levels.iter().map(|level| level.label.clone()).collect();
         panel.x_ticks = Ticks::named(fitting(&labels, WIDTH / labels.len().max(1) as i32));
     }
-    panel.x_label = cut(&axis.name, 36).into();
+    panel.x_label = cut(&axis.name, 54).into();
     let mut chart = LineChart::new(panel);
     let place = |layout: usize| -> Option<f64> {
         let text = layouts.all[layout].row[axis.axis].written();

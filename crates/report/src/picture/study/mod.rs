@@ -35,6 +35,11 @@ fn fitting(labels: &[String], pixels: i32) -> Vec<String> {
     let widest = short.iter().map(|label| TextStyle::new(TICKS).width(label)).max().unwrap_or(0).min(6 * 8);
     let step = ((widest + 6) as usize).div_ceil(pixels.max(1) as usize).max(1);
     let room = letters(pixels * step as i32 - 6).max(1);
+    // Where the beginnings are the same, what tells labels apart is at their ends.
+    let mut beginnings: Vec<String> = short.iter().map(|label| cut(label, room)).collect();
+    beginnings.sort_unstable();
+    let is_same = beginnings.windows(2).any(|two| two[0] == two[1]);
+    let cut = if is_same { ending } else { cut };
     let shown =
         |(index, label): (usize, String)| if index.is_multiple_of(step) { cut(&label, room) } else { String::new() };
     short.into_iter().enumerate().map(shown).collect()
@@ -59,6 +64,12 @@ fn cut(text: &str, letters: usize) -> String {
         return text.to_owned();
     }
     text.chars().take(letters.saturating_sub(1)).chain(['…']).collect()
+}
+
+/// The end of a text, of at most so many letters.
+fn ending(text: &str, letters: usize) -> String {
+    let backwards = |text: &str| text.chars().rev().collect::<String>();
+    backwards(&cut(&backwards(text), letters))
 }
 
 /// A share in per cent.

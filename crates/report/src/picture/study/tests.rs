@@ -6,6 +6,8 @@ fn labels_are_short_and_fit() {
     let labels = ["robots/kuka-kr500.toml", "high and dry", "0.2", "0.123456789"].map(str::to_owned);
     assert_eq!(labels.clone().map(|label| short(&label)), ["kuka-kr500", "high and dry", "0.2", "0.123"]);
     assert_eq!(fitting(&labels[..2], 70), ["kuka-kr…", "high an…"]);
+    let alike = ["kuka-kr270-r2700", "kuka-kr270-r3100"].map(str::to_owned);
+    assert_eq!(fitting(&alike, 70), ["…0-r2700", "…0-r3100"]);
     let many: Vec<String> = (100..140).map(|k| k.to_string()).collect();
     let shown = fitting(&many, 8);
     assert_eq!((shown[0].as_str(), shown[1].as_str(), shown[4].as_str()), ("100", "", "104"));
