@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -57,7 +58,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 
 def test_arguments_out_of_range() -> None:
     run = stead.Run.read(CARO)
-    for wrong, match in [
+    wrong_calls: list[tuple[Callable[[], object], str]] = [
         (lambda: run.place(threads=0), "threads, found 0; allowed: 1 or more"),
         (lambda: run.place(time_limit_s=-1.0), "time limit, found -1 s"),
         (lambda: run.with_seed(-1), "seed, found -1"),
@@ -69,7 +70,8 @@ def test_arguments_out_of_range() -> None:
         (lambda: stead.SimulationRun.read("configs/umons-aluminium.toml", spindle_rpm=0.0), "spindle speed, found 0"),
         (lambda: stead.StabilityRun.read("x.toml", variant="rigid"), "found rigid; allowed: springs"),  # type: ignore[arg-type]
         (lambda: stead.Profile.read("tasks/measured-groove.csv").circularity([(0.0, 400.0)]), "found \\(0, 400\\)"),
-    ]:
+    ]
+    for wrong, match in wrong_calls:
         with pytest.raises(stead.ArgumentError, match=match):
             wrong()
 

@@ -60,7 +60,7 @@ def init(kind: Literal["place", "assess", "identify", "simulate"], folder: str |
     Raises:
         InputError: A file of that name is there already, or cannot be written; nothing is changed then.
     """
-    return [Path(file) for file in _stead.init(kind, Path(folder))]
+    return _stead.init(kind, Path(folder))
 
 
 def schema(kind: str) -> dict[str, Any]:

@@ -43,7 +43,7 @@ _R = TypeVar("_R", bound=Result)
 
 def _options(
     progress: Progress | None = None, threads: int | None = None, time_limit_s: float | None = None
-) -> _stead.Options:
+) -> _stead._Options:
     if threads is not None and threads < 1:
         raise ArgumentError(f"no such number of threads, found {threads}; allowed: 1 or more")
     return {"progress": progress, "threads": threads, "time_limit_s": time_limit_s}
@@ -64,7 +64,7 @@ def _seed(seed: int | None) -> int | None:
     return seed
 
 
-def _place(placement: Placement) -> _stead.Place:
+def _place(placement: Placement) -> _stead._Place:
     return (placement.x_mm, placement.y_mm, placement.z_mm, placement.yaw_deg)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -70,6 +70,14 @@ def _short(value: Any) -> str:
     if isinstance(value, (list, dict)):
         return f"<{len(value)} {'items' if isinstance(value, list) else 'keys'}>"
     return repr(value)
+
+
+class Input(Record):
+    """A file that a result came from, with the SHA-256 digest of its bytes."""
+
+    role: str
+    name: str
+    sha256: str
 
 
 @dataclass(frozen=True)
@@ -239,7 +247,10 @@ class Certificate(Record):
     wall_s: float
     warnings: list[str]
     notes: list[str]
-    _made = {"best": Proof, "worst": Proof}
+    inputs: list[Input]
+    version: str
+    format: int
+    _made = {"best": Proof, "worst": Proof, "inputs": Input}
 
 
 class Explanation(Record):
@@ -275,11 +286,3 @@ class Force(Record):
     max_n: float
     mean_n: float
     rms_n: float
-
-
-class Input(Record):
-    """A file that a result came from, with the SHA-256 digest of its bytes."""
-
-    role: str
-    name: str
-    sha256: str

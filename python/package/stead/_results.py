@@ -94,8 +94,8 @@ class Result(Record):
             OutputError: The folder or a file cannot be written, or another run writes to it.
         """
         if isinstance(folder, Folder):
-            return [Path(path) for path in self._native.write_in(folder._native)]
-        return [Path(path) for path in self._native.write(Path(folder))]
+            return self._native.write_in(folder._native)
+        return self._native.write(Path(folder))
 
     @property
     def notes(self) -> list[str]:
@@ -305,7 +305,26 @@ class SimulatedPass(Result):
 
 
 class StabilityAnalysis(Result):
-    """Whether a cut chatters: `tables["modes"]`, `tables["frequency-response"]` and `tables["lobes"]`."""
+    """Whether a cut chatters: `tables["modes"]`, `tables["frequency-response"]` and `tables["lobes"]`.
+
+    The numbers are those of the cut that the file states: how fast small motions grow, where along the pass, and the critical depths.
+    """
+
+    robot: str
+    variant: str
+    kind: str
+    stable: bool
+    growth_rate_per_s: float
+    growth_in_pass: float
+    pass_time_s: float
+    way_mm: float
+    axial_depth_mm: float
+    max_depth_mm: float
+    critical_depth_mm: Record
+    modes: list[Record]
+    lobes: list[Record]
+    spindle_rpm: float
+    damping_scale: float
 
 
 class Circularity(Result):

@@ -43,10 +43,14 @@ class Table(Mapping[str, Column]):
         return len(next(iter(self._columns.values())))
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The table as a data frame. Needs pandas, which stead does not install."""
+        """The table as a data frame, with `nan` for every empty cell. Needs pandas, which stead does not install."""
         import pandas
 
-        return pandas.DataFrame(self._columns)
+        def marked(column: Column) -> Column:
+            return np.where(column == "", np.nan, column) if column.dtype == object else column
+
+        frame: pandas.DataFrame = pandas.DataFrame({name: marked(column) for name, column in self.items()})
+        return frame
 
     def __repr__(self) -> str:
         return f"<Table of {self.row_count} rows: {', '.join(self)}>"
