@@ -29,7 +29,6 @@ from ._inputs import (
     DesignRun,
     FitRun,
     Profile,
-    Run,
     SimulationRun,
     StabilityRun,
 )
@@ -49,6 +48,7 @@ from ._results import (
     StabilityAnalysis,
     Warning,
 )
+from ._run import Run
 from ._tables import Picture, Table
 
 __version__ = _stead.__version__

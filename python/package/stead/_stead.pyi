@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict, final
 
+__all__ = ["__version__", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "init", "schema"]
+
 __version__: str
 
 class _Options(TypedDict):
