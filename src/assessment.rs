@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::{self, Assessment};
 use stead_format as format;
-use stead_report::Folder;
-use stead_report::assessment::{AssessmentContext, assess_json, assessment_text, write_assessment};
+use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
 use stead_report::document::Timing;
+use stead_report::{Files, Folder};
 
 /// An assessment file with the robots that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -98,8 +98,12 @@ impl RobotAssessment {
 }
 
 impl Report for RobotAssessment {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(assessment_files(&self.run.comparison, &self.assessment, &self.context)?)
     }
 
     fn document(&self) -> Value {

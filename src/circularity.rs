@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, Sector, assess};
 use stead_format::{PointFile, read_points};
-use stead_report::Folder;
-use stead_report::circularity::{circularity_json, circularity_text, write_circularity};
+use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
+use stead_report::{Files, Folder};
 
 /// Measured points of a circular profile.
 #[derive(Debug, Clone)]
@@ -52,8 +52,12 @@ impl Circularity {
 }
 
 impl Report for Circularity {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_circularity(folder, &self.file, &self.roundness)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(circularity_files(&self.file, &self.roundness)?)
     }
 
     fn document(&self) -> Value {

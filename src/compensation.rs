@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_format as format;
-use stead_report::Folder;
-use stead_report::compensation::{compensation_json, compensation_text, not_compensated_json, write_compensation};
+use stead_report::compensation::{
+    compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
+};
+use stead_report::{Files, Folder};
 
 /// A compensation file with the run and the plan that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -86,8 +88,12 @@ impl CompensatedPath {
 }
 
 impl Report for CompensatedPath {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_compensation(folder, &self.run, &self.outcome)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(compensation_files(&self.run, &self.outcome)?)
     }
 
     fn document(&self) -> Value {

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use stead_calibration::identification::design::{Design, design_experiment};
 use stead_calibration::identification::{Identified, identify};
 use stead_format as format;
-use stead_report::Folder;
-use stead_report::identification::plan::{keep_readings, plan_json, plan_text, write_plan};
-use stead_report::identification::{identify_json, identify_text, write_identified};
+use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
+use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
+use stead_report::{Files, Folder};
 
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
 #[derive(Debug, Clone)]
@@ -117,8 +117,12 @@ impl MeasurementPlan {
 }
 
 impl Report for IdentifiedRobot {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_identified(folder, &self.run, &self.identified)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(identified_files(&self.run, &self.identified)?)
     }
 
     fn document(&self) -> Value {
@@ -139,9 +143,13 @@ impl Report for IdentifiedRobot {
 }
 
 impl Report for MeasurementPlan {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         keep_readings(folder.path())?;
         Ok(write_plan(folder, &self.run, &self.design)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(plan_files(&self.run, &self.design)?)
     }
 
     fn document(&self) -> Value {

@@ -4,13 +4,17 @@ use crate::Error;
 use serde_json::Value;
 use std::path::PathBuf;
 use stead_numerics::message::Warning;
-use stead_report::Folder;
+use stead_report::{Files, Folder};
 
 /// A result as files, as a document and as a text; [`result!`] makes the public methods of it.
 pub(crate) trait Report {
     /// Writes the files that the command of the same name leaves, if it leaves any.
-    fn files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, _: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(Vec::new())
+    }
+    /// The same files in memory.
+    fn files(&self) -> Result<Files, Error> {
+        Ok(Files::new())
     }
     /// What the command prints with `--json`.
     fn document(&self) -> Value;
@@ -49,7 +53,16 @@ macro_rules! result {
             /// # Errors
             /// As [`write`](Self::write).
             pub fn write_in(&self, folder: &stead_report::Folder) -> Result<Vec<std::path::PathBuf>, crate::Error> {
-                crate::result::Report::files(self, folder)
+                crate::result::Report::write_files(self, folder)
+            }
+
+            /// The names and contents of the files that [`write`](Self::write) leaves, without `manifest.json`: tables as CSV,
+            /// pictures as SVG.
+            ///
+            /// # Errors
+            /// [`Error::Output`](crate::Error::Output): a file cannot be made.
+            pub fn to_files(&self) -> Result<Vec<(String, Vec<u8>)>, crate::Error> {
+                crate::result::Report::files(self)
             }
 
             /// The JSON document that the command prints with `--json`. Units are in the names of the fields.

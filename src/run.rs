@@ -14,12 +14,13 @@ use stead_placement::outcome::{Cases, Outcome, left_out};
 use stead_placement::place::{Infeasible, Score};
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::settings::CertificateSettings;
-use stead_report::Folder;
-use stead_report::certificate::{certificate_json, certificate_text, write_certificate};
+use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
 use stead_report::document::{Timing, bytes};
 use stead_report::placement::{
-    Context, evaluation, place_json, placement_text, summary_json, write_placement, write_score,
+    Context, evaluation, place_json, placement_files, placement_text, score_files, summary_json, write_placement,
+    write_score,
 };
+use stead_report::{Files, Folder};
 use stead_study::{self as study, Placed, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
@@ -80,6 +81,15 @@ impl Run {
     /// As [`Run::read`].
     pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
         Ok(Self { run: Arc::new(format::read_run_to_certify(file.as_ref(), Some(gap))?) })
+    }
+
+    /// The gap of a certificate from per cent, for [`Run::read_to_certify`].
+    ///
+    /// # Errors
+    /// [`Error::Argument`] with the gaps that are allowed.
+    pub fn gap(per_cent: f64) -> Result<f64, Error> {
+        let wrong = || Error::Argument(format!("no such gap, found {per_cent} %; allowed: {}", format::GAPS_ALLOWED));
+        CertificateSettings::gap(per_cent).ok_or_else(wrong)
     }
 
     /// The same run with another seed of the random numbers.
@@ -282,9 +292,17 @@ pub struct Explanations {
 }
 
 impl Report for Placements {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
         files.extend(self.write_certificate_in(folder)?);
+        Ok(files)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        let mut files = placement_files(&self.run.problem, &self.outcome, &self.context)?;
+        if let Some(certificate) = &self.certificate {
+            files.extend(certificate_files(&self.run.problem, certificate, &self.run.inputs)?);
+        }
         Ok(files)
     }
 
@@ -341,8 +359,12 @@ impl Explanations {
 }
 
 impl Report for PlacementScore {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(score_files(&self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
     }
 
     fn document(&self) -> Value {

@@ -8,9 +8,10 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_format::Overrides;
-use stead_report::Folder;
-use stead_report::simulation::{Making, simulation_text, timed_json, write_simulation};
-use stead_report::stability::{stability_json, stability_text, write_stability};
+use stead_report::simulation::{Making, simulation_files, simulation_text, timed_json, write_simulation};
+use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
+use stead_report::{Files, Folder};
+use stead_simulation::arm::Variant;
 use stead_simulation::coupled::Job;
 use stead_simulation::outcome::Simulation;
 use stead_simulation::stability_analysis::{self, StabilityAnalysis as Analysis};
@@ -25,6 +26,33 @@ pub struct SimulationRun {
 #[derive(Debug, Clone)]
 pub struct StabilityRun {
     run: Arc<format::SimulationRun>,
+}
+
+/// Values in place of a simulation file's: the variant of the arm by its name, the factor on all damping and the spindle speed in rev/min.
+///
+/// # Errors
+/// [`Error::Argument`] with the values that are allowed.
+pub fn overrides(
+    variant: Option<&str>,
+    damping_scale: Option<f64>,
+    spindle_rpm: Option<f64>,
+) -> Result<Overrides, Error> {
+    let wrong = |what: &str, found: String, allowed: String| {
+        Error::Argument(format!("no such {what}, found {found}; allowed: {allowed}"))
+    };
+    let named = |name: &str| Variant::ALL.into_iter().find(|variant| variant.word() == name);
+    let known = || Variant::ALL.map(Variant::word).join(", ");
+    let variant = variant.map(|name| named(name).ok_or_else(|| wrong("variant", name.to_owned(), known())));
+    if let Some(scale) = damping_scale.filter(|scale| !(0.0..=format::MAX_DAMPING_SCALE).contains(scale)) {
+        let allowed = format!("a number from 0 to {}", format::MAX_DAMPING_SCALE);
+        return Err(wrong("factor on damping", scale.to_string(), allowed));
+    }
+    if let Some(rpm) = spindle_rpm.filter(|rpm| !(*rpm > 0.0 && *rpm <= format::MAX_SPINDLE_SPEED_RPM)) {
+        let allowed = format!("rev/min above 0 and not above {}", format::MAX_SPINDLE_SPEED_RPM);
+        return Err(wrong("spindle speed", rpm.to_string(), allowed));
+    }
+    let spindle_speed = spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
+    Ok(Overrides { variant: variant.transpose()?, damping_scale, spindle_speed })
 }
 
 impl SimulationRun {
@@ -133,8 +161,12 @@ impl StabilityAnalysis {
 }
 
 impl Report for SimulatedPass {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_simulation(folder, &self.run, &self.simulation, &self.making)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(simulation_files(&self.run, &self.simulation, &self.making)?)
     }
 
     fn document(&self) -> Value {
@@ -155,8 +187,12 @@ impl Report for SimulatedPass {
 }
 
 impl Report for StabilityAnalysis {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_stability(folder, &self.run, &self.analysis)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(stability_files(&self.run, &self.analysis)?)
     }
 
     fn document(&self) -> Value {

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use stead_format as format;
 use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
-use stead_report::Folder;
 use stead_report::certificate::write_certificate;
 use stead_report::document::bytes;
 use stead_report::placement::{Context, summary_json, write_placement};
-use stead_report::study::{study_json, study_text, write_study};
+use stead_report::study::{study_files, study_json, study_text, write_study};
+use stead_report::{Files, Folder};
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
 use stead_study::cases::{
@@ -136,8 +136,12 @@ impl StudyReport {
 }
 
 impl Report for StudyReport {
-    fn files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.plan.study.inputs)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(study_files(&self.plan.name(), &self.analysis, &self.plan.study.inputs)?)
     }
 
     fn document(&self) -> Value {

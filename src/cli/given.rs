@@ -3,7 +3,6 @@
 use super::values::{case, finite, quaternion};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stead_model::robot::angles::yaw_from_q4;
 use stead_placement::problem::Placement;
 
 /// A placement: the workpiece origin in the robot base frame, and its yaw.
@@ -43,12 +42,10 @@ impl PlaceArguments {
 
 /// A placement from mm, and from Q4 or else degrees.
 fn placement(xyz_mm: [f64; 3], q4: Option<f64>, yaw_deg: Option<f64>) -> Placement {
-    let [x, y, z] = xyz_mm.map(|mm| mm / 1e3);
-    let yaw = match q4 {
-        Some(q4) => yaw_from_q4(q4),
-        None => stead_model::robot::angles::wrap(yaw_deg.unwrap_or(0.0).to_radians()),
-    };
-    Placement { x, y, z, yaw }
+    match q4 {
+        Some(q4) => Placement::from_mm_q4(xyz_mm, q4),
+        None => Placement::from_mm_deg(xyz_mm, yaw_deg.unwrap_or(0.0)),
+    }
 }
 
 /// A placement in numbers, or that of a result.

@@ -46,11 +46,9 @@ pub(super) fn gap(text: &str) -> Result<f64, String> {
 /// Angles count from the x axis counter-clockwise; from the first to the second the sector may pass through zero.
 pub(super) fn sector(text: &str) -> Result<Sector, String> {
     let allowed = || "allowed: two angles from -360 to 360, as in 350:10".to_owned();
-    let angle = |text: &str| finite(text.trim()).ok().filter(|angle| angle.abs() <= 360.0).ok_or_else(allowed);
+    let angle = |text: &str| finite(text.trim()).map_err(|_| allowed());
     let (from, to) = text.split_once(':').ok_or_else(allowed)?;
-    let (from, to) = (angle(from)?, angle(to)?);
-    let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
-    Ok(Sector { start: from.to_radians(), width: (to - from + 360.0 * turns).to_radians() })
+    Sector::between_deg(angle(from)?, angle(to)?).ok_or_else(allowed)
 }
 
 pub(super) fn quaternion(text: &str) -> Result<f64, String> {

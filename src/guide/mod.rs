@@ -13,7 +13,7 @@
 //! | Will the cut chatter? | [`stability`] |
 //! | What do forces and surface look like over time? | [`simulate`] |
 //! | How round is a measured profile? | [`circularity`] |
-//! | How do I use stead from Rust? | [`library`] |
+//! | How do I use stead from Rust, from Python? | [`library`], [`python`] |
 //! | Which direction is positive? | [`conventions`] |
 //! | What stands in which file? | [`files`], [`run_file`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
 //! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
@@ -53,6 +53,8 @@ pub mod method {}
 pub mod objective {}
 #[doc = include_str!("place.md")]
 pub mod place {}
+#[doc = include_str!("python.md")]
+pub mod python {}
 #[doc = include_str!("robot_file.md")]
 pub mod robot_file {}
 #[doc = include_str!("run_file.md")]

@@ -25,6 +25,17 @@ pub struct Sector {
     pub width: f64,
 }
 
+impl Sector {
+    /// From one angle to another, counter-clockwise from the x axis and through zero where the second is smaller; `None` for angles that
+    /// are not from -360 to 360 degrees.
+    pub fn between_deg(from: f64, to: f64) -> Option<Self> {
+        let is_allowed = |angle: f64| angle.abs() <= 360.0;
+        let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
+        let sector = Self { start: from.to_radians(), width: (to - from + 360.0 * turns).to_radians() };
+        (is_allowed(from) && is_allowed(to)).then_some(sector)
+    }
+}
+
 /// A measured point as it was assessed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Assessed {

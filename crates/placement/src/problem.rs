@@ -9,7 +9,7 @@ use std::ops::{Index, IndexMut};
 use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Posture, Robot, Spindle,
-    angles::{q4_from_yaw, wrap},
+    angles::{q4_from_yaw, wrap, yaw_from_q4},
     cast, point_from_tool,
 };
 use stead_model::task::Task;
@@ -176,6 +176,17 @@ impl<T: Scalar> Placement<T> {
 }
 
 impl Placement {
+    /// From a place in mm and a yaw in degrees, as files and users state it.
+    pub fn from_mm_deg(xyz_mm: [f64; 3], yaw_deg: f64) -> Self {
+        let [x, y, z] = xyz_mm.map(|mm| mm / 1e3);
+        Self { x, y, z, yaw: wrap(yaw_deg.to_radians()) }
+    }
+
+    /// From a place in mm and the quaternion component Q4 = sin(yaw / 2), from -1 to 1.
+    pub fn from_mm_q4(xyz_mm: [f64; 3], q4: f64) -> Self {
+        Self { yaw: yaw_from_q4(q4), ..Self::from_mm_deg(xyz_mm, 0.0) }
+    }
+
     /// The quaternion component by which the paper states the yaw (Caro 2013, eq. 4).
     pub fn q4(&self) -> f64 {
         q4_from_yaw(self.yaw)

@@ -2,6 +2,7 @@
 
 use super::output::{Folder, ReportError};
 use super::picture;
+use super::{Files, named};
 use crate::columns::aligned;
 use crate::csv_file::table;
 use crate::document::{Document, bytes};
@@ -20,12 +21,20 @@ const DECIMALS: usize = 12;
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
 pub fn write_circularity(folder: &Folder, file: &PointFile, found: &Roundness) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = circularity_files(file, found)?;
+    folder.results("circularity", std::slice::from_ref(&file.input)).write(&files)
+}
+
+/// The files that [`write_circularity`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn circularity_files(file: &PointFile, found: &Roundness) -> Result<Files, ReportError> {
+    Ok(named([
         ("circularity.json", bytes(&circularity_json(file, found))),
         ("deviations.csv", deviations(file, found)?),
         ("polar.svg", picture::polar(&file.input.name, found).into_bytes()),
-    ];
-    folder.results("circularity", std::slice::from_ref(&file.input)).write(&files)
+    ]))
 }
 
 /// Names of the four circles in files, in words, and what they are.

@@ -2,6 +2,7 @@
 
 use super::output::{Folder, ReportError};
 use super::picture;
+use super::{Files, named};
 use crate::columns::aligned;
 use crate::csv_file::{table, vector};
 use crate::document::{Document, bytes, placement};
@@ -33,12 +34,20 @@ pub fn write_compensation(
     run: &CompensateRun,
     outcome: &CompensatedPath,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = compensation_files(run, outcome)?;
+    folder.results("compensate", &run.inputs).write(&files)
+}
+
+/// The files that [`write_compensation`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn compensation_files(run: &CompensateRun, outcome: &CompensatedPath) -> Result<Files, ReportError> {
+    Ok(named([
         ("corrected-path.csv", corrected_path(outcome)?),
         ("summary.json", bytes(&compensation_json(run, outcome))),
         ("compensation.svg", picture::compensation(outcome).into_bytes()),
-    ];
-    folder.results("compensate", &run.inputs).write(&files)
+    ]))
 }
 
 const CORRECTED_PATH: &str = "\

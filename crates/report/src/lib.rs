@@ -24,3 +24,11 @@ pub mod units;
 mod testing;
 
 pub use output::{Folder, ReportError};
+
+/// Result files in memory: the name and the content of each.
+pub type Files = Vec<(String, Vec<u8>)>;
+
+/// Files under fixed names.
+fn named(files: impl IntoIterator<Item = (&'static str, Vec<u8>)>) -> Files {
+    files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect()
+}

@@ -8,7 +8,7 @@ pub use json::{assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
-use super::{cutting, document as documents, picture};
+use super::{Files, cutting, document as documents, picture};
 use std::path::PathBuf;
 use stead_assessment::comparison::{Assessment, Comparison};
 use stead_assessment::published::{Agreement, PublishedTables};
@@ -44,7 +44,20 @@ pub fn write_assessment(
     assessment: &Assessment,
     context: &AssessmentContext,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let files = assessment_files(comparison, assessment, context)?;
+    folder.results("assess", &context.inputs).write(&files)
+}
+
+/// The files that [`write_assessment`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn assessment_files(
+    comparison: &Comparison,
+    assessment: &Assessment,
+    context: &AssessmentContext,
+) -> Result<Files, ReportError> {
+    let mut files = Files::new();
     for (index, robot) in assessment.robots.iter().enumerate() {
         let name = format!("map-{}", file_name(assessment, index));
         files.push((format!("{name}.csv"), tables::map(robot)?));
@@ -64,7 +77,7 @@ pub fn write_assessment(
         add("cutting-engagement.csv", cutting::entering(force_history)?);
         add("cutting-turn.csv", cutting::turn(force_history)?);
     }
-    folder.results("assess", &context.inputs).write(&files)
+    Ok(files)
 }
 
 /// Longest piece of a robot's name in a file name.

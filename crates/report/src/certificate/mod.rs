@@ -11,12 +11,12 @@ pub use tables::open_region;
 pub use text::certificate_text;
 
 use super::output::{Folder, ReportError};
-use super::picture;
+use super::{Files, named, picture};
 use crate::document::bytes;
 use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
 use stead_format::input::InputFile;
-use stead_placement::certify::Certificate;
+use stead_placement::certify::{Certificate, NoProof, Proof};
 use stead_placement::problem::Problem;
 
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
@@ -33,16 +33,33 @@ pub fn write_certificate(
     inputs: &[InputFile],
     summary: &[u8],
 ) -> Result<Vec<PathBuf>, ReportError> {
+    let files = certificate_files(problem, certificate, inputs)?;
+    let outdated = proofs(certificate).into_iter().filter(|(_, proof)| proof.is_err()).map(|(name, _)| name);
+    folder.results(PLACE, inputs).joining(SUMMARY, summary).without(outdated).write(&files)
+}
+
+/// The pictures of the proofs with what they show.
+fn proofs(certificate: &Certificate) -> [(&'static str, &Result<Proof, NoProof>); 2] {
+    [("open-region.svg", &certificate.best), ("open-region-worst.svg", &certificate.worst)]
+}
+
+/// The files that [`write_certificate`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn certificate_files(
+    problem: &Problem,
+    certificate: &Certificate,
+    inputs: &[InputFile],
+) -> Result<Files, ReportError> {
     let mut files = vec![
         ("certificate.json", bytes(&certificate_json(certificate, inputs))),
         ("open-region.csv", open_region(problem, certificate)?),
     ];
-    let mut outdated = Vec::new();
-    for (name, proof) in [("open-region.svg", &certificate.best), ("open-region-worst.svg", &certificate.worst)] {
-        match proof {
-            Ok(proof) => files.push((name, picture::open_region(problem, proof).into_bytes())),
-            Err(_) => outdated.push(name),
+    for (name, proof) in proofs(certificate) {
+        if let Ok(proof) = proof {
+            files.push((name, picture::open_region(problem, proof).into_bytes()));
         }
     }
-    folder.results(PLACE, inputs).joining(SUMMARY, summary).without(outdated).write(&files)
+    Ok(named(files))
 }

@@ -15,6 +15,7 @@ pub use text::identify_text;
 use super::document as documents;
 use super::output::{Folder, ReportError};
 use super::picture;
+use super::{Files, named};
 use std::path::PathBuf;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
@@ -26,14 +27,22 @@ use stead_format::IdentifyRun;
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
 pub fn write_identified(folder: &Folder, run: &IdentifyRun, found: &Identified) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = identified_files(run, found)?;
+    folder.results("identify fit", &run.inputs).write(&files)
+}
+
+/// The files that [`write_identified`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn identified_files(run: &IdentifyRun, found: &Identified) -> Result<Files, ReportError> {
+    Ok(named([
         ("robot-identified.toml", robot_file(&run.robot_text, found)?.into_bytes()),
         ("report.json", documents::bytes(&identify_json(run, found))),
         ("compliances.csv", tables::compliances(found)?),
         ("residuals.csv", tables::residuals(run, found)?),
         ("deflections.svg", picture::deflections(found).into_bytes()),
-    ];
-    folder.results("identify fit", &run.inputs).write(&files)
+    ]))
 }
 
 /// The key of a robot file for a number of the arm, and what a number in SI is multiplied by to stand there.

@@ -12,7 +12,7 @@ pub use text::placement_text;
 
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
-use crate::picture;
+use crate::{Files, named, picture};
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::InputFile;
@@ -73,6 +73,9 @@ pub(crate) const SUMMARY: &str = "summary.json";
 const MAPS: [[&str; 2]; 2] =
     [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
 
+/// The files of the map at a given placement.
+const SCORE_MAP: [&str; 2] = ["deflection-map.csv", "deflection-map.svg"];
+
 /// Table and picture of a map with the best and the worst plan, under these names.
 fn map_files(
     problem: &Problem,
@@ -98,6 +101,21 @@ pub fn write_score(
     map: Option<&DeflectionMap>,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
+    let files = score_files(problem, score, map, context)?;
+    let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
+    folder.results("score", &context.inputs).without(outdated.iter().copied()).write(&files)
+}
+
+/// The files that [`write_score`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn score_files(
+    problem: &Problem,
+    score: &Score,
+    map: Option<&DeflectionMap>,
+    context: &Context,
+) -> Result<Files, ReportError> {
     let [best, worst] = score.cases();
     let mut files = vec![
         ("best-plan.csv", tables::plan(&best.plan)?),
@@ -105,17 +123,14 @@ pub fn write_score(
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
-    let mut outdated = Vec::new();
-    let map_names = ["deflection-map.csv", "deflection-map.svg"];
-    match map {
-        Some(map) => files.extend(map_files(problem, map, [&best, &worst], map_names, "this placement")?),
-        None => outdated.extend(map_names),
+    if let Some(map) = map {
+        files.extend(map_files(problem, map, [&best, &worst], SCORE_MAP, "this placement")?);
     }
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
         files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
     }
-    folder.results("score", &context.inputs).without(outdated).write(&files)
+    Ok(named(files))
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
@@ -133,9 +148,18 @@ pub fn write_placement(
     outcome: &Outcome,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
+    let files = placement_files(problem, outcome, context)?;
+    let outdated = outcome.maps.is_none().then_some(MAPS).into_iter().flatten().flatten();
+    folder.results(PLACE, &context.inputs).without(outdated).write(&files)
+}
+
+/// The files that [`write_placement`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) -> Result<Files, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
-    let mut outdated = Vec::new();
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
@@ -153,13 +177,10 @@ pub fn write_placement(
         let (tables, names) = (["stability-best.csv", "stability-worst.csv"], ["best placement", "worst placement"]);
         files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan], tables, names)?);
     }
-    match &outcome.maps {
-        Some([map_best, map_worst]) => {
-            let plans = [[best, best_worst_plan], [worst, worst_worst_plan]];
-            files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
-            files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
-        }
-        None => outdated.extend(MAPS.into_iter().flatten()),
+    if let Some([map_best, map_worst]) = &outcome.maps {
+        let plans = [[best, best_worst_plan], [worst, worst_worst_plan]];
+        files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
+        files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
     }
-    folder.results(PLACE, &context.inputs).without(outdated).write(&files)
+    Ok(named(files))
 }

@@ -11,6 +11,7 @@ pub use text::simulation_text;
 
 use super::output::{Folder, ReportError};
 use super::picture;
+use super::{Files, named};
 use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
@@ -41,15 +42,23 @@ pub fn write_simulation(
     found: &Simulation,
     making: &Making,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = simulation_files(run, found, making)?;
+    folder.results("simulate", &run.inputs).write(&files)
+}
+
+/// The files that [`write_simulation`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn simulation_files(run: &SimulationRun, found: &Simulation, making: &Making) -> Result<Files, ReportError> {
+    Ok(named([
         ("series.csv", series(found)?),
         ("wall.csv", wall(found)?),
         ("summary.json", crate::document::bytes(&simulation_json(run, found, making))),
         ("forces.svg", picture::forces(found).into_bytes()),
         ("turns.svg", picture::turns(found, run.cut.spindle_speed).into_bytes()),
         ("wall.svg", picture::wall(found).into_bytes()),
-    ];
-    folder.results("simulate", &run.inputs).write(&files)
+    ]))
 }
 
 /// The word for how a run ended, and the reason if it ended early.

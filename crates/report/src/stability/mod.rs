@@ -14,6 +14,7 @@ pub use text::stability_text;
 
 use super::output::{Folder, ReportError};
 use super::picture;
+use super::{Files, named};
 use crate::units::Unit;
 use std::path::PathBuf;
 use stead_format::SimulationRun;
@@ -42,13 +43,21 @@ pub fn write_stability(
     run: &SimulationRun,
     analysis: &StabilityAnalysis,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = stability_files(run, analysis)?;
+    folder.results("stability", &run.inputs).write(&files)
+}
+
+/// The files that [`write_stability`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn stability_files(run: &SimulationRun, analysis: &StabilityAnalysis) -> Result<Files, ReportError> {
+    Ok(named([
         ("modes.csv", modes(analysis)?),
         ("frequency-response.csv", responses(analysis)?),
         ("lobes.csv", lobes(analysis)?),
         ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
         ("frequency-response.svg", picture::frequency_response(analysis).into_bytes()),
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
-    ];
-    folder.results("stability", &run.inputs).write(&files)
+    ]))
 }

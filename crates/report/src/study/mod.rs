@@ -16,6 +16,7 @@ pub use text::study_text;
 use crate::document::bytes;
 use crate::output::{Folder, ReportError};
 use crate::picture;
+use crate::{Files, named};
 use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_study::analysis::{Analysis, Layout};
@@ -31,6 +32,14 @@ pub fn write_study(
     analysis: &Analysis,
     inputs: &[InputFile],
 ) -> Result<Vec<PathBuf>, ReportError> {
+    folder.results("study report", inputs).write(&study_files(name, analysis, inputs)?)
+}
+
+/// The files that [`write_study`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn study_files(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Result<Files, ReportError> {
     let layouts = &analysis.layouts;
     let mut files = vec![("study-ranking.csv", ranking_table(analysis)?)];
     if let Some(front) = analysis.front.as_ref().filter(|front| !front.members.is_empty()) {
@@ -45,7 +54,7 @@ pub fn write_study(
         files.push(("study-map.svg", picture::study_map(map).into_bytes()));
     }
     files.push(("study-report.json", bytes(&study_json(name, analysis, inputs))));
-    folder.results("study report", inputs).write(&files)
+    Ok(named(files))
 }
 
 /// The numbers of the cases of a layout.

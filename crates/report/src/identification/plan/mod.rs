@@ -9,7 +9,7 @@ pub use text::plan_text;
 
 use super::super::document as documents;
 use super::super::output::{Folder, ReportError};
-use super::super::picture;
+use super::super::{Files, named, picture};
 use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
@@ -24,13 +24,21 @@ pub const SHEET: &str = "sheet.csv";
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
 pub fn write_plan(folder: &Folder, run: &PlanRun, plan: &Design) -> Result<Vec<PathBuf>, ReportError> {
-    let files = [
+    let files = plan_files(run, plan)?;
+    folder.results("identify plan", &run.inputs).with_form(SHEET).write(&files)
+}
+
+/// The files that [`write_plan`] writes.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn plan_files(run: &PlanRun, plan: &Design) -> Result<Files, ReportError> {
+    Ok(named([
         (SHEET, plan.sheet.form().into_bytes()),
         ("plan.json", documents::bytes(&plan_json(run, plan))),
         ("expected.csv", tables::expected(plan)?),
         ("plan.svg", picture::measurement_plan(&run.request, plan).into_bytes()),
-    ];
-    folder.results("identify plan", &run.inputs).with_form(SHEET).write(&files)
+    ]))
 }
 
 /// Whether a file is a sheet into which no reading has been filled yet, so that nothing is lost with it.

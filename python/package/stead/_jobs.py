@@ -1,0 +1,46 @@
+"""What all jobs have in common. They run without the global interpreter lock.
+
+- `progress(stage, done, total)` is called on the calling thread, a few times a second and once at the end; what it raises stops the job. Of
+  a certificate, `done` are the nodes bounded and `total` those and the open ones.
+- `threads`: by default one for each processor. It does not change a result.
+- `time_limit_s`: the job ends then with what it has.
+- Ctrl-C stops a job that takes `progress`, and raises `Interrupted`, a `KeyboardInterrupt` with what was found as `result`; the second one
+  does not wait. Other jobs raise `KeyboardInterrupt` at once, and what they have begun ends unheard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from typing import TypeVar
+
+from . import _stead
+from ._errors import ArgumentError, Interrupted
+from ._results import Result
+
+File = str | PathLike[str]
+Progress = Callable[[str, int, int], object]
+_R = TypeVar("_R", bound=Result)
+
+
+def options_of(
+    progress: Progress | None = None, threads: int | None = None, time_limit_s: float | None = None
+) -> _stead._Options:
+    if threads is not None and threads < 1:
+        raise ArgumentError(f"no such number of threads, found {threads}; allowed: 1 or more")
+    return {"progress": progress, "threads": threads, "time_limit_s": time_limit_s}
+
+
+def finished(kind: type[_R], done: tuple[_stead.Outcome | None, bool]) -> _R:
+    """The result of a job, or `Interrupted` with it."""
+    outcome, was_stopped = done
+    result = kind(outcome) if outcome is not None else None
+    if was_stopped or result is None:
+        raise Interrupted(result)
+    return result
+
+
+def checked_seed(seed: int | None) -> int | None:
+    if seed is not None and not 0 <= seed < 2**63:
+        raise ArgumentError(f"no such seed, found {seed}; allowed: a whole number from 0 to {2**63 - 1}")
+    return seed

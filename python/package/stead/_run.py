@@ -1,0 +1,149 @@
+"""Placement runs: `stead place`, `stead score`, `stead explain`. What their jobs have in common is in `_jobs`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from . import _stead
+from ._errors import ArgumentError
+from ._jobs import File, Progress, checked_seed, finished, options_of
+from ._records import Placement
+from ._results import Explanations, PlacementScore, Placements, Warning
+
+
+def _place(placement: Placement) -> _stead._Place:
+    return (placement.x_mm, placement.y_mm, placement.z_mm, placement.yaw_deg)
+
+
+class Run:
+    """A run file with the robot and the task that it names: `stead place`, `stead score`, `stead explain`."""
+
+    def __init__(self, native: _stead.Run) -> None:
+        self._native = native
+
+    @classmethod
+    def read(
+        cls, file: File, *, certify: float | None = None, seed: int | None = None, sensitivity: bool = False
+    ) -> Run:
+        """Reads a run file and the files that it names.
+
+        Args:
+            file: The run file (TOML).
+            certify: Gap of a certificate in per cent, whatever the file says of one.
+            seed: Seed of the random numbers, instead of the file's.
+            sensitivity: Refine once more for force errors of 10 %, and say how far the best placement moves.
+
+        Raises:
+            InputError: with file, line, field, value found and what is allowed.
+        """
+        return cls(_stead.Run.read(Path(file), certify, checked_seed(seed), sensitivity))
+
+    def with_seed(self, seed: int) -> Run:
+        """The same run with another seed of the random numbers."""
+        checked_seed(seed)
+        return Run(self._native.with_seed(seed))
+
+    def with_sensitivity(self, force_error: float) -> Run:
+        """The same run, refined once more where scores have to cover force errors of this relative size (0.1 for 10 %)."""
+        return Run(self._native.with_sensitivity(force_error))
+
+    @property
+    def notes(self) -> list[str]:
+        """What the user should know about the input though it is not wrong."""
+        return self._native.notes()
+
+    @property
+    def robot(self) -> str:
+        """Name of the robot."""
+        return self._native.robot()
+
+    @property
+    def point_count(self) -> int:
+        """Number of points of the tool path."""
+        return self._native.points()
+
+    @property
+    def certificate_warning(self) -> Warning | None:
+        """Why the run cannot be certified, where it asks for a certificate and that is so."""
+        warning = self._native.certificate_warning()
+        return Warning(*warning) if warning else None
+
+    def outside_cell(self, placement: Placement) -> str | None:
+        """A note on a placement outside the cell, which is evaluated all the same."""
+        return self._native.outside_cell(_place(placement))
+
+    def placement_of(self, results: File, case: Literal[1, 3] = 1) -> Placement:
+        """The placement of case 1 (the best) or 3 (the worst) in a results folder of `place` from the same files."""
+        return Placement(*self._native.placement_of(Path(results), case))
+
+    def place(
+        self,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
+        certify: bool = True,
+    ) -> Placements:
+        """Searches for the best and the worst placement, each with its best and its worst plan of the spindle angle.
+
+        Args:
+            progress: Called with stage, steps done and steps in all.
+            threads: Number of threads; it does not change the result.
+            time_limit_s: After so many seconds the best found so far is returned.
+            certify: Whether the certificate is made that the run asks for, see also `certify`.
+
+        Raises:
+            Infeasible: No placement met satisfies the constraints.
+            Interrupted: at Ctrl-C, with the best found so far as `result`.
+        """
+        return finished(Placements, self._native.place(options_of(progress, threads, time_limit_s), certify))
+
+    def certify(
+        self,
+        placements: Placements,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
+    ) -> Placements:
+        """These placements with the certificate that their run asks for: bounds how far they are from the best and the worst possible."""
+        done = placements._native.certified(options_of(progress, threads, time_limit_s))
+        return finished(Placements, done)
+
+    def score(
+        self,
+        placement: Placement | File,
+        case: Literal[1, 3] = 1,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
+        deflection_map: bool = False,
+    ) -> PlacementScore:
+        """Plans a given placement, best and worst.
+
+        Args:
+            placement: The placement, or a results folder of `place` from the same files whose exact placement is taken.
+            case: Case of those results: 1, the best placement, or 3, the worst.
+            progress: Called with stage, steps done and steps in all.
+            threads: Number of threads; it does not change the result.
+            time_limit_s: After so many seconds the critical depths and the map are left out.
+            deflection_map: Also make the deflection map, as the command does where it writes files.
+
+        Raises:
+            Infeasible: The placement violates constraints.
+        """
+        options = options_of(progress, threads, time_limit_s)
+        if isinstance(placement, Placement):
+            score = finished(PlacementScore, self._native.score(_place(placement), options))
+        else:
+            score = finished(PlacementScore, self._native.score_of(Path(placement), case, options))
+        return finished(PlacementScore, score._native.mapped(options)) if deflection_map else score
+
+    def explain(self, placement: Placement, point: int, beta_deg: float) -> Explanations:
+        """What each of the eight postures gives at a path point (from 0) and a spindle angle beta (deg).
+
+        Raises:
+            ArgumentError: for a point that the path does not have.
+        """
+        if point < 0:
+            raise ArgumentError(f"no such path point, found {point}; allowed: 0 to {self.point_count - 1}")
+        return Explanations(self._native.explain(_place(placement), point, beta_deg))

@@ -1,0 +1,296 @@
+//! Inputs: one class for each kind of file, with its jobs. A job returns its result; one that can be stopped also whether Ctrl-C did that.
+
+use crate::errors::{raised, raised_with};
+use crate::jobs::{Options, run, run_stoppable};
+use crate::results::{Kind, Outcome};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use stead::{Error, Placement, Sector};
+
+/// A result, and whether Ctrl-C stopped its job.
+type Done = PyResult<(Option<Outcome>, bool)>;
+
+/// What a job has left. One that was stopped before it had a result is no error.
+fn done<T>(
+    result: Result<T, Error>,
+    was_stopped: bool,
+    kind: fn(T) -> Kind,
+    raise: impl FnOnce(Error) -> PyErr,
+) -> Done {
+    match result {
+        Ok(result) => Ok((Some(Outcome(kind(result))), was_stopped)),
+        Err(_) if was_stopped => Ok((None, true)),
+        Err(error) => Err(raise(error)),
+    }
+}
+
+/// x, y, z in mm, and yaw in degrees.
+type PlaceMm = (f64, f64, f64, f64);
+
+fn placement((x, y, z, yaw): PlaceMm) -> Placement {
+    Placement::from_mm_deg([x, y, z], yaw)
+}
+
+/// The JSON document in place of a result of a run.
+fn infeasible(run: &stead::Run, error: &Error) -> Option<String> {
+    match error {
+        Error::Infeasible(nothing) => Some(run.infeasible_json(nothing).to_string()),
+        _ => None,
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct Run(stead::Run);
+
+#[pymethods]
+impl Run {
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        file: PathBuf,
+        certify: Option<f64>,
+        seed: Option<u64>,
+        sensitivity: bool,
+    ) -> PyResult<Self> {
+        let read = || {
+            let run = match certify {
+                Some(per_cent) => stead::Run::read_to_certify(&file, stead::Run::gap(per_cent)?)?,
+                None => stead::Run::read(&file)?,
+            };
+            let run = if let Some(seed) = seed { run.with_seed(seed) } else { run };
+            Ok(if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { run })
+        };
+        py.detach(read).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn with_seed(&self, seed: u64) -> Self {
+        Self(self.0.clone().with_seed(seed))
+    }
+
+    fn with_sensitivity(&self, force_error: f64) -> Self {
+        Self(self.0.clone().with_sensitivity(force_error))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn robot(&self) -> &str {
+        self.0.problem().robot.name()
+    }
+
+    fn points(&self) -> usize {
+        self.0.problem().task.points().len()
+    }
+
+    fn certificate_warning(&self) -> Option<(&'static str, String)> {
+        self.0.certificate_warning().map(|warning| (warning.kind, warning.message))
+    }
+
+    fn outside_cell(&self, place: PlaceMm) -> Option<String> {
+        self.0.outside_cell(&placement(place))
+    }
+
+    fn placement_of(&self, py: Python<'_>, results: PathBuf, case: u8) -> PyResult<PlaceMm> {
+        let Placement { x, y, z, yaw } = self.0.placement_of(results, case).map_err(|error| raised(py, error))?;
+        Ok((x * 1e3, y * 1e3, z * 1e3, yaw.to_degrees()))
+    }
+
+    fn place(&self, py: Python<'_>, options: Options, certify: bool) -> Done {
+        let run = self.0.clone();
+        let job = move |monitor: &stead::Monitor| if certify { run.place(monitor) } else { run.search(monitor) };
+        let (result, was_stopped) = run_stoppable(py, &options, job)?;
+        let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
+        done(result, was_stopped, Kind::Placements, raise)
+    }
+
+    fn score(&self, py: Python<'_>, place: PlaceMm, options: Options) -> Done {
+        let (run, place) = (self.0.clone(), placement(place));
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score_with(&place, monitor))?;
+        let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
+        done(result, was_stopped, Kind::Score, raise)
+    }
+
+    /// As `score`, of the exact placement of a case in a results folder.
+    fn score_of(&self, py: Python<'_>, results: PathBuf, case: u8, options: Options) -> Done {
+        let place = self.0.placement_of(results, case).map_err(|error| raised(py, error))?;
+        let run = self.0.clone();
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score_with(&place, monitor))?;
+        let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
+        done(result, was_stopped, Kind::Score, raise)
+    }
+
+    fn explain(&self, py: Python<'_>, place: PlaceMm, point: usize, beta_deg: f64) -> PyResult<Outcome> {
+        let explained = py.detach(|| self.0.explain(&placement(place), point, beta_deg.to_radians()));
+        explained.map(|result| Outcome(Kind::Explanations(result))).map_err(|error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct AssessmentRun(stead::AssessmentRun);
+
+#[pymethods]
+impl AssessmentRun {
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf, accuracy_mm: Option<f64>, force_n: Option<f64>) -> PyResult<Self> {
+        let read = || stead::AssessmentRun::read(&file)?.selecting(accuracy_mm.map(|mm| mm / 1e3), force_n);
+        py.detach(read).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn assess(&self, py: Python<'_>, options: Options) -> Done {
+        let run = self.0.clone();
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.assess(monitor))?;
+        done(result, was_stopped, Kind::Assessment, |error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct FitRun(stead::FitRun);
+
+#[pymethods]
+impl FitRun {
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
+        py.detach(|| stead::FitRun::read(&file)).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn fit(&self, py: Python<'_>, options: Options) -> PyResult<Outcome> {
+        let input = self.0.clone();
+        let result = run(py, &options, move || input.fit())?;
+        result.map(|result| Outcome(Kind::Identified(result))).map_err(|error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct DesignRun(stead::DesignRun);
+
+#[pymethods]
+impl DesignRun {
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf, seed: Option<u64>) -> PyResult<Self> {
+        py.detach(|| stead::DesignRun::read_with(&file, seed)).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn check_folder(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
+        self.0.check_folder(folder).map_err(|error| raised(py, error))
+    }
+
+    fn plan(&self, py: Python<'_>, options: Options) -> Done {
+        let input = self.0.clone();
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| input.plan(monitor))?;
+        done(result, was_stopped, Kind::Design, |error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct CompensationRun(stead::CompensationRun);
+
+#[pymethods]
+impl CompensationRun {
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf, reality: Option<PathBuf>) -> PyResult<Self> {
+        let read = || stead::CompensationRun::read_with(&file, reality.as_deref());
+        py.detach(read).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    fn compensate(&self, py: Python<'_>, all_or_nothing: bool, options: Options) -> PyResult<Outcome> {
+        let input = self.0.clone();
+        let job = move || if all_or_nothing { input.compensate_all() } else { input.compensate() };
+        let document = |error: &Error| match error {
+            Error::NotCompensated(failure) => Some(self.0.not_compensated_json(failure).to_string()),
+            _ => None,
+        };
+        let result = run(py, &options, job)?;
+        result.map(|result| Outcome(Kind::Compensated(result))).map_err(|error| raised_with(py, error, document))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct SimulationRun(stead::SimulationRun);
+
+#[pymethods]
+impl SimulationRun {
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        file: PathBuf,
+        variant: Option<&str>,
+        damping_scale: Option<f64>,
+        spindle_rpm: Option<f64>,
+    ) -> PyResult<Self> {
+        let overrides = stead::overrides(variant, damping_scale, spindle_rpm);
+        let read = overrides.and_then(|overrides| stead::SimulationRun::read_with(&file, &overrides));
+        read.map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn simulate(&self, py: Python<'_>, condensed: bool, options: Options) -> PyResult<Outcome> {
+        let input = self.0.clone();
+        let job = move || if condensed { input.simulate_condensed() } else { input.simulate() };
+        let result = run(py, &options, job)?;
+        result.map(|result| Outcome(Kind::Simulated(result))).map_err(|error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct StabilityRun(stead::StabilityRun);
+
+#[pymethods]
+impl StabilityRun {
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        file: PathBuf,
+        variant: Option<&str>,
+        damping_scale: Option<f64>,
+        spindle_rpm: Option<f64>,
+    ) -> PyResult<Self> {
+        let overrides = stead::overrides(variant, damping_scale, spindle_rpm);
+        let read = overrides.and_then(|overrides| stead::StabilityRun::read_with(&file, &overrides));
+        read.map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn analyse(&self, py: Python<'_>, options: Options) -> PyResult<Outcome> {
+        let input = self.0.clone();
+        let result = run(py, &options, move || input.analyse())?;
+        result.map(|result| Outcome(Kind::Stability(result))).map_err(|error| raised(py, error))
+    }
+}
+
+#[pyclass(frozen, module = "stead._stead")]
+pub struct Profile(stead::Profile);
+
+#[pymethods]
+impl Profile {
+    #[staticmethod]
+    fn read(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
+        py.detach(|| stead::Profile::read(&file)).map(Self).map_err(|error| raised(py, error))
+    }
+
+    fn circularity(&self, py: Python<'_>, exclude_deg: Vec<(f64, f64)>) -> PyResult<Outcome> {
+        let sector = |(from, to): (f64, f64)| {
+            let problem = || format!("no such sector, found ({from}, {to}); allowed: two angles from -360 to 360 deg");
+            Sector::between_deg(from, to).ok_or_else(|| Error::Argument(problem()))
+        };
+        let found = py.detach(|| {
+            let sectors = exclude_deg.into_iter().map(sector).collect::<Result<Vec<_>, _>>()?;
+            self.0.circularity(&sectors)
+        });
+        found.map(|result| Outcome(Kind::Circularity(result))).map_err(|error| raised(py, error))
+    }
+}

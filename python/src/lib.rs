@@ -1,0 +1,53 @@
+//! The compiled half of the Python package `stead`: the facade of the crate `stead`, input by input and result by result.
+//!
+//! Nothing is computed here. Documents cross over as JSON, tables and pictures as the bytes of their files; the package `stead` beside it
+//! (`package/stead/`) makes typed objects of them, and is what users see.
+
+mod errors;
+mod inputs;
+mod jobs;
+mod results;
+
+use errors::raised;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Writes a commented starter set of files for a command and returns their paths, the one to begin with first.
+#[pyfunction]
+fn init(py: Python<'_>, kind: &str, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+    let set = match kind {
+        "place" => stead::StarterSet::Place,
+        "assess" => stead::StarterSet::Assess,
+        "identify" => stead::StarterSet::Identify,
+        "simulate" => stead::StarterSet::Simulate,
+        _ => {
+            let problem = format!("no such starter set, found {kind}; allowed: place, assess, identify, simulate");
+            return Err(raised(py, stead::Error::Argument(problem)));
+        }
+    };
+    stead::init(set, &folder).map_err(|error| raised(py, error.into()))
+}
+
+/// The JSON Schema of a kind of file.
+#[pyfunction]
+fn schema(py: Python<'_>, kind: &str) -> PyResult<String> {
+    stead::schema(kind).map_err(|error| raised(py, stead::Error::Argument(error.to_string())))
+}
+
+/// The native classes and functions, see `_stead.pyi`.
+#[pymodule]
+fn _stead(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<inputs::Run>()?;
+    module.add_class::<inputs::AssessmentRun>()?;
+    module.add_class::<inputs::FitRun>()?;
+    module.add_class::<inputs::DesignRun>()?;
+    module.add_class::<inputs::CompensationRun>()?;
+    module.add_class::<inputs::SimulationRun>()?;
+    module.add_class::<inputs::StabilityRun>()?;
+    module.add_class::<inputs::Profile>()?;
+    module.add_class::<results::Outcome>()?;
+    module.add_class::<results::Folder>()?;
+    module.add_function(wrap_pyfunction!(init, module)?)?;
+    module.add_function(wrap_pyfunction!(schema, module)?)
+}
