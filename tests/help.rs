@@ -10,7 +10,7 @@ fn commands(bench: &Bench) -> Vec<Vec<String>> {
         match name {
             "" | "help" | "-h," | "-V," => {}
             "study" => {
-                ["run", "status", "report"]
+                ["run", "status", "report", "slurm"]
                     .iter()
                     .for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
             }

@@ -30,13 +30,13 @@ pub struct InputError {
     /// What put the value there, where it is not the file's own: `--set cell.z_mm=[0, 1]`, or the case of a study.
     pub set_by: Option<Box<str>>,
     /// Field: dotted key of a TOML file, or column of a CSV file.
-    pub field: Option<String>,
+    pub field: Option<Box<str>>,
     /// What is wrong, as a sentence without its full stop.
     pub problem: Box<str>,
     /// The value found, as written.
-    pub found: Option<String>,
+    pub found: Option<Box<str>>,
     /// What would have been accepted.
-    pub allowed: Option<String>,
+    pub allowed: Option<Box<str>>,
 }
 
 impl InputError {
@@ -69,25 +69,25 @@ impl InputError {
 
     /// Adds the field.
     pub fn in_field(mut self, field: impl Into<String>) -> Self {
-        self.field = Some(field.into());
+        self.field = Some(field.into().into());
         self
     }
 
     /// Adds the value found.
     pub fn found(mut self, value: impl Into<String>) -> Self {
-        self.found = Some(value.into());
+        self.found = Some(value.into().into());
         self
     }
 
     /// Adds the value found, if there is one.
     pub fn found_if(mut self, value: Option<String>) -> Self {
-        self.found = value;
+        self.found = value.map(Into::into);
         self
     }
 
     /// Adds what would have been accepted.
     pub fn allowed(mut self, allowed: impl Into<String>) -> Self {
-        self.allowed = Some(allowed.into());
+        self.allowed = Some(allowed.into().into());
         self
     }
 }

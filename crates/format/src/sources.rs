@@ -15,11 +15,14 @@ pub struct Sources(Option<Arc<Shared>>);
 
 #[derive(Debug, Default)]
 struct Shared {
-    files: Mutex<HashMap<PathBuf, Arc<[u8]>>>,
+    files: Known<PathBuf, [u8]>,
     /// Robots of files without values put in place of theirs, and whether with what motion needs.
-    robots: Mutex<HashMap<(PathBuf, Option<bool>), Arc<Robot>>>,
-    tasks: Mutex<HashMap<PathBuf, Arc<Imported>>>,
+    robots: Known<(PathBuf, Option<bool>), Robot>,
+    tasks: Known<PathBuf, Imported>,
 }
+
+/// What was read or made once, by its key.
+type Known<K, T> = Mutex<HashMap<K, Arc<T>>>;
 
 impl Sources {
     /// Files are read from the disk whenever they are needed.

@@ -88,13 +88,14 @@ mod tests {
         rows.iter().enumerate().filter(|(_, row)| !off(row)).map(|(index, row)| (index, tie(row))).collect()
     }
 
-    fn found(rows: &[Vec<f64>], noise: f64, senses: &[Sense]) -> (Vec<(usize, bool)>, Vec<(usize, bool)>) {
+    /// The members of a front, and whether each is a tie: as found, and as expected.
+    fn found(rows: &[Vec<f64>], noise: f64, senses: &[Sense]) -> [Vec<(usize, bool)>; 2] {
         let (layouts, measures) = figures(rows, noise, senses);
         let expected = by_definition(&measures, rows);
         let front = front(&layouts, measures);
         let mut members: Vec<_> = front.members.iter().map(|member| (member.layout, member.is_tie)).collect();
         members.sort_unstable();
-        (members, expected)
+        [members, expected]
     }
 
     proptest! {
@@ -105,7 +106,7 @@ mod tests {
             senses in prop::collection::vec(prop::sample::select(Sense::BOTH.to_vec()), 3),
         ) {
             let rows: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(|n| f64::from(*n) / 4.0).collect()).collect();
-            let (members, expected) = found(&rows, noise, &senses);
+            let [members, expected] = found(&rows, noise, &senses);
             prop_assert_eq!(members, expected);
         }
 
@@ -116,7 +117,7 @@ mod tests {
             let rows: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(|n| f64::from(*n)).collect()).collect();
             let dominates = |a: &[f64], b: &[f64]| a[0] <= b[0] && a[1] <= b[1] && a != b;
             let best = |row: &&Vec<f64>| !rows.iter().any(|other| dominates(other, row));
-            let (members, _) = found(&rows, 0.0, &[Sense::Min; 2]);
+            let [members, _] = found(&rows, 0.0, &[Sense::Min; 2]);
             prop_assert_eq!(members.len(), rows.iter().filter(best).count());
             prop_assert!(members.iter().all(|(index, is_tie)| best(&&rows[*index]) && !is_tie));
         }
@@ -125,7 +126,7 @@ mod tests {
     #[test]
     fn what_is_worse_within_the_noise_stays() {
         let rows = vec![vec![1.0, 5.0], vec![1.001, 5.0], vec![1.1, 5.0], vec![2.0, 1.0]];
-        let (members, _) = found(&rows, 0.002, &[Sense::Min; 2]);
+        let [members, _] = found(&rows, 0.002, &[Sense::Min; 2]);
         assert_eq!(members, [(0, false), (1, true), (3, false)]);
     }
 }

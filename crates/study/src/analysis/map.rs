@@ -19,7 +19,7 @@ pub struct Map {
     pub counts: Vec<usize>,
 }
 
-/// An axis of more numbers than this is cut into [`PARTS`].
+/// An axis of more numbers than this is cut into equal parts.
 pub const MAX_LEVELS: usize = 24;
 const PARTS: usize = 8;
 
