@@ -5,7 +5,15 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 stead=$(realpath "$1")
 work=$(mktemp -d)
-trap '"$here/one-node.sh" stop "$work/cluster"; rm -rf "$work"' EXIT
+finish() {
+    "$here/one-node.sh" stop "$work/cluster"
+    # The daemons write their last state while they end.
+    for _ in $(seq 100); do
+        if rm -rf "$work" 2>/dev/null; then return; fi
+        sleep 0.1
+    done
+}
+trap finish EXIT
 
 cat > "$work/study.toml" <<END
 base = "$here/../../configs/caro-2013.toml"
