@@ -18,7 +18,8 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Columns of axes have no noise.
+    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Axes and the data sheet of the
+    /// robot have no noise.
     pub(super) fn of(columns: &[Column], axes: &[usize], asked: &str, noise: f64) -> Result<Self, AnalysisError> {
         let find = |name: &str| columns.iter().position(|column| column.name == name);
         let (column, sense) = match (find(asked), asked.rsplit_once(':')) {
@@ -38,7 +39,8 @@ impl Measure {
             return Err(AnalysisError::NoNumbers(name));
         }
         let sense = sense.unwrap_or(usual_sense(&name));
-        Ok(Self { column, name, sense, noise: if axes.contains(&column) { 0.0 } else { noise } })
+        let is_exact = axes.contains(&column) || ["payload_kg", "price_eur"].contains(&name.as_str());
+        Ok(Self { column, name, sense, noise: if is_exact { 0.0 } else { noise } })
     }
 
     /// The value of a row.
