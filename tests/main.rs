@@ -27,4 +27,5 @@ mod standard_output;
 mod starting;
 mod stop;
 mod study;
+mod study_report;
 mod uncertainty;

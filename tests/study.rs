@@ -4,7 +4,7 @@ use crate::common::{Bench, Ended, RUN};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-const STUDY: &str = "configs/study.toml";
+pub const STUDY: &str = "configs/study.toml";
 
 const AXES: &str = "base = \"run.toml\"
 [[axis]]
@@ -17,7 +17,7 @@ labels = [\"high\", \"low\"]
 ";
 
 /// A study of six cases that take a tenth of a second each.
-fn bench() -> Bench {
+pub fn bench() -> Bench {
     let bench = Bench::new();
     for (from, to) in [
         ("x_mm = [-300.0, 300.0]", "x_mm = [0.0, 10.0]"),
@@ -35,7 +35,7 @@ fn bench() -> Bench {
     bench
 }
 
-fn run(bench: &Bench, out: &str, more: &[&str]) -> Ended {
+pub fn run(bench: &Bench, out: &str, more: &[&str]) -> Ended {
     let ended = bench.stead(&[&["study", "run", STUDY, "--out", out], more].concat());
     // A machine that is slow shows progress.
     let is_quiet = ended.stderr.lines().all(|line| line.starts_with("progress: "));

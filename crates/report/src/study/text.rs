@@ -134,7 +134,7 @@ fn effects(text: &mut String, analysis: &Analysis) {
         _ => line(text, &format!("\nNo axis changes {name}.")),
     }
     let mut rows = vec![["axis", "% of variance", "range", "best value", "by"].map(str::to_owned).to_vec()];
-    rows.extend(effects.axes.iter().map(|axis| effect_row(axis, effects.measure.sense)));
+    rows.extend(effects.axes.iter().map(|axis| effect_row(axis, &effects.measure)));
     text.push_str(&aligned(&rows, &[0, 3, 4]));
     if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
         line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
@@ -160,8 +160,13 @@ fn effects(text: &mut String, analysis: &Analysis) {
     }
 }
 
-fn effect_row(axis: &AxisEffect, sense: Sense) -> Vec<String> {
-    let best = axis.best(sense).map_or_else(String::new, |level| level.label.clone());
+fn effect_row(axis: &AxisEffect, measure: &Measure) -> Vec<String> {
+    let is_tie = |best: f64| axis.levels.iter().all(|level| measure.is_tie(best, level.value));
+    let best = match axis.best(measure.sense) {
+        Some(level) if is_tie(level.value) => "tie".to_owned(),
+        Some(level) => level.label.clone(),
+        None => String::new(),
+    };
     let correlation = axis.rank_correlation.filter(|_| axis.method == Method::Line);
     let method = correlation
         .map_or_else(|| axis.method.word().to_owned(), |c| format!("line, rank correlation {}", fixed(c, 2)));

@@ -4,6 +4,10 @@ use super::AnalysisError;
 use crate::cases::{Cell, Column, Kind};
 use stead_placement::sense::Sense;
 
+/// Figures of searches are not told apart below this, in the unit of their column: means of 1e-6 mm are the same (guide, page
+/// `objective`), and figures are written with few more digits.
+const NOTHING: f64 = 1e-6;
+
 /// A column of numbers, which of them are better, and which are the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
@@ -18,7 +22,8 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Columns of axes have no noise.
+    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Axes and the data sheet of the
+    /// robot have no noise.
     pub(super) fn of(columns: &[Column], axes: &[usize], asked: &str, noise: f64) -> Result<Self, AnalysisError> {
         let find = |name: &str| columns.iter().position(|column| column.name == name);
         let (column, sense) = match (find(asked), asked.rsplit_once(':')) {
@@ -38,7 +43,8 @@ impl Measure {
             return Err(AnalysisError::NoNumbers(name));
         }
         let sense = sense.unwrap_or(usual_sense(&name));
-        Ok(Self { column, name, sense, noise: if axes.contains(&column) { 0.0 } else { noise } })
+        let is_exact = axes.contains(&column) || ["payload_kg", "price_eur"].contains(&name.as_str());
+        Ok(Self { column, name, sense, noise: if is_exact { 0.0 } else { noise } })
     }
 
     /// The value of a row.
@@ -52,7 +58,17 @@ impl Measure {
 
     /// Whether the difference of two values is within the noise.
     pub fn is_tie(&self, a: f64, b: f64) -> bool {
-        (a - b).abs() <= self.noise * a.abs().max(b.abs())
+        (a - b).abs() <= (self.noise * a.abs().max(b.abs())).max(self.floor())
+    }
+
+    /// Whether a value is nothing but rounding.
+    pub fn is_nothing(&self, value: f64) -> bool {
+        value.abs() <= self.floor()
+    }
+
+    /// The difference up to which values are ties however small they are.
+    fn floor(&self) -> f64 {
+        if self.noise > 0.0 { NOTHING } else { 0.0 }
     }
 
     /// Whether the first value is at least as good as the second.

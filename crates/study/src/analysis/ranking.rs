@@ -12,7 +12,7 @@ pub struct Ranked {
     pub rank: usize,
     /// Its value.
     pub value: f64,
-    /// How far it is behind the best, as a share of the best value; none where that is zero.
+    /// How far it is behind the best, as a share of the best value; none where that is nothing but rounding.
     pub behind: Option<f64>,
 }
 
@@ -38,7 +38,8 @@ pub fn ranking(layouts: &Layouts, measure: &Measure) -> Ranking {
             (rank, first) = (place, Some(*value));
         }
         let best = valued[0].1;
-        let behind = (best != 0.0).then(|| measure.sense.sign() * (value - best) / best.abs());
+        let behind =
+            (best != 0.0 && !measure.is_nothing(best)).then(|| measure.sense.sign() * (value - best) / best.abs());
         ranked.push(Ranked { layout: *layout, rank, value: *value, behind });
     }
     let mut has_value = vec![false; layouts.all.len()];
@@ -79,6 +80,15 @@ mod tests {
         assert_eq!(ranks(&ranking), [(3, 1), (0, 1), (2, 1), (1, 4), (4, 5)]);
         assert_eq!((ranking.best().len(), ranking.next().unwrap().layout), (3, 1));
         assert!((ranking.ranked[4].behind.unwrap() - (2.0 / 0.9999 - 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rounding_is_no_difference() {
+        let values = [2e-7, 5e-7, 3e-6].map(Some);
+        let layouts = layouts(&["a"], &values.map(|value| (vec!["1"], value)));
+        let of = |noise| ranking(&layouts, &measure(&layouts, "figure_mm", noise));
+        assert_eq!(ranks(&of(0.002)), [(0, 1), (1, 1), (2, 3)]);
+        assert_eq!((of(0.002).ranked[2].behind, of(0.0).ranked[1].rank), (None, 2));
     }
 
     #[test]

@@ -36,7 +36,7 @@ impl CaseStatus {
 const CASES: [&str; 4] = ["best", "best_worst_plan", "worst", "worst_worst_plan"];
 
 /// Columns of what is found, behind the figures of the four cases.
-const FIGURES: [(&str, Kind); 19] = [
+const FIGURES: [(&str, Kind); 21] = [
     ("objective_mm", Kind::Number),
     ("cycle_s", Kind::Number),
     ("min_inverse_condition", Kind::Number),
@@ -50,6 +50,8 @@ const FIGURES: [(&str, Kind); 19] = [
     ("yaw_deg", Kind::Number),
     ("postures", Kind::Count),
     ("active_bounds", Kind::Text),
+    ("payload_kg", Kind::Number),
+    ("price_eur", Kind::Number),
     ("certificate_best_mm", Kind::Number),
     ("certificate_best_gap_percent", Kind::Number),
     ("certificate_best_status", Kind::Text),
@@ -123,6 +125,8 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
         number(Unit::ANGLE_DEG, Some(placement.yaw)),
         Cell::Count(postures.len() as i64),
         if bounds.is_empty() { Cell::None } else { Cell::Text(bounds) },
+        Cell::number(problem.robot.data_sheet().payload),
+        Cell::number(problem.robot.data_sheet().price),
     ]
 }
 

@@ -1,0 +1,74 @@
+//! What a study says, from outside.
+
+use crate::study::{STUDY, bench, run};
+
+#[test]
+fn a_study_that_is_done_is_ranked_and_drawn() {
+    let bench = bench();
+    run(&bench, "out", &["--shard", "1/2"]);
+    let ended = bench.stead(&["study", "report", STUDY, "--out", "out"]);
+    assert_eq!(ended.code, Some(2));
+    ended.assert_says(&["out: only 3 of 6 cases of the study are done; allowed: the folder of a study that is done"]);
+    assert!(!bench.path("out/study-ranking.csv").exists());
+
+    run(&bench, "out", &["--shard", "2/2"]);
+    // As where the last shards have ended elsewhere.
+    std::fs::remove_file(bench.path("out/study.csv")).unwrap();
+    let by = ["study", "report", STUDY, "--out", "out", "--by", "best_mean_total_mm"];
+    let ended = bench.stead(&by);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    for part in [
+        "study: 6 cases, 6 placed\n",
+        "By best_mean_total_mm (smaller is better; within 0.2 % layouts tie",
+        "What matters most for best_mean_total_mm is robot.joints[1].stiffness_mnm_per_rad: ",
+        "On the front of best_mean_total_mm (smaller is better) and cycle_s (smaller is better): ",
+        "results in out\n",
+    ] {
+        assert!(ended.stdout.contains(part), "{part} is not in {}", ended.stdout);
+    }
+    let csv = bench.read("out/study-ranking.csv");
+    let lines: Vec<&str> = csv.lines().collect();
+    let header = "rank,cases,robot.joints[1].stiffness_mnm_per_rad,cell.z_mm,best_mean_total_mm,behind_best_percent,status,reason";
+    assert_eq!((lines.len(), lines[0]), (7, header));
+    assert!(lines[1].starts_with("1,") && lines[1].contains(",6,") && lines[1].ends_with(",0,placed,"), "{}", lines[1]);
+    for name in ["study.csv", "study-front.csv", "study-effects.csv"] {
+        assert!(bench.read(&format!("out/{name}")).lines().count() > 1, "{name}");
+    }
+    for name in ["study-front.svg", "study-effects.svg", "study-map.svg"] {
+        assert!(bench.read(&format!("out/{name}")).starts_with("<svg "), "{name}");
+    }
+    let before = bench.read("out/study-report.json");
+    let json = bench.stead(&[&by[..], &["--json"]].concat()).stdout;
+    assert_eq!(json, before);
+    assert!(bench.read("out/manifest.json").contains("\"study report\""));
+
+    let ended = bench.stead(&[
+        "study",
+        "report",
+        STUDY,
+        "--out",
+        "out",
+        "--by",
+        "max_feed_mm_per_s:max",
+        "--noise-percent",
+        "0",
+    ]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("By max_feed_mm_per_s (larger is better; within 0.0 %"), "{}", ended.stdout);
+
+    for (arguments, part) in [
+        (["--by", "cicle_s"], "\"cicle_s\" is no column of study.csv (nearest one: cycle_s); allowed: "),
+        (["--by", "active_bounds"], "\"active_bounds\" holds no numbers; allowed: "),
+        (["--by", "certificate_best_mm"], "\"certificate_best_mm\" has no value in any case; allowed: "),
+        (["--front", "cycle_s"], "\"cycle_s\": is no list of two to six columns; allowed: "),
+        (["--map", "cell.z_mm"], "--map cell.z_mm: is no pair of axes; allowed: "),
+        (["--map", "cell.z,robot.joints[1].stiffness_mnm_per_rad"], "(nearest one: cell.z_mm); allowed: "),
+        (["--noise-percent", "100"], "allowed: a number from 0 to below 100"),
+    ] {
+        let ended = bench.stead(&[&["study", "report", STUDY, "--out", "out"], &arguments[..]].concat());
+        assert_eq!(ended.code, Some(2), "{arguments:?}");
+        assert!(ended.stderr.contains(part), "{part} is not in {}", ended.stderr);
+    }
+    // What is refused leaves the last report.
+    assert!(bench.read("out/study-report.json").contains("\"max_feed_mm_per_s\""));
+}
