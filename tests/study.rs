@@ -2,7 +2,8 @@
 
 use crate::common::{Bench, Ended, RUN};
 use std::collections::BTreeMap;
-use std::time::Duration;
+use std::os::unix::process::ExitStatusExt;
+use std::time::{Duration, Instant};
 
 pub const STUDY: &str = "configs/study.toml";
 
@@ -143,30 +144,35 @@ fn kills() -> usize {
 #[test]
 fn a_study_that_is_killed_again_and_again_ends_with_the_same_bytes() {
     let bench = bench();
+    let start = Instant::now();
     run(&bench, "whole", &[]);
+    let whole = start.elapsed();
     let expected = results(&bench, "whole");
     let count = kills();
-    let (mut killed, mut round) = (0, 0);
+    let (mut killed, mut attempts, mut round) = (0, 0, 0);
     while killed < count {
         round += 1;
         let out = format!("out-{round}");
         bench.write(&format!("{out}/mine.txt"), "the user's own\n");
         loop {
-            let threads = if killed % 2 == 0 { "1" } else { "2" };
+            let threads = if attempts % 2 == 0 { "1" } else { "2" };
             let mut child = bench
                 .command(&["study", "run", STUDY, "--out", &out, "--threads", threads])
                 .stdout(std::process::Stdio::null())
                 .stderr(std::process::Stdio::null())
                 .spawn()
                 .unwrap();
-            std::thread::sleep(Duration::from_millis(20 + 37 * (killed as u64 % 9)));
-            let has_ended = child.try_wait().unwrap().is_some();
-            if !has_ended {
-                killed += 1;
-                child.kill().unwrap();
+            // Moments spread over the time that the whole study takes on this machine.
+            std::thread::sleep(whole.mul_f64(f64::from(attempts * 4 % 9 + 1) / 10.0));
+            attempts += 1;
+            child.kill().unwrap();
+            let status = child.wait().unwrap();
+            if status.success() {
+                break;
             }
-            assert!(child.wait().unwrap().success() == has_ended);
-            if has_ended || killed >= count {
+            assert_eq!(status.signal(), Some(9));
+            killed += 1;
+            if killed >= count {
                 break;
             }
         }
