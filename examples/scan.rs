@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for sense in Sense::BOTH {
         let mut sorted: Vec<Candidate> = scanned.iter().filter(|i| i.objective.mean().is_some()).cloned().collect();
         sorted.sort_by(|a, b| rank(sense, a.objective, b.objective));
-        let basins = distinct(cell, &sorted, REFINED);
+        let basins = distinct(&run.problem, &sorted, REFINED);
         let refined =
             basins.par_iter().filter_map(|basin| refine(&evaluator, &basin.placement, sense, None, &Monitor::silent()));
         let mut reports: Vec<_> = refined.map(|(_, report)| report).collect();

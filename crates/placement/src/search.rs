@@ -18,6 +18,7 @@ use super::problem::{Cell, Placement, Problem};
 use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
+use super::symmetry::{about_axis_1, is_axis_1_vertical};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -107,7 +108,6 @@ pub fn generations(
     monitor: &Monitor,
 ) -> SearchResult {
     let problem = evaluator.planner().problem();
-    let cell = &problem.cell;
     evaluate(evaluator, &mut population, 0, monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
@@ -132,7 +132,7 @@ pub fn generations(
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
         archive.extend(population.iter().filter(|i| i.objective.mean().is_some()).cloned());
         archive.sort_by(|a, b| rank(sense, a.objective, b.objective));
-        archive = distinct(cell, &archive, ARCHIVE);
+        archive = distinct(problem, &archive, ARCHIVE);
         let figures = figures(sense, generation, &population, evaluations);
         history.push(figures);
         best.push(population[0].clone());
@@ -148,7 +148,7 @@ pub fn generations(
         }
     }
     if archive.is_empty() {
-        archive = distinct(cell, &population, ARCHIVE);
+        archive = distinct(problem, &population, ARCHIVE);
     }
     evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
@@ -354,25 +354,43 @@ fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluation
     }
 }
 
-/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `max_count`.
-pub fn distinct(cell: &Cell, sorted: &[Candidate], max_count: usize) -> Vec<Candidate> {
+/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `max_count`. On a long path, where
+/// comparing is dear, placements that a turn about axis 1 brings near each other count as one basin: it changes nothing but the angle of
+/// joint 1.
+pub fn distinct(problem: &Problem, sorted: &[Candidate], max_count: usize) -> Vec<Candidate> {
+    let is_up_to_turn = problem.task.path().is_thinned() && is_axis_1_vertical(problem);
     let mut basins: Vec<Candidate> = Vec::new();
     for candidate in sorted {
         if basins.len() == max_count {
             break;
         }
-        let is_new = basins.iter().all(|known| {
-            let far = (0..3).any(|k| {
-                let width = cell.position[k].width();
-                width > 0.0 && (known.placement[k] - candidate.placement[k]).abs() / width > BASIN.0
-            });
-            far || wrap(known.placement.yaw - candidate.placement.yaw).abs() > BASIN.1
-        });
-        if is_new {
+        let is_near = |known: &Candidate| {
+            let pair = [&known.placement, &candidate.placement];
+            is_near(&problem.cell, pair) || (is_up_to_turn && is_near_after_turn(problem, pair))
+        };
+        if !basins.iter().any(is_near) {
             basins.push(candidate.clone());
         }
     }
     basins
+}
+
+/// Whether two placements are in one basin.
+fn is_near(cell: &Cell, [a, b]: [&Placement; 2]) -> bool {
+    let near = |k: usize| {
+        let width = cell.position[k].width();
+        width <= 0.0 || (a[k] - b[k]).abs() / width <= BASIN.0
+    };
+    (0..3).all(near) && wrap(a.yaw - b.yaw).abs() <= BASIN.1
+}
+
+/// Whether they are when one of them is turned about axis 1 to the azimuth of the other.
+fn is_near_after_turn(problem: &Problem, pair: [&Placement; 2]) -> bool {
+    let [x, y, z] = &problem.cell.position;
+    let [a, b] = pair.map(|placement| about_axis_1(problem, placement));
+    (a[0] - b[0]).abs() <= BASIN.0 * x.width().max(y.width())
+        && (a[1] - b[1]).abs() <= BASIN.0 * z.width()
+        && wrap(a[2] - b[2]).abs() <= BASIN.1
 }
 
 #[cfg(test)]

@@ -97,8 +97,7 @@ impl Upright {
     /// # Errors
     /// [`Unsupported`], with the reason, for any other problem.
     pub fn of(problem: &Problem) -> Result<Self, Unsupported> {
-        let up = problem.robot.geometry().base_from_root * Vector3::z();
-        let is_vertical = |v: &Vector3<f64>| libm::hypot(v.x, v.y) < VERTICAL;
+        let up = axis_1(problem);
         if !is_vertical(&up) {
             return Err(Unsupported::BaseNotVertical { angle: libm::acos(up.z.abs().min(1.0)) });
         }
@@ -147,6 +146,20 @@ pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
 pub(super) fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
     let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
     if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+}
+
+/// Whether turning workpiece and joint 1 together about axis 1 changes nothing but the angle of joint 1.
+pub fn is_axis_1_vertical(problem: &Problem) -> bool {
+    is_vertical(&axis_1(problem))
+}
+
+/// The direction of axis 1 in the base frame.
+fn axis_1(problem: &Problem) -> Vector3<f64> {
+    problem.robot.geometry().base_from_root * Vector3::z()
+}
+
+fn is_vertical(direction: &Vector3<f64>) -> bool {
+    libm::hypot(direction.x, direction.y) < VERTICAL
 }
 
 /// A placement about axis 1: distance of the workpiece origin (m), its z in the base frame (m), and the yaw less its

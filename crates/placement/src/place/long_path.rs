@@ -139,7 +139,8 @@ impl LongPath {
                 continue;
             }
             for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(_, found)| found.basins.is_empty()) {
-                found.basins = search::distinct(&problem.cell, &self.comparison.ranked(sense), settings.basins);
+                found.basins =
+                    search::distinct(&self.search.of(problem), &self.comparison.ranked(sense), settings.basins);
             }
             if !SearchResult::share_basins(&mut found) {
                 return match monitor.should_stop() {
@@ -201,7 +202,7 @@ impl LongPath {
             allowed.extend(mean.map(|mean| Candidate { objective: Objective::Feasible(mean), ..candidate }));
         }
         allowed.sort_by(|a, b| rank(sense, a.objective, b.objective));
-        found.basins = search::distinct(&whole.problem().cell, &allowed, basins);
+        found.basins = search::distinct(&self.search.of(whole.problem()), &allowed, basins);
         is_refused
     }
 }

@@ -5,14 +5,17 @@ use super::refined::Refined;
 use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
-use crate::problem::Placement;
+use crate::problem::{Placement, Problem};
 use crate::redundancy::Planner;
-use crate::refine::{planned, refine, solver};
+use crate::refine::solver::{self, Ending};
+use crate::refine::{LENGTH_UNIT, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
+use crate::symmetry::about_axis_1;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// How often a refinement is repeated with more points at the most.
@@ -21,8 +24,6 @@ const REPEATS: usize = 5;
 const HALVINGS: usize = 6;
 /// Rounds of refinement on the whole path at the most.
 const ROUNDS: usize = 2;
-/// Steps of a round at the most: the start comes from a refinement on a subset, and a step on the whole path is dear.
-const ITERATIONS: u64 = 12;
 /// A round that gains less than this share ends it.
 const GAIN: f64 = 1e-3;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
@@ -31,6 +32,8 @@ const CLOSE: f64 = 0.03;
 const REFINED: usize = 2;
 /// See [`REFINED`].
 const TIED: f64 = 0.004;
+/// Placements no farther apart than this, in the refinement's scaled variables, are one.
+const SAME: f64 = 0.05;
 /// On paths longer than [`MAX_REFINED`].
 const CLOSE_LONG: f64 = 0.01;
 /// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
@@ -166,6 +169,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
     if sense == Sense::Min && !is_long {
         let limit = planned.first().map_or(0.0, |(_, best)| best.solution.objective * (1.0 + TIED));
         planned.retain(|(_, basin)| basin.solution.objective <= limit);
+        planned.dedup_by(|later, earlier| is_same(planner.problem(), &later.1, &earlier.1));
         planned.truncate(REFINED);
         let refined = |(rank, mut basin): (usize, Refined)| {
             let report = refine_whole(planner, &mut basin, estimates[rank].report.clone(), monitor);
@@ -183,6 +187,14 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
     planned.into_iter().map(|(_, basin)| basin).collect()
 }
 
+/// Whether two basins have come to the same end: in the same postures to the same place, but for a turn about axis 1.
+fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
+    let [from, to] = [a, b].map(|basin| about_axis_1(problem, &basin.solution.placement));
+    let near = |k: usize| (from[k] - to[k]).abs() <= SAME * LENGTH_UNIT;
+    let mut plans = a.solution.plans.iter().zip(&b.solution.plans);
+    plans.all(|(a, b)| a.posture == b.posture) && near(0) && near(1) && wrap(from[2] - to[2]).abs() <= SAME
+}
+
 /// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone
 /// gets the same. Returns the report, continued.
 fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
@@ -190,9 +202,7 @@ fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinemen
         if monitor.should_stop() {
             break;
         }
-        let run = solver::run_observed(planner.problem(), &best.solution, monitor, |executor| {
-            executor.configure(|state| state.max_iters(ITERATIONS))
-        });
+        let run = solver::run(planner.problem(), &best.solution, Ending::LOOSE, monitor);
         report.rounds += 1;
         report.iterations += run.iterations;
         report.statuses.push(run.status);

@@ -4,7 +4,9 @@ use super::super::criterion::Criterion;
 use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
 use super::super::problem::{Placement, Problem};
 use super::{LENGTH_UNIT, Solution};
+use crate::redundancy::SegmentPlan;
 use nalgebra::{Matrix5, SymmetricEigen};
+use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
 
@@ -57,35 +59,44 @@ pub enum Curvature {
     Full,
 }
 
+/// Points that one thread linearises at least.
+const MIN_SHARE: usize = 200;
+
 /// All path points of a solution, in order; `None` when one cannot be reached, which a solution rules out.
 pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Option<Vec<Local>> {
-    let mut locals = Vec::with_capacity(problem.task.points().len());
-    for plan in &solution.plans {
-        for (place, point) in plan.points.clone().enumerate() {
-            let at = [
-                solution.placement[0],
-                solution.placement[1],
-                solution.placement[2],
-                solution.placement[3],
-                plan.betas[place],
-            ];
-            let mut centre = gradient(problem, point, at, plan.posture)?;
-            for set in &mut centre.sets {
-                for kinked in [&mut set.changes, &mut set.parts] {
-                    if !is_near_kink(kinked) {
-                        kinked.clear();
-                    }
-                }
+    let of_plan = |plan: &'_ SegmentPlan| {
+        let points: Vec<usize> = plan.points.clone().collect();
+        let local = |(place, point): (usize, usize)| local(problem, &solution.placement, plan, place, point, asked);
+        points.into_par_iter().enumerate().with_min_len(MIN_SHARE).map(local).collect::<Option<Vec<_>>>()
+    };
+    let plans: Option<Vec<_>> = solution.plans.par_iter().map(of_plan).collect();
+    plans.map(|plans| plans.into_iter().flatten().collect())
+}
+
+/// A path point of a plan, linearised.
+fn local(
+    problem: &Problem,
+    placement: &Placement,
+    plan: &SegmentPlan,
+    place: usize,
+    point: usize,
+    asked: Curvature,
+) -> Option<Local> {
+    let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
+    let mut centre = gradient(problem, point, at, plan.posture)?;
+    for set in &mut centre.sets {
+        for kinked in [&mut set.changes, &mut set.parts] {
+            if !is_near_kink(kinked) {
+                kinked.clear();
             }
-            let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
-            let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
-                let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
-                LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
-            });
-            locals.push(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], curvature });
         }
     }
-    Some(locals)
+    let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
+    let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
+        let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
+        LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
+    });
+    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], curvature })
 }
 
 /// A norm that steps of this size could bring to zero has its kink near; in scaled variables.

@@ -108,7 +108,7 @@ pub fn refine(
         let signature = signature(&best);
         let (status, iterations) = match sense {
             Sense::Min => {
-                let run = solver::run(problem, &best, monitor);
+                let run = solver::run(problem, &best, solver::Ending::TIGHT, monitor);
                 best = run.solution;
                 (run.status, run.iterations)
             }

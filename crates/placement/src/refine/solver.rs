@@ -21,21 +21,34 @@ pub type Iterate = IterState<Solution, (), (), (), (), f64>;
 const FIRST_TRUST: f64 = 0.1;
 /// The largest trust region.
 const MAX_TRUST: f64 = 0.4;
-/// The trust region at which it ends.
-const LAST_TRUST: f64 = 1e-6;
-/// A promised gain of less than this share of the mean ends it.
-const MIN_PROMISE: f64 = 1e-7;
-/// So many steps in a row that gain less than [`MIN_GAIN`] of the mean end it.
+/// A promised gain of less than this part of [`Ending::min_gain`] ends it.
+const PROMISE: f64 = 0.1;
+/// So many steps in a row that gain less than [`Ending::min_gain`] end it.
 const LAZY_STEPS: usize = 3;
-/// See [`LAZY_STEPS`].
-const MIN_GAIN: f64 = 1e-6;
-/// Iterations at the most.
-const MAX_ITERATIONS: u64 = 80;
+
+/// When a run is at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ending {
+    /// The trust region at which it ends, in scaled variables.
+    pub last_trust: f64,
+    /// Steps that gain less than this share of the objective end it.
+    pub min_gain: f64,
+    /// Iterations at the most.
+    pub max_iterations: u64,
+}
+
+impl Ending {
+    /// At a local optimum, to a micrometre.
+    pub const TIGHT: Self = Self { last_trust: 1e-6, min_gain: 1e-6, max_iterations: 80 };
+    /// Where a step costs much and its gain would be far below what a search is good for: a tenth of a millimetre.
+    pub const LOOSE: Self = Self { last_trust: 1e-3, min_gain: 2e-5, max_iterations: 12 };
+}
 
 /// The solver: the trust region around the iterate, and how it ended.
 #[derive(Debug, Clone)]
 pub struct SequentialConvex<'a> {
     problem: &'a Problem,
+    ending: Ending,
     trust: f64,
     lazy: usize,
     status: Option<RefinementStatus>,
@@ -53,21 +66,24 @@ pub struct Run {
     pub iterations: usize,
 }
 
-/// Runs the programme from a solution, without observers, until it converges or the caller asks to stop.
-pub fn run(problem: &Problem, start: &Solution, monitor: &Monitor) -> Run {
-    run_observed(problem, start, monitor, |executor| executor)
+/// Runs the programme from a solution, without observers, until its end or until the caller asks to stop.
+pub fn run(problem: &Problem, start: &Solution, ending: Ending, monitor: &Monitor) -> Run {
+    run_observed(problem, start, ending, monitor, |executor| executor)
 }
 
 /// Runs the programme with an executor that the caller may give observers.
 pub fn run_observed<'a>(
     problem: &'a Problem,
     start: &Solution,
+    ending: Ending,
     monitor: &Monitor,
     observe: impl FnOnce(Executor<(), SequentialConvex<'a>, Iterate>) -> Executor<(), SequentialConvex<'a>, Iterate>,
 ) -> Run {
-    let solver = SequentialConvex { problem, trust: FIRST_TRUST, lazy: 0, status: None, monitor: monitor.clone() };
-    let executor =
-        Executor::new((), solver).configure(|state| state.param(start.clone()).max_iters(MAX_ITERATIONS)).timer(false);
+    let monitor = monitor.clone();
+    let solver = SequentialConvex { problem, ending, trust: FIRST_TRUST, lazy: 0, status: None, monitor };
+    let executor = Executor::new((), solver)
+        .configure(|state| state.param(start.clone()).max_iters(ending.max_iterations))
+        .timer(false);
     match observe(executor).run() {
         Ok(mut result) => Run {
             solution: result.state.take_param().unwrap_or_else(|| start.clone()),
@@ -101,11 +117,11 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
             return Ok((state.param(known).cost(mean), None));
         };
         let next = self.step(&known, mean, &locals).unwrap_or(known);
-        self.lazy = if mean - next.objective < MIN_GAIN * mean { self.lazy + 1 } else { 0 };
+        self.lazy = if mean - next.objective < self.ending.min_gain * mean { self.lazy + 1 } else { 0 };
         if self.lazy >= LAZY_STEPS && self.status.is_none() {
             self.status = Some(RefinementStatus::NoMoreGain);
         }
-        if self.trust < LAST_TRUST && self.status.is_none() {
+        if self.trust < self.ending.last_trust && self.status.is_none() {
             self.status = Some(RefinementStatus::SmallestTrustRegion);
         }
         let mean = next.objective;
@@ -123,14 +139,14 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
 impl SequentialConvex<'_> {
     /// A better solution inside the trust region, which shrinks until there is one or it is gone; the linearisation stays.
     fn step(&mut self, known: &Solution, mean: f64, locals: &[Local]) -> Option<Solution> {
-        while self.trust >= LAST_TRUST && !self.monitor.should_stop() {
+        while self.trust >= self.ending.last_trust && !self.monitor.should_stop() {
             let question = Question { trust: self.trust, curved: true, pose_stays: false };
             let Ok(answer) = solve(self.problem, known, locals, question) else {
                 self.status = Some(RefinementStatus::SubproblemFailed);
                 self.trust /= 4.0;
                 continue;
             };
-            if answer.promised < MIN_PROMISE * mean {
+            if answer.promised < PROMISE * self.ending.min_gain * mean {
                 self.status = Some(RefinementStatus::NoFirstOrderGain);
                 return None;
             }

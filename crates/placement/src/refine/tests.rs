@@ -210,7 +210,7 @@ fn argmin_observers_see_every_iteration() {
     let start = planned(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), None, &mut planner.workspace()).unwrap();
     let costs = Arc::new(Mutex::new(Vec::new()));
     let observer = Costs(Arc::clone(&costs));
-    let run = solver::run_observed(&problem, &start, &Monitor::silent(), |executor| {
+    let run = solver::run_observed(&problem, &start, solver::Ending::TIGHT, &Monitor::silent(), |executor| {
         executor.add_observer(observer, ObserverMode::Always)
     });
     let costs = costs.lock().unwrap();

@@ -1,4 +1,5 @@
 use super::super::lookup::LookupTable;
+use super::super::path_subset::PathSubset;
 use super::super::redundancy::Planner;
 use super::super::testing::five_segments;
 use super::*;
@@ -47,4 +48,28 @@ fn best_only_gets_better_and_stays_in_the_cell() {
             assert_eq!(candidate.scheme.is_some(), postures == PostureSearch::Genetic);
         }
     }
+}
+
+#[test]
+fn on_a_long_path_a_turn_about_axis_1_makes_no_other_basin() {
+    let problem = five_segments();
+    let thinned = PathSubset::new(&problem.task, 20).of(&problem);
+    let root = problem.robot.geometry().root_in_base;
+    let at = |radius: f64, azimuth: f64, heading: f64| {
+        let (sine, cosine) = libm::sincos(azimuth);
+        let placement = Placement {
+            x: root.x + radius * cosine,
+            y: root.y + radius * sine,
+            z: problem.cell.position[2].min,
+            yaw: heading + azimuth,
+        };
+        Candidate { placement, scheme: None, objective: UNEVALUATED }
+    };
+    let turned = [at(1.5, 0.1, 0.3), at(1.5, 1.4, 0.3), at(1.5, -2.0, 0.3)];
+    assert_eq!(distinct(&problem, &turned, 9), turned);
+    assert_eq!(distinct(&thinned, &turned, 9), turned[..1]);
+    // Another radius, or another heading, is another basin.
+    let others = [at(1.5, 0.1, 0.3), at(0.3, 0.1, 0.3), at(1.5, 0.1, 1.3)];
+    assert_eq!(distinct(&thinned, &others, 9), others);
+    assert_eq!(distinct(&thinned, &others, 2), others[..2]);
 }
