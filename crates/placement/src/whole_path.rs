@@ -3,8 +3,9 @@
 use super::candidate::{Candidate, Objective};
 use super::criterion::Aggregate;
 use super::evaluate::reference::state;
+use super::path_subset::PathSubset;
 use super::problem::{Placement, Problem};
-use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
+use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
 use super::sense::Sense;
 use stead_model::robot::Posture;
 
@@ -68,6 +69,53 @@ impl<'a, 'p> WholePath<'a, 'p> {
         }
     }
 
+    /// Whether a candidate of a subset comes to more on the whole path than the subset promises, or has no plan there.
+    pub fn is_misjudged(candidate: &Candidate, mean: Option<f64>) -> bool {
+        let promised = candidate.objective.mean();
+        promised.is_some_and(|promised| mean.is_none_or(|mean| mean > promised * (1.0 + AGREEMENT)))
+    }
+
+    /// Points that keep the whole path from what a subset promises of a candidate: some of every stretch where the subset's plan, with
+    /// beta interpolated in between, breaks a constraint; where it breaks none, the point whose score is the farthest above those of
+    /// the subset's points around it.
+    pub fn obstacles(&self, candidate: &Candidate, subset: &PathSubset) -> Vec<usize> {
+        let problem = self.problem();
+        let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
+        let thinned = subset.of(problem);
+        let planner = Planner::new(&thinned);
+        let Ok(plans) = planner.plan(placement, Sense::Min, scheme, &mut planner.workspace()) else {
+            return Vec::new();
+        };
+        let (mut blocked_points, mut highest) = (Vec::new(), None);
+        for plan in &plans {
+            let kept = &subset.points()[plan.points.clone()];
+            for (place, pair) in kept.windows(2).enumerate() {
+                let score = |point: usize| {
+                    let share = (point - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
+                    let between = |a: f64, b: f64| a + share * (b - a);
+                    let [from, to] = [&plan.joints[place], &plan.joints[place + 1]];
+                    let near = std::array::from_fn(|j| between(from[j], to[j]));
+                    let beta = between(plan.betas[place], plan.betas[place + 1]);
+                    off_grid::score(problem, placement, (point, beta), plan, &near)
+                };
+                let ends = pair.iter().filter_map(|point| score(*point)).fold(0.0, f64::max);
+                for point in pair[0] + 1..pair[1] {
+                    match score(point) {
+                        None => blocked_points.push(point),
+                        Some(score) if highest.is_none_or(|(known, _)| score - ends > known) => {
+                            highest = Some((score - ends, point));
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        if blocked_points.is_empty() {
+            return highest.into_iter().map(|(_, point)| point).collect();
+        }
+        deciding(problem, &NoFeasiblePlan { blocked_points, broken_segments: Vec::new() })
+    }
+
     /// The objective of a candidate of a subset, none where it has no plan, and the points that decide that.
     pub fn check(&self, candidate: &Candidate) -> (Option<f64>, Vec<usize>) {
         let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
@@ -109,4 +157,60 @@ fn deciding(problem: &Problem, none: &NoFeasiblePlan) -> Vec<usize> {
         points.extend((stuck.saturating_sub(2)..=stuck + 2).filter(|point| span.contains(point)));
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+    use nalgebra::{Rotation3, Vector3};
+    use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+
+    /// The five segments with points `from` to `from + 3` changed, which a subset of ten points leaves out, and that subset.
+    fn changed(from: usize, change: impl Fn(&mut PathPoint, &mut Wrench)) -> (Problem, PathSubset) {
+        let mut problem = five_segments();
+        let mut wrenches = problem.task.wrenches().to_vec();
+        let path = problem.task.path();
+        let mut points: Vec<_> =
+            (0..wrenches.len()).map(|k| (path.segment_of(k) as u32 + 1, problem.task.points()[k])).collect();
+        (from..from + 3).for_each(|k| change(&mut points[k].1, &mut wrenches[k]));
+        let subset = PathSubset::new(&problem.task, 10);
+        assert!(subset.points().iter().all(|point| !(from..from + 3).contains(point)));
+        problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
+        (problem, subset)
+    }
+
+    /// The candidate in the middle of the cell as the subset sees it.
+    fn promised(problem: &Problem, subset: &PathSubset) -> Candidate {
+        let middle = |k: usize| problem.cell.position[k].min + 0.5 * problem.cell.position[k].width();
+        let placement = Placement { x: middle(0), y: middle(1), z: middle(2), yaw: 0.0 };
+        let thinned = subset.of(problem);
+        let planner = Planner::new(&thinned);
+        let objective = planner.objective(&placement, Sense::Min, None, &mut planner.workspace());
+        Candidate { placement, scheme: None, objective }
+    }
+
+    #[test]
+    fn a_stiff_corner_that_a_subset_leaves_out_is_what_decides() {
+        let (problem, subset) = changed(26, |_, wrench| wrench.force *= 40.0);
+        let finer = Planner::finer(&problem);
+        let whole = WholePath::new(&finer);
+        let candidate = promised(&problem, &subset);
+        let (mean, points) = whole.check(&candidate);
+        assert!(points.is_empty() && WholePath::is_misjudged(&candidate, mean), "{mean:?} {candidate:?}");
+        let obstacles = whole.obstacles(&candidate, &subset);
+        assert!(obstacles.len() == 1 && (26..29).contains(&obstacles[0]), "{obstacles:?}");
+    }
+
+    #[test]
+    fn points_where_the_plan_of_a_subset_is_forbidden_are_what_decides() {
+        let (problem, subset) = changed(26, |point, _| {
+            point.axis = Rotation3::from_axis_angle(&Vector3::x_axis(), 1.2) * point.axis;
+            point.feed = Rotation3::from_axis_angle(&Vector3::x_axis(), 1.2) * point.feed;
+        });
+        let finer = Planner::finer(&problem);
+        let candidate = promised(&problem, &subset);
+        let obstacles = WholePath::new(&finer).obstacles(&candidate, &subset);
+        assert!(!obstacles.is_empty() && obstacles.iter().all(|point| (26..29).contains(point)), "{obstacles:?}");
+    }
 }

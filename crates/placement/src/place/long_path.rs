@@ -8,7 +8,7 @@
 use super::infeasible::{Infeasible, infeasible};
 use super::searched::{Searched, search_cell};
 use crate::candidate::{Candidate, Objective, rank};
-use crate::evaluator::Evaluator;
+use crate::evaluator::{self, Evaluator};
 use crate::outcome::{PathLevels, SubsetAccuracy};
 use crate::path_comparison::PathComparison;
 use crate::path_subset::PathSubset;
@@ -43,6 +43,10 @@ const SHARE: usize = 2;
 const IMPROVED: usize = 6;
 /// and those that are planned on the whole path.
 const PROMOTED: usize = 3;
+/// A candidate whose mean is larger by more than this share on a subset with more points is improved there.
+const REPAIRED: f64 = 0.08;
+/// How often candidates that the whole path finds worse are improved with the points in their way.
+const REPAIRS: usize = 3;
 
 /// The subsets of a long path.
 #[derive(Debug, Clone)]
@@ -129,7 +133,7 @@ impl LongPath {
             let mut deciding = Vec::new();
             let mut is_refused = false;
             for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
-                is_refused |= self.promote(&whole, sense, found, settings.basins, &mut deciding);
+                is_refused |= self.promote(&whole, sense, found, settings.basins, &mut deciding, monitor);
             }
             self.comparison.add_deciding(&deciding);
             let is_larger = self.search.add(&deciding);
@@ -173,7 +177,7 @@ impl LongPath {
             if monitor.should_stop() {
                 break;
             }
-            let start = std::mem::take(&mut found.basins);
+            let start = repaired(&evaluator, sense, std::mem::take(&mut found.basins), monitor);
             let again = search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
             evaluations += again.evaluations;
             found.basins = again.basins;
@@ -183,7 +187,8 @@ impl LongPath {
     }
 
     /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct basins, at most
-    /// `basins`; returns whether the first has none.
+    /// `basins`; returns whether the first has none. Candidates for the best placement that a subset judged better than the whole path
+    /// does are improved on a subset that knows the points in their way, and planned again.
     fn promote(
         &mut self,
         whole: &WholePath<'_, '_>,
@@ -191,20 +196,80 @@ impl LongPath {
         found: &mut SearchResult,
         basins: usize,
         deciding: &mut Vec<usize>,
+        monitor: &Monitor,
     ) -> bool {
         found.basins.truncate(PROMOTED * basins);
-        let checked: Vec<_> = found.basins.par_iter().map(|candidate| whole.check(candidate)).collect();
-        self.levels.whole += checked.len();
-        let is_refused = checked.first().is_some_and(|(mean, _)| mean.is_none());
+        let mut candidates = std::mem::take(&mut found.basins);
         let mut allowed = Vec::new();
-        for (candidate, (mean, points)) in found.basins.drain(..).zip(checked) {
-            deciding.extend(points);
-            allowed.extend(mean.map(|mean| Candidate { objective: Objective::Feasible(mean), ..candidate }));
+        let mut is_refused = None;
+        for round in 0..=REPAIRS {
+            let checked: Vec<_> = candidates.par_iter().map(|candidate| whole.check(candidate)).collect();
+            self.levels.whole += checked.len();
+            is_refused.get_or_insert(checked.first().is_some_and(|(mean, _)| mean.is_none()));
+            let mut misjudged = Vec::new();
+            for (candidate, (mean, points)) in candidates.into_iter().zip(checked) {
+                deciding.extend(points);
+                if mean.is_some() && WholePath::is_misjudged(&candidate, mean) {
+                    misjudged.push(candidate.clone());
+                }
+                allowed.extend(mean.map(|mean| Candidate { objective: Objective::Feasible(mean), ..candidate }));
+            }
+            allowed.sort_by(|a, b| rank(sense, a.objective, b.objective));
+            // What would not win even if the subset were right is left as it is.
+            misjudged.retain(|candidate| {
+                allowed.get(basins).is_none_or(|last| rank(sense, candidate.objective, last.objective).is_lt())
+            });
+            if sense == Sense::Max || misjudged.is_empty() || round == REPAIRS || monitor.should_stop() {
+                break;
+            }
+            let obstacles: Vec<Vec<usize>> =
+                misjudged.par_iter().map(|candidate| whole.obstacles(candidate, &self.refinement)).collect();
+            if !self.refinement.add(&obstacles.concat()) {
+                break;
+            }
+            candidates = self.repaired(whole.problem(), sense, misjudged, monitor);
+            found.evaluations += candidates.len();
         }
-        allowed.sort_by(|a, b| rank(sense, a.objective, b.objective));
         found.basins = search::distinct(&self.search.of(whole.problem()), &allowed, basins);
-        is_refused
+        is_refused.unwrap_or_default()
     }
+
+    /// Candidates as the subset for the refinement has them; those of which it differs are improved there.
+    fn repaired(
+        &self,
+        problem: &Problem,
+        sense: Sense,
+        candidates: Vec<Candidate>,
+        monitor: &Monitor,
+    ) -> Vec<Candidate> {
+        let thinned = self.refinement.of(problem);
+        let (planner, finer) = (Planner::new(&thinned), Planner::finer(&thinned));
+        let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
+        repaired(&evaluator, sense, candidates, monitor)
+    }
+}
+
+/// Candidates as an evaluator has them that knows more points of the path than what they were found by. For the best placement those
+/// of which it thinks otherwise are improved by coordinate search, if what was promised of them would win.
+fn repaired(evaluator: &Evaluator<'_>, sense: Sense, candidates: Vec<Candidate>, monitor: &Monitor) -> Vec<Candidate> {
+    let known = |workspace: &mut evaluator::Workspace, promised: Candidate| {
+        let objective = evaluator.objective(&promised.placement, promised.scheme.as_deref(), workspace);
+        (promised.objective, Candidate { objective, ..promised })
+    };
+    let known: Vec<(Objective, Candidate)> =
+        candidates.into_par_iter().map_init(|| evaluator.workspace(), known).collect();
+    let best = known.iter().filter_map(|(_, candidate)| candidate.objective.mean()).fold(f64::INFINITY, f64::min);
+    let repair = |workspace: &mut evaluator::Workspace, (promised, candidate): (Objective, Candidate)| {
+        let is_kept = promised.mean().is_none_or(|promised| {
+            let is_off = candidate.objective.mean().is_none_or(|mean| mean > promised * (1.0 + REPAIRED));
+            !is_off || promised > best
+        });
+        match is_kept || sense == Sense::Max {
+            true => candidate,
+            false => evaluator.improved(&candidate, sense, monitor, workspace).0,
+        }
+    };
+    known.into_par_iter().map_init(|| evaluator.workspace(), repair).collect()
 }
 
 /// Improves the basins of both searches by coordinate search; returns how many placements were evaluated.

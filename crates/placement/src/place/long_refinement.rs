@@ -22,10 +22,6 @@ use stead_numerics::monitor::{Monitor, Progress};
 const REPEATS: usize = 5;
 /// Halvings of the way back to the start of a refinement that the whole path does not allow.
 const HALVINGS: usize = 6;
-/// Rounds of refinement on the whole path at the most.
-const ROUNDS: usize = 2;
-/// A round that gains less than this share ends it.
-const GAIN: f64 = 1e-3;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
 const CLOSE: f64 = 0.03;
 /// Of these, so many at the most that are this near (relative) to the best are refined on the whole path.
@@ -198,23 +194,16 @@ fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
 /// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone
 /// gets the same. Returns the report, continued.
 fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
-    for _ in 0..ROUNDS {
-        if monitor.should_stop() {
-            break;
-        }
-        let run = solver::run(planner.problem(), &best.solution, Ending::LOOSE, monitor);
-        report.rounds += 1;
-        report.iterations += run.iterations;
-        report.statuses.push(run.status);
-        let scheme = best.scheme.as_deref();
-        let before = best.solution.objective;
-        match planned(planner, &run.solution.placement, scheme, &mut planner.workspace()) {
-            Some(anew) if anew.objective < before => best.solution = anew,
-            _ => break,
-        }
-        if best.solution.objective > before * (1.0 - GAIN) {
-            break;
-        }
+    if monitor.should_stop() {
+        return report;
+    }
+    let run = solver::run(planner.problem(), &best.solution, Ending::LOOSE, monitor);
+    report.rounds += 1;
+    report.iterations += run.iterations;
+    report.statuses.push(run.status);
+    let anew = planned(planner, &run.solution.placement, best.scheme.as_deref(), &mut planner.workspace());
+    if let Some(anew) = anew.filter(|anew| anew.objective < best.solution.objective) {
+        best.solution = anew;
     }
     (report.end, report.end_mean) = (best.solution.placement, best.solution.objective);
     report

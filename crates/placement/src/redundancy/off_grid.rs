@@ -122,6 +122,19 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
     Some(replayed)
 }
 
+/// The score of a path point at a beta (rad) in the posture of a plan, near given joint angles (rad); `None` where a constraint on the
+/// state forbids it. m
+pub fn score(
+    problem: &Problem,
+    placement: &Placement,
+    (point, beta): (usize, f64),
+    plan: &SegmentPlan,
+    near: &[f64; 6],
+) -> Option<f64> {
+    let state = allowed(problem, placement, point, beta, plan)?;
+    turned(problem, &state, near).map(|node| node.score)
+}
+
 /// The state of a path point in the posture of a plan, if it satisfies everything but the limits of the joints.
 fn allowed(problem: &Problem, placement: &Placement, point: usize, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
     let state = reference::state(problem, point, placement, beta, plan.posture).ok()?;
