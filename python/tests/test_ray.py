@@ -1,0 +1,188 @@
+"""A study on two Ray nodes of this machine, one of which is killed while it works: the bytes of one process all the same."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import secrets
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import stead
+
+pytest.importorskip("ray")
+pytestmark = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are found in /proc")
+
+CASES, SHARDS = 24, 8
+DEADLINE_S = 180.0
+
+
+class Node:
+    """A Ray node of this machine with one processor. Its processes are known by a variable of their environment."""
+
+    def __init__(self, folder: Path, *options: str) -> None:
+        self._mark = f"STEAD_TEST_NODE={secrets.token_hex(16)}"
+        name, value = self._mark.split("=")
+        self.environment = {
+            **os.environ,
+            name: value,
+            "HOME": str(folder),
+            "RAY_USAGE_STATS_ENABLED": "0",
+            "RAY_DISABLE_IMPORT_WARNING": "1",
+        }
+        self._options = ["--num-cpus=1", "--object-store-memory=80000000", "--disable-usage-stats", *options]
+
+    def start(self) -> None:
+        call = [sys.executable, "-m", "ray.scripts.scripts", "start", "--node-ip-address=127.0.0.1", *self._options]
+        done = subprocess.run(call, env=self.environment, capture_output=True, text=True, check=False, timeout=90)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+    def processes(self) -> list[int]:
+        """The numbers of its processes, of workers too."""
+        mark = self._mark.encode()
+
+        def is_ours(process: Path) -> bool:
+            try:
+                return mark in (process / "environ").read_bytes().split(b"\0")
+            except OSError:
+                return False
+
+        return [int(process.name) for process in Path("/proc").iterdir() if process.name.isdigit() and is_ours(process)]
+
+    def kill(self) -> None:
+        """Kills all of it at once, and what it starts meanwhile."""
+        end = time.monotonic() + 20.0
+        while processes := self.processes():
+            assert time.monotonic() < end, processes
+            for process in processes:
+                try:
+                    os.kill(process, signal.SIGKILL)
+                except ProcessLookupError:
+                    continue
+            time.sleep(0.05)
+
+    def journals(self, folder: Path) -> list[Path]:
+        """The journals that its workers have open."""
+        found = []
+        for process in self.processes():
+            try:
+                files = [Path(os.readlink(file)) for file in Path(f"/proc/{process}/fd").iterdir()]
+            except OSError:
+                continue
+            found += [file for file in files if file.parent == folder / "shards" and file.suffix == ".jsonl"]
+        return found
+
+
+@pytest.fixture
+def nodes() -> Iterator[tuple[Node, Node, str]]:
+    """Two nodes, and the address of the cluster."""
+    # A name of a socket is short, so this is not a folder of pytest.
+    folder = Path(tempfile.mkdtemp(prefix="stead-ray-"))
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    # A dead node is found out in seconds.
+    system = json.dumps({"health_check_initial_delay_ms": 500, "health_check_period_ms": 500, "health_check_failure_threshold": 4})
+    head = Node(folder, "--head", f"--port={port}", "--include-dashboard=false", f"--temp-dir={folder}", f"--system-config={system}")
+    second = Node(folder, f"--address=127.0.0.1:{port}")
+    try:
+        head.start()
+        second.start()
+        yield head, second, f"127.0.0.1:{port}"
+    finally:
+        second.kill()
+        head.kill()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def kill_at_work(head: Node, second: Node, folder: Path, driver: subprocess.Popen[str]) -> tuple[Path, list[str]]:
+    """Kills the second node while a shard of it has finished some of its cases. Returns the journal and its whole lines."""
+    end = time.monotonic() + DEADLINE_S / 2.0
+    is_head_at_work = False
+    while time.monotonic() < end:
+        assert driver.poll() is None, driver.communicate()
+        is_head_at_work = is_head_at_work or bool(head.journals(folder))
+        for journal in second.journals(folder) if is_head_at_work else []:
+            if 1 <= journal.read_text().count("\n") < CASES // SHARDS:
+                second.kill()
+                lines = [line for line in journal.read_text().splitlines(keepends=True) if line.endswith("\n")]
+                assert 1 <= len(lines) < CASES // SHARDS
+                return journal, lines
+        time.sleep(0.01)
+    raise AssertionError("the two nodes were not seen at work")
+
+
+def test_a_node_that_is_killed_costs_no_case(
+    nodes: tuple[Node, Node, str], small_study: Path, command: list[str], tmp_path: Path
+) -> None:
+    head, second, address = nodes
+    file = small_study.with_name("ray.toml")
+    axis = "robot.joints[1].stiffness_mnm_per_rad"
+    file.write_text(
+        f'{small_study.read_text()}\n[[axis]]\nfield = "{axis}"\nrange = {{ from = 0.2, to = 6.0, count = {CASES}, spacing = "log" }}\n'
+    )
+    folder = tmp_path / "ray"
+    call: list[str | Path] = [sys.executable, "-m", "stead.study", file, "--engine", "ray", "--address", address]
+    call += ["--shards", str(SHARDS), "--out", folder]
+    with subprocess.Popen(
+        call, env=head.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as driver:
+        try:
+            journal, finished = kill_at_work(head, second, folder, driver)
+            out, err = driver.communicate(timeout=DEADLINE_S)
+        finally:
+            driver.kill()
+    assert driver.returncode == 0, err
+    assert out == f"study: {CASES} of {CASES} cases done, {CASES} of them now; results in {folder / 'study.csv'}\n"
+    assert all(line.startswith("progress: ") for line in err.splitlines()), err
+
+    subprocess.run([*command, "study", "run", file, "--out", tmp_path / "local"], capture_output=True, check=True)
+    for name in ("study.csv", "study.parquet"):
+        assert (folder / name).read_bytes() == (tmp_path / "local" / name).read_bytes(), name
+    status = stead.Study.read(file).status(folder)
+    assert status.done == CASES and [shard.shard for shard in status.shards] == [(i, SHARDS) for i in range(1, 9)]
+
+    # The shard that was begun on the killed node went on where it was: its finished cases keep the time that they took there.
+    with open(re.sub(r"\.jsonl$", "-timing.csv", str(journal)), newline="") as text:
+        seconds = {row["id"]: float(row["seconds"]) for row in csv.DictReader(text)}
+    assert len(seconds) == CASES // SHARDS
+    for line in finished:
+        entry = json.loads(line)["case"]
+        assert seconds[entry["id"]] == entry["timing"]["seconds"]
+
+
+def test_what_ray_cannot_do_is_said_in_one_line(nodes: tuple[Node, Node, str], small_study: Path, tmp_path: Path) -> None:
+    head, second, address = nodes
+    study = small_study.with_name("threads.toml")
+    study.write_text(f'{small_study.read_text()}\n[[axis]]\nfield = "search.seed"\nvalues = [1, 2]\n')
+    call = [sys.executable, "-m", "stead.study", str(study), "--engine", "ray", "--out", str(tmp_path / "out")]
+    ended = subprocess.run(
+        [*call, "--address", address, "--threads", "7"], env=head.environment, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr == "error: no node of the cluster has 7 processors; allowed: up to 1 threads\n"
+
+    # A shard that another process holds is waited for, and then refused.
+    from stead._ray import Work, do_shard
+
+    held = tmp_path / "held"
+    stead.Study.read(study).run(held, (1, 2))
+    import fcntl
+
+    with open(held / "shards" / "0002-of-0002.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        answer = do_shard(Work(str(study), str(held), 2, 1), 2, locked_s=0.3)
+    assert answer.is_bad_input and answer.error is not None
+    assert answer.error.startswith("shard 2/2: ") and "worked on by another process" in answer.error
+    assert do_shard(Work(str(study), str(held), 2, 1), 2).error is None
