@@ -44,7 +44,15 @@ def small_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def small_study(small_run: Path) -> Path:
     """A study file without axes, whose cases take a fraction of a second."""
     run = small_run.read_text()
-    for key, value in {"population": "8", "generations": "2", "basins": "1"}.items():
+    smaller = {
+        "x_mm": "[0.0, 10.0]",
+        "y_mm": "[-1645.0, -1640.0]",
+        "z_mm": "[-220.0, -214.0]",
+        "population": "8",
+        "generations": "2",
+        "basins": "1",
+    }
+    for key, value in smaller.items():
         run, changed = re.subn(rf"(?m)^{key} *=.*$", f"{key} = {value}", run)
         assert changed == 1, key
     small_run.with_name("smaller.toml").write_text(run)

