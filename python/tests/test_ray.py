@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import json
 import os
 import re
@@ -13,13 +14,16 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 import stead
+from stead._ray import Answer, Work, do_shard
 
 pytest.importorskip("ray")
 pytestmark = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are found in /proc")
@@ -39,7 +43,8 @@ class Node:
             name: value,
             "HOME": str(folder),
             "RAY_USAGE_STATS_ENABLED": "0",
-            "RAY_DISABLE_IMPORT_WARNING": "1",
+            # Workers are not to wait for whatever else this machine does.
+            "RAY_worker_niceness": "0",
         }
         self._workers: list[int] = []
         self._next_look = 0.0
@@ -128,26 +133,35 @@ def kill_at_work(head: Node, second: Node, folder: Path, driver: subprocess.Pope
     raise AssertionError("the two nodes were not seen at work")
 
 
+def study_of(small_study: Path, cases: int) -> Path:
+    file = small_study.with_name(f"ray-{cases}.toml")
+    steps = f'{{ from = 0.2, to = 6.0, count = {cases}, spacing = "log" }}'
+    axis = f'[[axis]]\nfield = "robot.joints[1].stiffness_mnm_per_rad"\nrange = {steps}\n'
+    file.write_text(f"{small_study.read_text()}\n{axis}")
+    return file
+
+
+@contextmanager
+def started(call: list[str | Path], head: Node) -> Iterator[subprocess.Popen[str]]:
+    """A process that is gone in the end."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen(call, env=head.environment, stdout=pipe, stderr=pipe, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
 def test_a_node_that_is_killed_costs_no_case(
     nodes: tuple[Node, Node, str], small_study: Path, command: list[str], tmp_path: Path
 ) -> None:
     head, second, address = nodes
-    file = small_study.with_name("ray.toml")
-    axis = "robot.joints[1].stiffness_mnm_per_rad"
-    file.write_text(
-        f'{small_study.read_text()}\n[[axis]]\nfield = "{axis}"\nrange = {{ from = 0.2, to = 6.0, count = {CASES}, spacing = "log" }}\n'
-    )
-    folder = tmp_path / "ray"
+    file, folder = study_of(small_study, CASES), tmp_path / "ray"
     call: list[str | Path] = [sys.executable, "-m", "stead.study", file, "--engine", "ray", "--address", address]
     call += ["--shards", str(SHARDS), "--out", folder]
-    with subprocess.Popen(
-        call, env=head.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as driver:
-        try:
-            journal, finished = kill_at_work(head, second, folder, driver)
-            out, err = driver.communicate(timeout=DEADLINE_S)
-        finally:
-            driver.kill()
+    with started(call, head) as driver:
+        journal, finished = kill_at_work(head, second, folder, driver)
+        out, err = driver.communicate(timeout=DEADLINE_S)
     assert driver.returncode == 0, err
     assert out == f"study: {CASES} of {CASES} cases done, {CASES} of them now; results in {folder / 'study.csv'}\n"
     assert "Traceback" not in err and "error: " not in err, err
@@ -167,27 +181,43 @@ def test_a_node_that_is_killed_costs_no_case(
         assert seconds[entry["id"]] == entry["timing"]["seconds"]
 
 
-def test_what_ray_cannot_do_is_said_in_one_line(nodes: tuple[Node, Node, str], small_study: Path, tmp_path: Path) -> None:
-    head, second, address = nodes
-    study = small_study.with_name("threads.toml")
-    study.write_text(f'{small_study.read_text()}\n[[axis]]\nfield = "search.seed"\nvalues = [1, 2]\n')
-    call = [sys.executable, "-m", "stead.study", str(study), "--engine", "ray", "--out", str(tmp_path / "out")]
-    ended = subprocess.run(
-        [*call, "--address", address, "--threads", "7"], env=head.environment, capture_output=True, text=True, check=False
-    )
-    assert (ended.returncode, ended.stdout) == (2, "")
-    assert ended.stderr == "error: no node of the cluster has 7 processors; allowed: up to 1 threads\n"
+def test_ctrl_c_and_what_is_refused(nodes: tuple[Node, Node, str], small_study: Path, tmp_path: Path) -> None:
+    head, _, address = nodes
+    file, folder = study_of(small_study, 40), tmp_path / "out"
+    call: list[str | Path] = [sys.executable, "-m", "stead.study", file, "--engine", "ray", "--address", address]
+    call += ["--out", folder]
+    with started([*call, "--threads", "7"], head) as driver:
+        assert driver.communicate(timeout=DEADLINE_S) == (
+            "",
+            "error: no node of the cluster has 7 processors; allowed: up to 1 threads\n",
+        )
+    assert driver.returncode == 2
 
-    # A shard that another process holds is waited for, and then refused.
-    from stead._ray import Work, do_shard
+    study = stead.Study.read(file)
+    with started(call, head) as driver:
+        end = time.monotonic() + DEADLINE_S / 2.0
+        while study.status(folder).done == 0:
+            assert time.monotonic() < end and driver.poll() is None
+            time.sleep(0.05)
+        driver.send_signal(signal.SIGINT)
+        out, err = driver.communicate(timeout=DEADLINE_S)
+    assert (driver.returncode, out) == (130, ""), err
+    assert err.endswith("interrupted: finished cases are kept; the same command goes on\n") and "Traceback" not in err
+    done = study.status(folder).done
+    assert 0 < done < 40
+    with started([*call, "--shards", "3"], head) as driver:
+        out, err = driver.communicate(timeout=DEADLINE_S)
+    assert (driver.returncode, err) == (0, "") or "progress" in err, err
+    assert out.startswith("study: 40 of 40 cases done, ") and f" {40 - done} of them now" in out
 
-    held = tmp_path / "held"
-    stead.Study.read(study).run(held, (1, 2))
-    import fcntl
 
-    with open(held / "shards" / "0002-of-0002.lock", "w") as lock:
+def test_a_shard_that_is_held_is_waited_for(small_study: Path, tmp_path: Path) -> None:
+    work = Work(str(study_of(small_study, 2)), str(tmp_path), 2, 1)
+    assert do_shard(work, 1) == Answer([])
+    with open(tmp_path / "shards" / "0002-of-0002.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        answer = do_shard(Work(str(study), str(held), 2, 1), 2, locked_s=0.3)
-    assert answer.is_bad_input and answer.error is not None
-    assert answer.error.startswith("shard 2/2: ") and "worked on by another process" in answer.error
-    assert do_shard(Work(str(study), str(held), 2, 1), 2).error is None
+        answer = do_shard(work, 2, locked_s=0.3)
+        assert answer.is_bad_input and answer.error is not None
+        assert answer.error.startswith("shard 2/2: ") and "worked on by another process" in answer.error
+        threading.Timer(0.5, lambda: fcntl.flock(lock, fcntl.LOCK_UN)).start()
+        assert do_shard(work, 2) == Answer([])

@@ -237,7 +237,9 @@ def test_the_module_gives_the_bytes_of_the_command(study_file: Path, of_command:
     check_same(tmp_path, of_command)
 
 
-def test_the_module_refuses_in_one_line(study_file: Path, done: Path, tmp_path: Path) -> None:
+def test_the_module_refuses_in_one_line(
+    study_file: Path, done: Path, command: list[str], tmp_path: Path
+) -> None:
     other = study_file.with_name("other.toml")
     other.write_text(study_file.read_text())
     refused: list[tuple[list[str | Path], str]] = [
@@ -256,7 +258,10 @@ def test_the_module_refuses_in_one_line(study_file: Path, done: Path, tmp_path: 
         assert ended.stderr.startswith("error: ") and part in ended.stderr and ended.stderr.count("\n") == 1, ended.stderr
     file = tmp_path / "file"
     file.write_text("")
-    assert module(study_file, "--out", file / "below").returncode == 2
+    at_a_file: list[str | Path] = [study_file, "--out", file / "below"]
+    of_command = subprocess.run([*command, "study", "run", *at_a_file], capture_output=True, text=True, check=False)
+    ended = module(*at_a_file)
+    assert (ended.returncode, ended.stderr) == (of_command.returncode, of_command.stderr) and ended.returncode > 0
     helped = module("--help")
     assert helped.returncode == 0 and "Exit codes:" in helped.stdout and "same paths" in helped.stdout
 
