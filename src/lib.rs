@@ -74,6 +74,7 @@ pub use stead_report::{Folder, ReportError};
 pub use stead_simulation::arm::Variant;
 pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
 pub use stead_study::cases::{
-    Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table, slurm_script,
+    Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table,
+    slurm_script,
 };
 pub use study::{Study, StudyReport};

@@ -28,8 +28,9 @@ fn exception(py: Python<'_>, error: &Error, document: Option<String>) -> PyResul
         }
         Error::Argument(_) => "ArgumentError",
         Error::Output(ReportError::Locked { .. }) | Error::Study(StudyError::Locked { .. }) => "Locked",
-        Error::Output(_)
-        | Error::Study(StudyError::Folder { .. } | StudyError::File { .. } | StudyError::Keep(_)) => "OutputError",
+        Error::Output(_) | Error::Study(StudyError::Folder { .. } | StudyError::File { .. } | StudyError::Keep(_)) => {
+            "OutputError"
+        }
         Error::Infeasible(_) => {
             fields.set_item("document", document)?;
             "Infeasible"

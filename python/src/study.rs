@@ -135,11 +135,7 @@ impl Study {
     }
 
     /// The table of results as CSV, and the names of its columns of texts; nothing as long as cases are missing.
-    fn results<'py>(
-        &self,
-        py: Python<'py>,
-        folder: PathBuf,
-    ) -> PyResult<Option<(Bound<'py, PyBytes>, Vec<String>)>> {
+    fn results<'py>(&self, py: Python<'py>, folder: PathBuf) -> PyResult<Option<(Bound<'py, PyBytes>, Vec<String>)>> {
         let read = || {
             let Some(table) = self.0.results(&folder)? else { return Ok(None) };
             let texts = table.columns.iter().filter(|column| column.kind == ColumnKind::Text);

@@ -30,12 +30,14 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason=
 
 CASES, SHARDS = 24, 8
 DEADLINE_S = 180.0
+# Of this machine alone. Ray would put an address that others see in place of 127.0.0.1.
+HOSTS = "127.0.0.2", "127.0.0.3"
 
 
 class Node:
     """A Ray node of this machine with one processor. Its processes are known by a variable of their environment."""
 
-    def __init__(self, folder: Path, *options: str) -> None:
+    def __init__(self, folder: Path, host: str, *options: str) -> None:
         self._mark = f"STEAD_TEST_NODE={secrets.token_hex(16)}"
         name, value = self._mark.split("=")
         self.environment = {
@@ -48,10 +50,10 @@ class Node:
         }
         self._workers: list[int] = []
         self._next_look = 0.0
-        self._options = ["--num-cpus=1", "--object-store-memory=80000000", "--disable-usage-stats", *options]
+        self._options = [f"--node-ip-address={host}", "--num-cpus=1", "--object-store-memory=80000000", "--disable-usage-stats", *options]
 
     def start(self) -> None:
-        call = [sys.executable, "-m", "ray.scripts.scripts", "start", "--node-ip-address=127.0.0.1", *self._options]
+        call = [sys.executable, "-m", "ray.scripts.scripts", "start", *self._options]
         done = subprocess.run(call, env=self.environment, capture_output=True, text=True, check=False, timeout=90)
         assert done.returncode == 0, done.stdout + done.stderr
 
@@ -100,16 +102,16 @@ def nodes() -> Iterator[tuple[Node, Node, str]]:
     # A name of a socket is short, so this is not a folder of pytest.
     folder = Path(tempfile.mkdtemp(prefix="stead-ray-"))
     with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
+        free.bind((HOSTS[0], 0))
         port = free.getsockname()[1]
     # A dead node is found out in seconds.
     system = json.dumps({"health_check_initial_delay_ms": 500, "health_check_period_ms": 500, "health_check_failure_threshold": 4})
-    head = Node(folder, "--head", f"--port={port}", "--include-dashboard=false", f"--temp-dir={folder}", f"--system-config={system}")
-    second = Node(folder, f"--address=127.0.0.1:{port}")
+    head = Node(folder, HOSTS[0], "--head", f"--port={port}", "--include-dashboard=false", f"--temp-dir={folder}", f"--system-config={system}")
+    second = Node(folder, HOSTS[1], f"--address={HOSTS[0]}:{port}")
     try:
         head.start()
         second.start()
-        yield head, second, f"127.0.0.1:{port}"
+        yield head, second, f"{HOSTS[0]}:{port}"
     finally:
         second.kill()
         head.kill()
@@ -209,6 +211,16 @@ def test_ctrl_c_and_what_is_refused(nodes: tuple[Node, Node, str], small_study: 
         out, err = driver.communicate(timeout=DEADLINE_S)
     assert (driver.returncode, err) == (0, "") or "progress" in err, err
     assert out.startswith("study: 40 of 40 cases done, ") and f" {40 - done} of them now" in out
+
+
+def test_a_cluster_that_is_not_there_is_said_at_once(small_study: Path, tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{free.getsockname()[1]}"
+    call = [sys.executable, "-m", "stead.study", str(study_of(small_study, 2)), "--engine", "ray", "--out", str(tmp_path)]
+    ended = subprocess.run([*call, "--address", address], capture_output=True, text=True, check=False, timeout=60)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr.startswith(f"error: no Ray cluster at {address}: ") and ended.stderr.count("\n") == 1
 
 
 def test_a_shard_that_is_held_is_waited_for(small_study: Path, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import logging
 import os
+import socket
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -141,15 +142,23 @@ def connected(address: str | None) -> Iterator[Cluster]:
     # Ray says on standard output what becomes of its nodes.
     with redirect_stdout(sys.stderr):
         try:
+            _reach(address or os.environ.get("RAY_ADDRESS"))
             ray.init(address=address, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
         except (ConnectionError, OSError, RuntimeError, ValueError) as problem:
-            where = "here" if address is None else f"at {address}"
+            where = f"at {address or os.environ.get('RAY_ADDRESS') or 'this machine'}"
             words = f"no Ray cluster {where}: {_line(problem)}; allowed: the address of a cluster that runs, or none"
             raise ArgumentError(words) from problem
         try:
             yield Cluster(ray)
         finally:
             ray.shutdown()
+
+
+def _reach(address: str | None) -> None:
+    """Looks whether anybody listens at an address with a port: Ray itself gives up only after minutes."""
+    host, colon, port = (address or "").rpartition("://")[2].rpartition(":")
+    if colon and port.isdecimal():
+        socket.create_connection((host.strip("[]"), int(port)), timeout=10.0).close()
 
 
 def _line(problem: BaseException) -> str:
