@@ -65,6 +65,7 @@ pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;
+pub use stead_format::study::{AxisValue, StudyCase};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;
@@ -72,5 +73,8 @@ pub use stead_report::document::Timing;
 pub use stead_report::{Folder, ReportError};
 pub use stead_simulation::arm::Variant;
 pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
-pub use stead_study::cases::{Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table, slurm_script};
+pub use stead_study::cases::{
+    Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table,
+    slurm_script,
+};
 pub use study::{Study, StudyReport};

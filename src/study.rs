@@ -46,6 +46,11 @@ impl Study {
         &self.plan.cases
     }
 
+    /// The names of the axes, in the order of the values of a case.
+    pub fn axes(&self) -> &[String] {
+        &self.plan.study.axes
+    }
+
     /// Does what is left to do of a shard, on the threads of the rayon pool that it is called in, and writes the table of results once
     /// every case is done. It may be killed at any moment and goes on where it was; a stop that the monitor asks for is answered soon.
     ///

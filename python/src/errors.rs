@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stead::Error;
+use stead::{Error, ReportError, StudyError};
 
 /// The exception for an error.
 pub fn raised(py: Python<'_>, error: Error) -> PyErr {
@@ -27,7 +27,10 @@ fn exception(py: Python<'_>, error: &Error, document: Option<String>) -> PyResul
             "InputError"
         }
         Error::Argument(_) => "ArgumentError",
-        Error::Output(_) => "OutputError",
+        Error::Output(ReportError::Locked { .. }) | Error::Study(StudyError::Locked { .. }) => "Locked",
+        Error::Output(_) | Error::Study(StudyError::Folder { .. } | StudyError::File { .. } | StudyError::Keep(_)) => {
+            "OutputError"
+        }
         Error::Infeasible(_) => {
             fields.set_item("document", document)?;
             "Infeasible"
@@ -39,5 +42,7 @@ fn exception(py: Python<'_>, error: &Error, document: Option<String>) -> PyResul
         _ => "Error",
     };
     let class = py.import("stead._errors")?.getattr(class)?;
-    Ok(PyErr::from_value(class.call((error.to_string(),), Some(&fields))?))
+    let value = class.call((error.to_string(),), Some(&fields))?;
+    value.setattr("is_bad_input", error.is_bad_input())?;
+    Ok(PyErr::from_value(value))
 }

@@ -7,6 +7,7 @@ mod errors;
 mod inputs;
 mod jobs;
 mod results;
+mod study;
 
 use errors::raised;
 use pyo3::prelude::*;
@@ -46,6 +47,7 @@ fn _stead(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<inputs::SimulationRun>()?;
     module.add_class::<inputs::StabilityRun>()?;
     module.add_class::<inputs::Profile>()?;
+    module.add_class::<study::Study>()?;
     module.add_class::<results::Outcome>()?;
     module.add_class::<results::Folder>()?;
     module.add_function(wrap_pyfunction!(init, module)?)?;

@@ -20,6 +20,7 @@ pub enum Kind {
     Simulated(stead::SimulatedPass),
     Stability(stead::StabilityAnalysis),
     Circularity(stead::Circularity),
+    Study(stead::StudyReport),
 }
 
 /// The same expression for whichever result it is: they have their methods in common.
@@ -36,6 +37,7 @@ macro_rules! each {
             Kind::Simulated($result) => $value,
             Kind::Stability($result) => $value,
             Kind::Circularity($result) => $value,
+            Kind::Study($result) => $value,
         }
     };
 }

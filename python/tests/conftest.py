@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -37,3 +38,24 @@ def small_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("small")
     run = stead.init("place", folder)[0]
     return run
+
+
+@pytest.fixture(scope="session")
+def small_study(small_run: Path) -> Path:
+    """A study file without axes, whose cases take a fraction of a second."""
+    run = small_run.read_text()
+    smaller = {
+        "x_mm": "[0.0, 10.0]",
+        "y_mm": "[-1645.0, -1640.0]",
+        "z_mm": "[-220.0, -214.0]",
+        "population": "8",
+        "generations": "2",
+        "basins": "1",
+    }
+    for key, value in smaller.items():
+        run, changed = re.subn(rf"(?m)^{key} *=.*$", f"{key} = {value}", run)
+        assert changed == 1, key
+    small_run.with_name("smaller.toml").write_text(run)
+    study = small_run.with_name("study.toml")
+    study.write_text('base = "smaller.toml"\n')
+    return study

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from . import _stead
-from ._errors import ArgumentError, Error, Infeasible, InputError, Interrupted, NotCompensated, OutputError
+from ._errors import ArgumentError, Error, Infeasible, InputError, Interrupted, Locked, NotCompensated, OutputError
 from ._inputs import (
     AssessmentRun,
     CompensationRun,
@@ -46,9 +46,11 @@ from ._results import (
     RobotAssessment,
     SimulatedPass,
     StabilityAnalysis,
+    StudyReport,
     Warning,
 )
 from ._run import Run
+from ._study import Finished, ShardStatus, Study, StudyCase, StudyStatus
 from ._tables import Picture, Table
 
 __version__ = _stead.__version__
@@ -86,12 +88,14 @@ __all__ = [
     "DesignRun",
     "Error",
     "Explanations",
+    "Finished",
     "FitRun",
     "Folder",
     "IdentifiedRobot",
     "Infeasible",
     "InputError",
     "Interrupted",
+    "Locked",
     "MeasurementPlan",
     "NotCompensated",
     "OutputError",
@@ -105,10 +109,15 @@ __all__ = [
     "Result",
     "RobotAssessment",
     "Run",
+    "ShardStatus",
     "SimulatedPass",
     "SimulationRun",
     "StabilityAnalysis",
     "StabilityRun",
+    "Study",
+    "StudyCase",
+    "StudyReport",
+    "StudyStatus",
     "Table",
     "Warning",
     "init",

@@ -7,7 +7,13 @@ from typing import Any
 
 
 class Error(Exception):
-    """A job gave no result, or a result could not be made. Base of the others."""
+    """A job gave no result, or a result could not be made. Base of the others.
+
+    Attributes:
+        is_bad_input: Whether a file, an argument or a folder is at fault, and not the job: the command ends with exit code 2 then, else with 1.
+    """
+
+    is_bad_input = False
 
 
 class InputError(Error):
@@ -21,6 +27,8 @@ class InputError(Error):
         found: The value found, as written.
         allowed: What would have been accepted.
     """
+
+    is_bad_input = True
 
     def __init__(
         self,
@@ -45,9 +53,15 @@ class InputError(Error):
 class ArgumentError(Error, ValueError):
     """An argument of a call is out of range."""
 
+    is_bad_input = True
+
 
 class OutputError(Error):
     """A result could not be written, or another run writes to the folder. No file is left half written."""
+
+
+class Locked(OutputError):
+    """Another process works on the same folder, or on the same shard of a study."""
 
 
 class _NoResult(Error):

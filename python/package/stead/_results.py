@@ -327,6 +327,20 @@ class StabilityAnalysis(Result):
     damping_scale: float
 
 
+class StudyReport(Result):
+    """What a study says that is done: `tables["study-ranking"]`, `tables["study-front"]` and `tables["study-effects"]`, with pictures."""
+
+    study: str
+    noise_percent: float
+    tasks_joined: bool
+    ranking: Record
+    tasks: list[Record]
+    front: Record | None
+    effects: Record
+    map: Record | None
+    failures: Record
+
+
 class Circularity(Result):
     """The four reference circles of a profile, and every point's deviation from them in `tables["deviations"]`."""
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict, final
 
-__all__ = ["__version__", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "init", "schema"]
+__all__ = ["__version__", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema"]
 
 __version__: str
 
@@ -15,6 +15,36 @@ class _Options(TypedDict):
 
 _Place = tuple[float, float, float, float]
 _Done = tuple[Outcome | None, bool]
+
+class _Case(TypedDict):
+    number: int
+    id: str
+    task: str
+    weight: float
+    values: list[float | str]
+
+class _Finished(TypedDict):
+    planned: int
+    before: int
+    now: int
+    interrupted: bool
+    is_complete: bool
+    problems: list[str]
+
+class _ShardStatus(TypedDict):
+    shard: tuple[int, int]
+    planned: int
+    done: int
+    without_placement: int
+    is_running: bool
+
+class _Status(TypedDict):
+    planned: int
+    done: int
+    infeasible: int
+    failed: int
+    shards: list[_ShardStatus]
+    problems: list[str]
 
 @final
 class Outcome:
@@ -100,6 +130,25 @@ class Profile:
     @staticmethod
     def read(file: Path) -> Profile: ...
     def circularity(self, exclude_deg: Sequence[tuple[float, float]]) -> Outcome: ...
+
+@final
+class Study:
+    @staticmethod
+    def read(file: Path, options: _Options) -> Study: ...
+    def axes(self) -> list[str]: ...
+    def cases(self) -> list[_Case]: ...
+    def run(self, folder: Path, shard: str, options: _Options) -> tuple[_Finished | None, bool]: ...
+    def status(self, folder: Path) -> _Status: ...
+    def merge(self, folder: Path) -> bool: ...
+    def results(self, folder: Path) -> tuple[bytes, list[str]] | None: ...
+    def report(
+        self,
+        folder: Path,
+        by: str | None,
+        front: Sequence[str] | None,
+        map: tuple[str, str] | None,
+        noise: float | None,
+    ) -> Outcome: ...
 
 def init(kind: str, folder: Path) -> list[Path]: ...
 def schema(kind: str) -> str: ...

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,9 +24,14 @@ class Table(Mapping[str, Column]):
     Empty cells are `nan` in columns of numbers and empty in columns of words.
     """
 
-    def __init__(self, text: str) -> None:
-        rows = list(csv.reader(io.StringIO(text)))
-        self._columns = {name: _column([row[i] for row in rows[1:]]) for i, name in enumerate(rows[0])}
+    def __init__(self, text: str, words: Collection[str] = ()) -> None:
+        """From the text of a CSV file; the columns named hold words, whatever they look like."""
+        names, *rows = csv.reader(io.StringIO(text))
+
+        def column(name: str, cells: list[str]) -> Column:
+            return np.asarray(cells, object) if name in words else _column(cells)
+
+        self._columns = {name: column(name, [row[i] for row in rows]) for i, name in enumerate(names)}
 
     def __getitem__(self, name: str) -> Column:
         return self._columns[name]
