@@ -37,6 +37,7 @@ fn the_text_says_what_matters() {
         "cells: 4 cases, 3 placed, 1 infeasible\n",
         "By objective_mm (smaller is better; within 0.2 % layouts tie",
         "best      1.0000  case 1 (robot = a.toml, height = 100)\n",
+        "            mean deflection in all directions 1.00 mm\n",
         "next      2.0000  case 2 (robot = a.toml, height = 200), 100.0 % behind\n",
         "What matters most for objective_mm is robot: ",
         "On the front of best_mean_total_mm (smaller is better) and cycle_s (smaller is better): 2 of 3\n",
