@@ -169,6 +169,7 @@ fn effects(text: &mut String, analysis: &Analysis) {
     if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
         line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
     }
+    text.push_str(&against_the_best(analysis));
     let says = |method: Method| effects.axes.iter().any(|axis| axis.method == method);
     if says(Method::AdjustedMeans) {
         line(
@@ -188,6 +189,25 @@ fn effects(text: &mut String, analysis: &Analysis) {
             "mixed means: axes that vary together cannot be told apart; each has the effects of the others in it",
         );
     }
+}
+
+/// Axes of which the best layout has another value than the one that is best on average.
+fn against_the_best(analysis: &Analysis) -> String {
+    let Some(best) = analysis.ranking.best().first() else { return String::new() };
+    let (row, measure) = (&analysis.layouts.all[best.layout].row, &analysis.effects.measure);
+    let mut text = String::new();
+    for axis in &analysis.effects.axes {
+        let Some(level) = axis.best(measure.sense) else { continue };
+        let own = row[axis.axis].written();
+        let other = axis.levels.iter().find(|other| other.label == own && !measure.is_tie(level.value, other.value));
+        if other.is_some() {
+            line(
+                &mut text,
+                &format!("{}: {} is best on average, but the best layout has {own}", axis.name, level.label),
+            );
+        }
+    }
+    text
 }
 
 /// What an axis does that no other is varied beside: it explains all there is.
