@@ -124,7 +124,8 @@ pub struct TaskRanking {
 const BY: &str = "objective_mm";
 
 /// What the front is of, where nothing else is asked for: the first two that have values.
-const FRONT: [&str; 4] = ["best_mean_total_mm", "cycle_s", "min_joint_margin_deg", "min_inverse_condition"];
+const FRONT: [&str; 5] =
+    ["best_mean_total_mm", "cycle_s", "price_eur", "min_joint_margin_deg", "min_inverse_condition"];
 
 impl Analysis {
     /// Analyses a table of results.

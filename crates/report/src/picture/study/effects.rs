@@ -76,6 +76,10 @@ fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEff
     if !is_line {
         chart.marks.extend(means.iter().map(|[x, value]| Mark::Dot([*x, *value], 5, colour(*value))));
     }
+    if effects.axes.len() == 1 {
+        // It explains all there is.
+        return chart.draw(canvas);
+    }
     let share = axis.share.map_or_else(String::new, |share| format!("{} % of the variance, ", percent(share)));
     chart.marks.push(Mark::Heading(format!("{share}by {}", axis.method.word()).into(), INK));
     chart.draw(canvas);
