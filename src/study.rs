@@ -5,13 +5,15 @@ use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 use stead_format as format;
+use stead_format::input::{InputFile, input_file};
 use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
 use stead_report::certificate::write_certificate;
 use stead_report::document::bytes;
 use stead_report::placement::{Context, summary_json, write_placement};
-use stead_report::study::{study_files, study_json, study_text, write_study};
+use stead_report::study::{status_json, study_files, study_json, study_text, write_study};
 use stead_report::{Files, Folder};
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
@@ -67,7 +69,7 @@ impl Study {
     /// ```
     pub fn run(&self, folder: impl AsRef<Path>, shard: Shard, monitor: &Monitor) -> Result<Finished, Error> {
         let folder = folder.as_ref();
-        let keeping = CaseFolders { folder: folder.join("cases") };
+        let keeping = self.folder(folder);
         let threads = rayon::current_num_threads();
         Ok(cases::run(&self.plan, &RunSettings { folder, shard, threads, keeping: &keeping }, monitor)?)
     }
@@ -80,12 +82,24 @@ impl Study {
         Ok(cases::status(&self.plan, folder.as_ref())?)
     }
 
+    /// What `stead study status --json` prints.
+    pub fn status_json(&self, status: &StudyStatus) -> Value {
+        status_json(&self.plan.name(), status, &self.plan.study.inputs)
+    }
+
     /// The table of results, one row for each case; nothing as long as cases are missing.
     ///
     /// # Errors
-    /// As [`Study::status`].
+    /// As [`Study::status`]; [`Error::Input`] too where `study.csv` or `study.parquet` is there and not as its run has left it, by
+    /// `manifest.json`: cut short, changed, or of two runs.
     pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
-        Ok(cases::merged(&self.plan, folder.as_ref())?)
+        let folder = folder.as_ref();
+        for file in cases::TABLES.map(|name| folder.join(name)) {
+            if let Ok(bytes) = std::fs::read(&file) {
+                manifest::check(&file, &bytes, Unlisted::Refused)?;
+            }
+        }
+        Ok(cases::merged(&self.plan, folder)?)
     }
 
     /// Writes `study.csv`, `study.parquet` and `study-timing.csv` from the shards where every case is done, and says whether it is so.
@@ -93,13 +107,14 @@ impl Study {
     /// # Errors
     /// As [`Study::status`], and where a file cannot be written.
     pub fn merge(&self, folder: impl AsRef<Path>) -> Result<bool, Error> {
-        Ok(cases::merge(&self.plan, folder.as_ref())?)
+        let folder = folder.as_ref();
+        Ok(cases::merge(&self.plan, folder, &self.folder(folder))?)
     }
 
     /// What a study that is done says: which layout is best, which compromises there are, what each axis does, and what failed and why.
     ///
     /// # Errors
-    /// As [`Study::status`]; [`Error::Study`] too where cases are missing; [`Error::Argument`] for a column or an axis that is not there,
+    /// As [`Study::results`]; [`Error::Study`] too where cases are missing; [`Error::Argument`] for a column or an axis that is not there,
     /// or a column without numbers.
     ///
     /// ```no_run
@@ -122,7 +137,14 @@ impl Study {
             }));
         };
         let analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
-        Ok(StudyReport { plan: Arc::clone(&self.plan), analysis })
+        let csv = input_file("table", cases::TABLES[0], &table.to_csv()?);
+        let inputs = self.plan.study.inputs.iter().cloned().chain([csv]).collect();
+        Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs })
+    }
+
+    /// The folder of results as cases and tables are put into it.
+    fn folder<'s>(&'s self, path: &'s Path) -> StudyFolder<'s> {
+        StudyFolder { path, inputs: &self.plan.study.inputs }
     }
 }
 
@@ -131,6 +153,8 @@ impl Study {
 pub struct StudyReport {
     plan: Arc<Plan>,
     analysis: Analysis,
+    /// The files of the study, and its table.
+    inputs: Vec<InputFile>,
 }
 
 impl StudyReport {
@@ -142,15 +166,15 @@ impl StudyReport {
 
 impl Report for StudyReport {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.plan.study.inputs)?)
+        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.inputs)?)
     }
 
     fn files(&self) -> Result<Files, Error> {
-        Ok(study_files(&self.plan.name(), &self.analysis, &self.plan.study.inputs)?)
+        Ok(study_files(&self.plan.name(), &self.analysis, &self.inputs)?)
     }
 
     fn document(&self) -> Value {
-        study_json(&self.plan.name(), &self.analysis, &self.plan.study.inputs)
+        study_json(&self.plan.name(), &self.analysis, &self.inputs)
     }
 
     fn table(&self) -> String {
@@ -160,20 +184,34 @@ impl Report for StudyReport {
 
 result!(StudyReport);
 
-/// The folders of cases, each with what `stead place` leaves.
-struct CaseFolders {
-    folder: PathBuf,
+/// The command in whose name the table is written, and that of what is derived from it.
+const RUN: &str = "study run";
+const REPORT: &str = "study report";
+/// How long a table waits for a report that is just being written to the same folder.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The folder of a study: its table, and the folders of cases, each with what `stead place` leaves.
+struct StudyFolder<'s> {
+    path: &'s Path,
+    inputs: &'s [InputFile],
 }
 
-impl CaseFolders {
-    fn path(&self, case: &PlannedCase) -> PathBuf {
-        self.folder.join(format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default()))
+impl StudyFolder<'_> {
+    fn of_case(&self, case: &PlannedCase) -> PathBuf {
+        let name = format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default());
+        self.path.join("cases").join(name)
     }
 }
 
-impl Keeping for CaseFolders {
+impl Keeping for StudyFolder<'_> {
+    fn publish(&self, files: &[(&str, Vec<u8>)]) -> Result<(), String> {
+        let folder = Folder::create_within(self.path, PATIENCE).map_err(|error| error.to_string())?;
+        let results = folder.results(RUN, self.inputs).without_derived(REPORT);
+        results.write(files).map(drop).map_err(|error| error.to_string())
+    }
+
     fn is_kept(&self, case: &PlannedCase) -> bool {
-        let file = self.path(case).join("placements.csv");
+        let file = self.of_case(case).join("placements.csv");
         std::fs::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
     }
 
@@ -187,7 +225,7 @@ impl Keeping for CaseFolders {
         let Placed { outcome, stability } = placed;
         let mut context = Context { stability, warnings: outcome.warnings.clone(), ..Context::new(run, run.search) };
         context.notes.extend(outcome.notes.iter().cloned());
-        let folder = Folder::create(&self.path(case)).map_err(|error| error.to_string())?;
+        let folder = Folder::create(&self.of_case(case)).map_err(|error| error.to_string())?;
         write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;
         if let Some(certificate) = &certificate {
             let summary = bytes(&summary_json(&run.problem, &outcome, &context));

@@ -2,6 +2,7 @@
 
 use crate::common::assert_states_its_origin;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn root() -> &'static Path {
@@ -107,6 +108,26 @@ fn the_forces_of_the_umons_pass_are_those_of_the_shipped_result() {
     for (cells, forces) in rows.iter().zip([&summary, &summary["published"]]) {
         for (cell, (force, key)) in cells[1..].iter().zip(columns) {
             assert_states(cell, forces[force][key].as_f64().unwrap());
+        }
+    }
+}
+
+/// The table of the page on studies has every case of the shipped study, under the names of its columns.
+#[test]
+fn the_study_of_k1_in_the_guide_is_the_shipped_one() {
+    let page = std::fs::read_to_string(root().join("src/guide/studies.md")).unwrap();
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
+    };
+    let mut lines = page.lines().skip_while(|line| !line.starts_with("| `k1_mnm_per_rad` |"));
+    let names = cells(lines.next().unwrap());
+    let stated: Vec<Vec<String>> = lines.skip(1).take_while(|line| line.starts_with('|')).map(cells).collect();
+    let mut table = csv::Reader::from_path(root().join("results/study-k1/study.csv")).unwrap();
+    let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    assert_eq!(stated.len(), rows.len());
+    for (stated, row) in stated.iter().zip(&rows) {
+        for (name, cell) in names.iter().zip(stated) {
+            assert_states(cell, row[name].parse().unwrap());
         }
     }
 }

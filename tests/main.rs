@@ -27,5 +27,7 @@ mod standard_output;
 mod starting;
 mod stop;
 mod study;
+#[cfg(unix)]
+mod study_killed;
 mod study_report;
 mod uncertainty;

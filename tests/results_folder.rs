@@ -71,7 +71,12 @@ fn every_shipped_folder_is_what_its_manifest_states() {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("results");
     let mut count = 0;
     for folder in std::fs::read_dir(results).unwrap().map(|folder| folder.unwrap().path()) {
+        // What a study is made of is not shipped, but is there where it was run here.
+        let is_unshipped = |path: &Path| {
+            path.is_dir() || ["study.json", "study.lock", "study-timing.csv"].iter().any(|name| path.ends_with(name))
+        };
         let files = std::fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path());
+        let files = files.filter(|path| !is_unshipped(path));
         let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();
         let tree: Tree = files.map(|path| (name(&path), Some(std::fs::read(&path).unwrap()))).collect();
         let mut listed = 0;
@@ -166,12 +171,24 @@ mod killed {
         command
     }
 
-    /// What a run leaves that nobody disturbs, and how long it takes.
-    fn undisturbed(seed: &str) -> (Tree, Duration) {
+    /// What a run leaves that nobody disturbs, how long it takes, and how much of that it writes results.
+    fn undisturbed(seed: &str) -> (Tree, [Duration; 2]) {
         let bench = quick();
         let begun = Instant::now();
-        assert!(place(&bench, seed).status().unwrap().success());
-        (bench.tree("out"), begun.elapsed())
+        let mut child = place(&bench, seed).spawn().unwrap();
+        while !is_writing(&bench) && child.try_wait().unwrap().is_none() {}
+        let writing = Instant::now();
+        assert!(child.wait().unwrap().success());
+        (bench.tree("out"), [begun.elapsed(), writing.elapsed()])
+    }
+
+    /// Whether there is a temporary file with something in it: the empty one of the start is none.
+    fn is_writing(bench: &Bench) -> bool {
+        let is_written = |path: std::path::PathBuf| {
+            let is_temporary = path.extension().is_some_and(|end| end == "tmp");
+            is_temporary && path.metadata().is_ok_and(|metadata| metadata.len() > 0)
+        };
+        std::fs::read_dir(bench.path("out")).is_ok_and(|names| names.flatten().any(|name| is_written(name.path())))
     }
 
     /// When a run is killed.
@@ -193,13 +210,7 @@ mod killed {
         match moment {
             Moment::After(time) => std::thread::sleep(time),
             Moment::Writing(time) => {
-                let is_written = |path: std::path::PathBuf| {
-                    let is_temporary = path.extension().is_some_and(|end| end == "tmp");
-                    is_temporary && path.metadata().is_ok_and(|metadata| metadata.len() > 0)
-                };
-                let is_writing =
-                    || std::fs::read_dir(&out).is_ok_and(|names| names.flatten().any(|name| is_written(name.path())));
-                while !is_writing() && !has_ended(&mut child) {}
+                while !is_writing(bench) && !has_ended(&mut child) {}
                 let seen = Instant::now();
                 while seen.elapsed() < time {}
             }
@@ -255,7 +266,7 @@ mod killed {
 
     /// Kills runs of two seeds in turn, in one folder, and lets one in so many come to its end.
     fn kills(count: usize) {
-        let [(one, time), (two, _)] = SEEDS.map(undisturbed);
+        let [(one, [time, writing]), (two, _)] = SEEDS.map(undisturbed);
         let runs = [one, two];
         assert_ne!(runs[0]["summary.json"], runs[1]["summary.json"]);
         let bench = quick();
@@ -265,7 +276,7 @@ mod killed {
             let share = index as f64 / count as f64;
             let moment = match index % 4 {
                 0 => Moment::After(time.mul_f64(1.2 * share)),
-                1 | 2 => Moment::Writing(Duration::from_secs_f64(0.02 * share)),
+                1 | 2 => Moment::Writing(writing.mul_f64(share)),
                 _ => Moment::Marked,
             };
             let child = place(&bench, SEEDS[index % 2]).spawn().unwrap();

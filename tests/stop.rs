@@ -151,9 +151,35 @@ mod interrupt {
         assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     }
 
-    /// Interrupts a command some time after it has started, once.
+    /// Waits until a process has worked for so long, or has ended. What a clock shows says nothing on a machine that does other things.
+    fn wait_for_work(child: &Child, work: Duration) {
+        let begun = Instant::now();
+        while begun.elapsed() < Duration::from_secs(120) {
+            std::thread::sleep(Duration::from_millis(10));
+            match worked(child) {
+                Some(done) if done >= work => return,
+                None if begun.elapsed() >= work => return,
+                _ => {}
+            }
+        }
+        panic!("it does not work");
+    }
+
+    /// Processor time of a process, of all its threads, where the system tells it: user and system time in hundredths of a second are the
+    /// 14th and the 15th field of its state; its name, the second, is between brackets. A process that has ended has done all.
+    fn worked(child: &Child) -> Option<Duration> {
+        let state = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
+        let fields: Vec<&str> = state.rsplit_once(')')?.1.split_whitespace().collect();
+        if fields[0] == "Z" {
+            return Some(Duration::MAX);
+        }
+        let ticks: u64 = fields[11].parse::<u64>().ok()? + fields[12].parse::<u64>().ok()?;
+        Some(Duration::from_millis(10 * ticks))
+    }
+
+    /// Interrupts a command once, when it has worked for some time.
     fn interrupted(child: Child, after: Duration) -> Ended {
-        std::thread::sleep(after);
+        wait_for_work(&child, after);
         interrupt(&child);
         Ended::from(child.wait_with_output().unwrap())
     }
@@ -193,7 +219,7 @@ mod interrupt {
         let bench = Bench::new();
         bench.write("out/best.csv", "an earlier result\n");
         let child = search(&bench, 100_000);
-        std::thread::sleep(Duration::from_millis(500));
+        wait_for_work(&child, Duration::from_millis(500));
         interrupt(&child);
         // So soon that the two plans that are still made are not there yet.
         std::thread::sleep(Duration::from_millis(20));

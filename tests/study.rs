@@ -1,9 +1,8 @@
-//! Studies: killed and resumed, in shards, edited, and what is refused.
+//! Studies: in shards, edited, and what is refused.
 
 use crate::common::{Bench, Ended, RUN};
 use std::collections::BTreeMap;
-use std::os::unix::process::ExitStatusExt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 pub const STUDY: &str = "configs/study.toml";
 
@@ -45,7 +44,7 @@ pub fn run(bench: &Bench, out: &str, more: &[&str]) -> Ended {
 }
 
 /// The files that depend on nothing but the study.
-fn results(bench: &Bench, out: &str) -> [Vec<u8>; 2] {
+pub fn results(bench: &Bench, out: &str) -> [Vec<u8>; 2] {
     ["study.csv", "study.parquet"].map(|name| std::fs::read(bench.path(&format!("{out}/{name}"))).unwrap())
 }
 
@@ -134,57 +133,6 @@ fn a_case_is_what_place_finds_with_the_same_values() {
     let of_case = &by_objective[0];
     let folder = format!("out/cases/{:0>4}-{}/placements.csv", of_case["case"], &of_case["id"][..8]);
     assert!(bench.read(&folder).contains(&of_case["x_mm"]));
-}
-
-/// Kills in the default suite; more by the environment.
-fn kills() -> usize {
-    std::env::var("STEAD_KILLS").ok().and_then(|kills| kills.parse().ok()).unwrap_or(20)
-}
-
-#[test]
-fn a_study_that_is_killed_again_and_again_ends_with_the_same_bytes() {
-    let bench = bench();
-    let start = Instant::now();
-    run(&bench, "whole", &[]);
-    let whole = start.elapsed();
-    let expected = results(&bench, "whole");
-    let count = kills();
-    let (mut killed, mut attempts, mut round) = (0, 0, 0);
-    while killed < count {
-        round += 1;
-        let out = format!("out-{round}");
-        bench.write(&format!("{out}/mine.txt"), "the user's own\n");
-        loop {
-            let threads = if attempts % 2 == 0 { "1" } else { "2" };
-            let mut child = bench
-                .command(&["study", "run", STUDY, "--out", &out, "--threads", threads])
-                .stdout(std::process::Stdio::null())
-                .stderr(std::process::Stdio::null())
-                .spawn()
-                .unwrap();
-            // Moments spread over the time that the whole study takes on this machine.
-            std::thread::sleep(whole.mul_f64(f64::from(attempts * 4 % 9 + 1) / 10.0));
-            attempts += 1;
-            child.kill().unwrap();
-            let status = child.wait().unwrap();
-            if status.success() {
-                break;
-            }
-            assert_eq!(status.signal(), Some(9));
-            killed += 1;
-            if killed >= count {
-                break;
-            }
-        }
-        let done = |text: &str| text.lines().next().unwrap().split(' ').next().unwrap().parse::<usize>().unwrap();
-        let before = done(&bench.stead(&["study", "status", STUDY, "--out", &out]).stdout);
-        let ended = run(&bench, &out, &[]);
-        assert!(ended.stdout.contains(&format!("6 of 6 cases done, {} of them now", 6 - before)), "{}", ended.stdout);
-        assert_eq!(results(&bench, &out), expected);
-        assert_eq!(bench.read(&format!("{out}/mine.txt")), "the user's own\n");
-        let stray = bench.names(&out).into_iter().find(|name| name.ends_with(".tmp") || name.ends_with(".jsonl"));
-        assert_eq!(stray, None);
-    }
 }
 
 #[test]

@@ -72,3 +72,66 @@ fn a_study_that_is_done_is_ranked_and_drawn() {
     // What is refused leaves the last report.
     assert!(bench.read("out/study-report.json").contains("\"max_feed_mm_per_s\""));
 }
+
+/// The tables are vouched for, and a report is one of the table beside it.
+#[test]
+fn tables_cut_short_or_mixed_are_refused_and_written_anew() {
+    let bench = bench();
+    run(&bench, "out", &[]);
+    let report = || bench.stead(&["study", "report", STUDY, "--out", "out", "--json"]);
+    let ended = report();
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let inputs = ended.json()["inputs"].clone();
+    let table = inputs.as_array().unwrap().iter().find(|input| input["role"] == "table").unwrap().clone();
+    assert!(bench.read("out/manifest.json").contains(table["sha256"].as_str().unwrap()));
+
+    for name in ["study.csv", "study.parquet"] {
+        let path = bench.path(&format!("out/{name}"));
+        let whole = std::fs::read(&path).unwrap();
+        let mut changed = whole.clone();
+        *changed.last_mut().unwrap() ^= 1;
+        for other in [&whole[..whole.len() / 2], &changed] {
+            std::fs::write(&path, other).unwrap();
+            let ended = report();
+            assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+            assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+            ended.assert_says(&[
+                &format!(
+                    "out/{name}: is not the file that `stead study run` has written, by the manifest.json beside it"
+                ),
+                "run `stead study run` again",
+            ]);
+            run(&bench, "out", &[]);
+            assert_eq!(std::fs::read(&path).unwrap(), whole);
+            assert_eq!(report().code, Some(0));
+        }
+    }
+
+    // Of another table there is no report, and its files go; the user's own stay.
+    bench.write("out/mine.csv", "1\n");
+    run(&bench, "out", &[]);
+    assert!(bench.path("out/study-report.json").exists());
+    bench.replace(STUDY, "[0.2, 0.8, 6.0]", "[0.2, 0.8]");
+    run(&bench, "out", &[]);
+    let left: Vec<String> = bench.names("out").into_iter().filter(|name| !name.starts_with("shards")).collect();
+    let files =
+        ["manifest.json", "mine.csv", "study-timing.csv", "study.csv", "study.json", "study.lock", "study.parquet"];
+    assert_eq!(left, files);
+    assert!(!bench.read("out/manifest.json").contains("study report"));
+}
+
+#[test]
+fn the_status_is_one_document_too() {
+    let bench = bench();
+    let status = || bench.stead(&["study", "status", STUDY, "--out", "out", "--json"]).json();
+    assert_eq!(
+        (&status()["planned"], &status()["done"], &status()["shards"]),
+        (&6.into(), &0.into(), &serde_json::json!([]))
+    );
+    run(&bench, "out", &["--shard", "2/2"]);
+    let found = status();
+    assert_eq!((&found["done"], &found["study"]), (&3.into(), &"study".into()));
+    let shards = found["shards"].as_array().unwrap();
+    assert_eq!((&shards[0]["shard"], &shards[0]["done"]), (&"1/2".into(), &0.into()));
+    assert_eq!((&shards[1]["done"], &shards[1]["running"]), (&3.into(), &false.into()));
+}

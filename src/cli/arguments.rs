@@ -232,6 +232,9 @@ pub(super) struct StudyStatusOptions {
     /// Folder of the results [default: results/<name of the study file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Subcommand)]

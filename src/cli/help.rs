@@ -129,8 +129,9 @@ Exit codes:
   2  wrong usage, or bad input";
 
 pub(super) const STUDY_STATUS: &str = "\
-Example:
+Examples:
   stead study status configs/study-example.toml
+  stead study status configs/study-example.toml --json
 
 Files written: none.
 

@@ -6,7 +6,7 @@
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
-//! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`] |
+//! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
 //! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
@@ -69,6 +69,8 @@ pub mod simulation_file {}
 pub mod stability {}
 #[doc = include_str!("starting.md")]
 pub mod starting {}
+#[doc = include_str!("studies.md")]
+pub mod studies {}
 #[doc = include_str!("study.md")]
 pub mod study {}
 #[doc = include_str!("study_file.md")]

@@ -141,6 +141,13 @@ impl Manifest {
         Self { format: FORMAT, results }
     }
 
+    /// The manifest without the entry of a command.
+    #[must_use]
+    pub fn without(&self, command: &str) -> Self {
+        let results = self.results.iter().filter(|set| set.command != command).cloned().collect();
+        Self { format: FORMAT, results }
+    }
+
     /// As the bytes of the file.
     ///
     /// # Errors

@@ -100,6 +100,11 @@ impl Monitor {
         Self { deadline, ..self }
     }
 
+    /// When it is stopped at the latest, where that is limited.
+    pub fn deadline(&self) -> Option<Instant> {
+        self.deadline
+    }
+
     /// The flag that stops the job.
     pub fn stop_handle(&self) -> StopHandle {
         self.stop.clone()

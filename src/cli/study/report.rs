@@ -21,10 +21,8 @@ pub(super) fn run(options: &StudyReportOptions) -> Result<(), Failure> {
     let study = on_threads(None, || Study::read(&options.config))??;
     let folder = folder(options.out.as_deref(), &options.config);
     let report = study.report(&folder, &question)?;
-    if !folder.join("study.csv").is_file() {
-        // The last shards may have ended at the same time, or elsewhere.
-        study.merge(&folder)?;
-    }
+    // The last shards may have ended at the same time or elsewhere, or the study may have been edited since.
+    study.merge(&folder)?;
     let out = Folder::create(&folder).map_err(Failure::Output)?;
     files_written(report.write_in(&out))?;
     if options.json {

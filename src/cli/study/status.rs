@@ -2,13 +2,16 @@
 
 use super::folder;
 use crate::cli::arguments::StudyStatusOptions;
-use crate::cli::{Failure, on_threads, print, say};
+use crate::cli::{Failure, on_threads, print, print_json, say};
 use std::fmt::Write;
 use stead::Study;
 
 pub(super) fn run(options: &StudyStatusOptions) -> Result<(), Failure> {
     let study = on_threads(None, || Study::read(&options.config))??;
     let status = study.status(folder(options.out.as_deref(), &options.config))?;
+    if options.json {
+        return print_json(&study.status_json(&status));
+    }
     for problem in &status.problems {
         say(&format!("warning: {problem}"));
     }

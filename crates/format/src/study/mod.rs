@@ -173,8 +173,8 @@ fn by_digest(value: &mut Value, inputs: &[InputFile]) {
 
 /// Refuses a case that asks for no certificate though the study does, or for one that would depend on the machine.
 fn check_certificate(at: &Place<'_>) -> Result<(), InputError> {
-    let allowed =
-        "a table [certificate] with gap_percent and without time_limit_s, or certify = false in the study file";
+    let allowed = "a table [certificate] with gap_percent and without time_limit_s, where memory_gb is the limit and the same on every \
+                   machine, or certify = false in the study file";
     if !at.is_given() {
         return Err(at.error("is missing, but the study asks for certificates", allowed));
     }

@@ -30,7 +30,7 @@ pub type Relaxation = ConstraintKind;
 /// How far the placements found are from the best and the worst there are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// What was asked for.
+    /// What was asked for, without the time limit where an earlier deadline of the caller stood in its place.
     pub settings: CertificateSettings,
     /// No placement is better by more than a gap, or why there is no bound.
     pub best: Result<Proof, NoProof>,
@@ -84,7 +84,7 @@ impl Serialize for NoProof {
 }
 
 /// Bounds how far a placement with the mean score `mean` (m) is from the best there is, and the placement `worst` from the worst,
-/// within a common time limit.
+/// within a common time limit: that of the settings, or the deadline of the monitor where it comes first.
 ///
 /// The lower bound keeps the rate of beta; the upper bound, like the value it is compared with ([`relaxed_value`]), does not. The
 /// result does not depend on the number of threads, unless the time limit or the caller ends it.
@@ -98,9 +98,12 @@ pub fn certify(
     let started = Instant::now();
     // A limit beyond what a clock holds is none.
     let limit = settings.time_limit.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
-    let monitor = match limit.and_then(|limit| started.checked_add(limit)) {
-        Some(deadline) => monitor.clone().with_deadline(Some(deadline)),
-        None => monitor.clone(),
+    let deadline = limit.and_then(|limit| started.checked_add(limit));
+    let is_earlier = |own| monitor.deadline().is_none_or(|callers| own < callers);
+    let (monitor, settings) = match deadline {
+        Some(own) if is_earlier(own) => (monitor.clone().with_deadline(deadline), settings),
+        Some(_) => (monitor.clone(), CertificateSettings { time_limit: None, ..settings }),
+        None => (monitor.clone(), settings),
     };
     let prove = |sense: Sense, placement: &Placement, value: &dyn Fn() -> Option<f64>| -> Result<Proof, NoProof> {
         certifiable(problem, settings.memory)?;
@@ -220,7 +223,8 @@ impl Proof {
             Status::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
             Status::Interrupted => "interrupted".to_owned(),
             Status::TimeLimit => {
-                format!("the time limit of {} s is over", settings.time_limit.map(figures).unwrap_or_default())
+                let limit = settings.time_limit.map_or_else(String::new, |limit| format!(" of {} s", figures(limit)));
+                format!("the time limit{limit} is over")
             }
             Status::Memory => {
                 format!("the {} GB of certificate.memory_gb are used up", figures(settings.memory as f64 / 1e9))

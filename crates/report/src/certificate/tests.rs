@@ -83,6 +83,11 @@ fn sentences_state_the_bound_and_what_falls_short() {
     let said = "the time limit of 20.0 s is over: a gap of 10 % is reached, 0.500 % was asked for; 2 boxes are open";
     assert_eq!(open.best.as_ref().unwrap().shortfall(&open.settings).as_deref(), Some(said));
 
+    // Stopped by the deadline of the caller, which the settings do not know.
+    let said = "the time limit is over: a gap of 10 % is reached, 0.500 % was asked for; 2 boxes are open";
+    let unlimited = CertificateSettings { time_limit: None, ..open.settings };
+    assert_eq!(open.best.as_ref().unwrap().shortfall(&unlimited).as_deref(), Some(said));
+
     // Dropping a limit makes the worst placement better, so each one dropped is no bound of what it is with it.
     let worst = Certificate { worst: Ok(proof(Sense::Max, 1.0, 1.001, Vec::new())), ..reached.clone() };
     let joined = certificate_text(&worst).replace('\n', " ");

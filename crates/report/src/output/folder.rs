@@ -5,10 +5,14 @@ use super::staged::{Staged, remove_stale};
 use super::transaction::Transaction;
 use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use stead_format::input::InputFile;
 
 /// The name of the lock file, which is there as long as a run writes.
 const LOCK: &str = ".stead.lock";
+
+/// Between two attempts to take a folder.
+const BETWEEN_ATTEMPTS: Duration = Duration::from_millis(50);
 
 /// An output folder, held by this process until this is dropped, whose files appear whole or not at all.
 #[derive(Debug)]
@@ -42,6 +46,20 @@ impl Folder {
         Staged::write(path, b"").map_err(fail)?;
         transaction::manifest_in(path)?;
         Ok(Self { path: path.to_owned(), lock })
+    }
+
+    /// As [`Folder::create`], but waits for another run to let go of the folder, for so long.
+    ///
+    /// # Errors
+    /// As [`Folder::create`].
+    pub fn create_within(path: &Path, limit: Duration) -> Result<Self, ReportError> {
+        let begun = Instant::now();
+        loop {
+            match Self::create(path) {
+                Err(ReportError::Locked { .. }) if begun.elapsed() < limit => std::thread::sleep(BETWEEN_ATTEMPTS),
+                result => return result,
+            }
+        }
     }
 
     /// Where the folder is.

@@ -20,6 +20,7 @@ pub struct Transaction<'a> {
     outdated: Vec<&'a str>,
     form: Option<&'a str>,
     anchor: Option<(&'a str, &'a [u8])>,
+    derived: Option<&'a str>,
 }
 
 /// The manifest of a folder, or an empty one.
@@ -43,7 +44,7 @@ enum Step {
 
 impl<'a> Transaction<'a> {
     pub(super) fn new(folder: &'a Path, command: &'a str, inputs: &'a [InputFile]) -> Self {
-        Self { folder, command, inputs, outdated: Vec::new(), form: None, anchor: None }
+        Self { folder, command, inputs, outdated: Vec::new(), form: None, anchor: None, derived: None }
     }
 
     /// Removes these too, if they are there: results that would contradict these, in folders without a manifest.
@@ -64,6 +65,13 @@ impl<'a> Transaction<'a> {
     #[must_use]
     pub fn joining(mut self, name: &'a str, bytes: &'a [u8]) -> Self {
         self.anchor = Some((name, bytes));
+        self
+    }
+
+    /// Removes the results of a command that were derived from these, where these have changed.
+    #[must_use]
+    pub fn without_derived(mut self, command: &'a str) -> Self {
+        self.derived = Some(command);
         self
     }
 
@@ -89,8 +97,10 @@ impl<'a> Transaction<'a> {
             puts.push(self.staged(name.as_ref(), bytes)?);
         }
         let set = self.set(files, kept);
+        let has_changed = former_set.as_ref().is_none_or(|former| former.files != set.files);
+        let derived = self.derived.and_then(|command| former.of(command)).filter(|_| has_changed).cloned();
         let is_outdated = |name: &str| set.file(name).is_none();
-        let listed = former_set.iter().flat_map(|set| &set.files).filter(|file| !file.form);
+        let listed = former_set.iter().chain(&derived).flat_map(|set| &set.files).filter(|file| !file.form);
         let names = listed.map(|file| file.name.as_str()).chain(self.outdated.iter().copied());
         let removals: Vec<PathBuf> =
             names.filter(|name| is_outdated(name)).map(|name| self.folder.join(name)).collect();
@@ -98,8 +108,12 @@ impl<'a> Transaction<'a> {
         let mut mark = ResultSet { complete: false, ..set.clone() };
         let missing = former_set.into_iter().flat_map(|set| set.files).filter(|file| is_outdated(&file.name));
         mark.files.extend(missing);
-        let mark = former.with(mark);
-        let end = former.with(set);
+        let mut mark = former.with(mark);
+        let mut end = former.with(set);
+        if let Some(derived) = derived {
+            end = end.without(&derived.command);
+            mark = mark.with(ResultSet { complete: false, ..derived });
+        }
         let [mark, end] = [&mark, &end].map(|manifest| {
             let bytes = manifest.to_bytes();
             bytes.map_err(|e| ReportError::Format { what: MANIFEST, cause: e.to_string() })

@@ -7,7 +7,7 @@ use stead_format::input::InputFile;
 use stead_study::analysis::{
     Analysis, AxisEffect, Effects, Failures, Front, Layout, Layouts, Measure, Ranked, Ranking, TaskRanking,
 };
-use stead_study::cases::Cell;
+use stead_study::cases::{Cell, StudyStatus};
 
 /// What `stead study report --json` prints, and the content of `study-report.json`.
 pub fn study_json(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Value {
@@ -30,6 +30,28 @@ pub fn study_json(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Valu
         "failures": failures(&analysis.failures),
     });
     Document::new(inputs).with(entries)
+}
+
+/// What `stead study status --json` prints.
+pub fn status_json(name: &str, status: &StudyStatus, inputs: &[InputFile]) -> Value {
+    let shard = |shard: &stead_study::cases::ShardStatus| {
+        json!({
+            "shard": shard.shard.to_string(),
+            "planned": shard.planned,
+            "done": shard.done,
+            "without_placement": shard.without,
+            "running": shard.is_running,
+        })
+    };
+    let entries = json!({
+        "study": name,
+        "planned": status.planned,
+        "done": status.done,
+        "infeasible": status.infeasible,
+        "failed": status.failed,
+        "shards": status.shards.iter().map(shard).collect::<Value>(),
+    });
+    Document::new(inputs).warnings(&status.problems).with(entries)
 }
 
 fn measure(measure: &Measure) -> Value {

@@ -9,7 +9,7 @@ pub(crate) mod testing;
 mod tests;
 mod text;
 
-pub use json::study_json;
+pub use json::{status_json, study_json};
 pub use tables::{effects_table, front_table, ranking_table};
 pub use text::study_text;
 

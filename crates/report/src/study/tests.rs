@@ -37,6 +37,7 @@ fn the_text_says_what_matters() {
         "cells: 4 cases, 3 placed, 1 infeasible\n",
         "By objective_mm (smaller is better; within 0.2 % layouts tie",
         "best      1.0000  case 1 (robot = a.toml, height = 100)\n",
+        "            mean deflection in all directions 1.00 mm\n",
         "next      2.0000  case 2 (robot = a.toml, height = 200), 100.0 % behind\n",
         "What matters most for objective_mm is robot: ",
         "On the front of best_mean_total_mm (smaller is better) and cycle_s (smaller is better): 2 of 3\n",
@@ -44,6 +45,28 @@ fn the_text_says_what_matters() {
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
+}
+
+#[test]
+fn an_axis_alone_is_told_by_its_ends() {
+    let mut table = table();
+    table.rows.truncate(2);
+    let text = study_text("cells", &Analysis::of(&table, &Question::default()).unwrap());
+    assert!(text.contains("\nOnly height varies: objective_mm is from 1.0000 at 100 to 2.0000 at 200.\n"), "{text}");
+    assert!(!text.contains("of the variance"), "{text}");
+}
+
+#[test]
+fn an_axis_that_the_best_layout_is_an_exception_of_is_named() {
+    let mut table = table();
+    let [case, height, objective] = ["case", "height", "objective_mm"].map(|name| table.column(name).unwrap());
+    let mut last = table.rows[2].clone();
+    (last[case], last[height], last[objective]) = (Cell::Count(4), Cell::Number(200.0), Cell::Number(4.0));
+    table.rows[3] = last;
+    table.rows[2][objective] = Cell::Number(9.0);
+    let text = study_text("cells", &Analysis::of(&table, &Question::default()).unwrap());
+    assert!(text.contains("\nheight: 200 is best on average, but the best layout has 100\n"), "{text}");
+    assert!(!text.contains("\nrobot: "), "{text}");
 }
 
 #[test]
@@ -122,6 +145,7 @@ fn tasks_with_placements_of_their_own_are_joined() {
     }
     let analysis = Analysis::of(&table, &Question::default()).unwrap();
     assert_eq!((analysis.layouts.all.len(), analysis.tasks.len()), (2, 2));
+    assert_eq!(analysis.map.as_ref().unwrap().names, ["robot", "task"]);
     // (1 * 1 + 3 * 2) / 4 for the first robot; the second has no placement for t.csv.
     assert_eq!((analysis.ranking.ranked.len(), analysis.ranking.ranked[0].value), (1, 1.75));
     assert_eq!(analysis.layouts.status(&analysis.layouts.all[1]), ["infeasible", "t.csv: joint 2 at 7.0 deg"]);

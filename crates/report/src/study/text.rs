@@ -2,9 +2,10 @@
 
 use super::cases;
 use crate::columns::{aligned, line};
-use crate::units::fixed;
+use crate::units::{figures, fixed};
 use stead_placement::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Failures, Front, Layouts, Measure, Method, Ranking};
+use stead_study::cases::Cell;
 
 /// Most rows of a table; the files have all.
 const ROWS: usize = 10;
@@ -68,6 +69,30 @@ fn layout(layouts: &Layouts, index: usize) -> String {
     format!("{word} {}{words}", cases(layout))
 }
 
+/// What a ranking by one column leaves out of a layout: columns, and the words around their values.
+const BESIDE: [(&str, &str, &str); 6] = [
+    ("best_mean_total_mm", "mean deflection in all directions ", " mm"),
+    ("best_max_total_mm", "largest ", " mm"),
+    ("min_joint_margin_deg", "joints ", " deg from their limits"),
+    ("min_inverse_condition", "1/kappa at least ", ""),
+    ("payload_kg", "payload of the arm ", " kg"),
+    ("active_bounds", "held by ", ""),
+];
+
+/// What else matters of a layout, as far as it is known.
+fn beside(layouts: &Layouts, index: usize) -> String {
+    let value = |name: &str| {
+        let column = layouts.columns.iter().position(|column| column.name == name)?;
+        match layouts.all[index].row.get(column)? {
+            Cell::None => None,
+            Cell::Number(number) => Some(figures(*number)),
+            cell => Some(cell.written()),
+        }
+    };
+    let words = BESIDE.iter().filter_map(|(name, before, after)| Some(format!("{before}{}{after}", value(name)?)));
+    words.collect::<Vec<_>>().join(", ")
+}
+
 fn best(text: &mut String, analysis: &Analysis) {
     let (ranking, layouts) = (&analysis.ranking, &analysis.layouts);
     let Measure { name, .. } = &ranking.measure;
@@ -83,6 +108,10 @@ fn best(text: &mut String, analysis: &Analysis) {
         ),
     );
     line(text, &format!("  best      {}  {}", digits(first.value), layout(layouts, first.layout)));
+    let beside = beside(layouts, first.layout);
+    if !beside.is_empty() {
+        line(text, &format!("            {beside}"));
+    }
     for tie in ties.iter().take(ROWS) {
         line(text, &format!("  tie       {}  {}", digits(tie.value), layout(layouts, tie.layout)));
     }
@@ -127,6 +156,7 @@ fn effects(text: &mut String, analysis: &Analysis) {
     }
     let name = &effects.measure.name;
     match &effects.axes[..] {
+        [only] => return line(text, &alone(only, &effects.measure)),
         [first, ..] if first.share.is_some_and(|share| share > 0.0) => {
             let share = first.share.map_or_else(String::new, percent);
             line(text, &format!("\nWhat matters most for {name} is {}: {share} % of the variance.", first.name));
@@ -139,6 +169,7 @@ fn effects(text: &mut String, analysis: &Analysis) {
     if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
         line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
     }
+    text.push_str(&against_the_best(analysis));
     let says = |method: Method| effects.axes.iter().any(|axis| axis.method == method);
     if says(Method::AdjustedMeans) {
         line(
@@ -158,6 +189,34 @@ fn effects(text: &mut String, analysis: &Analysis) {
             "mixed means: axes that vary together cannot be told apart; each has the effects of the others in it",
         );
     }
+}
+
+/// Axes of which the best layout has another value than the one that is best on average.
+fn against_the_best(analysis: &Analysis) -> String {
+    let Some(best) = analysis.ranking.best().first() else { return String::new() };
+    let (row, measure) = (&analysis.layouts.all[best.layout].row, &analysis.effects.measure);
+    let mut text = String::new();
+    for axis in &analysis.effects.axes {
+        let Some(level) = axis.best(measure.sense) else { continue };
+        let own = row[axis.axis].written();
+        let other = axis.levels.iter().find(|other| other.label == own && !measure.is_tie(level.value, other.value));
+        if other.is_some() {
+            line(
+                &mut text,
+                &format!("{}: {} is best on average, but the best layout has {own}", axis.name, level.label),
+            );
+        }
+    }
+    text
+}
+
+/// What an axis does that no other is varied beside: it explains all there is.
+fn alone(axis: &AxisEffect, measure: &Measure) -> String {
+    let at = |sense: Sense| {
+        let level = axis.levels.iter().min_by(|a, b| sense.compare(a.value, b.value));
+        level.map_or_else(String::new, |level| format!("{} at {}", digits(level.value), level.label))
+    };
+    format!("\nOnly {} varies: {} is from {} to {}.", axis.name, measure.name, at(Sense::Min), at(Sense::Max))
 }
 
 fn effect_row(axis: &AxisEffect, measure: &Measure) -> Vec<String> {

@@ -101,7 +101,7 @@ pub struct Analysis {
     pub front: Option<Front>,
     /// What each axis does to the column of the ranking.
     pub effects: Effects,
-    /// The column of the ranking over two axes; nothing where there are fewer.
+    /// The column of the ranking over two axes, or over one and the tasks; nothing where there are fewer.
     pub map: Option<Map>,
     /// What has no placement.
     pub failures: Failures,
@@ -124,7 +124,8 @@ pub struct TaskRanking {
 const BY: &str = "objective_mm";
 
 /// What the front is of, where nothing else is asked for: the first two that have values.
-const FRONT: [&str; 4] = ["best_mean_total_mm", "cycle_s", "min_joint_margin_deg", "min_inverse_condition"];
+const FRONT: [&str; 5] =
+    ["best_mean_total_mm", "cycle_s", "price_eur", "min_joint_margin_deg", "min_inverse_condition"];
 
 impl Analysis {
     /// Analyses a table of results.
@@ -155,13 +156,24 @@ impl Analysis {
             ranking: ranking(&layouts, &measure),
             tasks: tasks.collect(),
             front: measures.map(|measures| front(&layouts, measures)),
-            map: axes.and_then(|axes| map(&layouts, &measure, axes)),
+            map: match axes {
+                Some(axes) => map(&layouts, &measure, axes),
+                None => map_over_tasks(table, &layouts, &measure),
+            },
             failures: failures(table),
             noise: question.noise,
             effects,
             layouts,
         })
     }
+}
+
+/// The column over the one axis that is varied and the tasks, where each layout has a placement for every one of several tasks.
+fn map_over_tasks(table: &Table, layouts: &Layouts, measure: &Measure) -> Option<Map> {
+    let [axis] = layouts.varied()[..] else { return None };
+    let cases = Layouts::cases(table);
+    let task = cases.axes.last().copied().filter(|_| !layouts.tasks().is_empty())?;
+    map(&cases, measure, [axis, task])
 }
 
 /// The columns of the front, as asked for or those of [`FRONT`] that have values.

@@ -3,6 +3,7 @@
 use super::StudyError;
 use super::plan::Plan;
 use super::row::result_columns;
+use super::shard::Keeping;
 use super::store::{Rows, Store};
 use super::table::{Cell, Column, Kind, Table};
 use std::path::Path;
@@ -17,18 +18,22 @@ pub fn merged(plan: &Plan, folder: &Path) -> Result<Option<Table>, StudyError> {
     Ok(table(plan, &store.rows(&mut Vec::new())?))
 }
 
-/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so.
+/// The files that hold the table of results.
+pub const TABLES: [&str; 2] = ["study.csv", "study.parquet"];
+
+/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so. The first two are
+/// published as one set; the third differs from run to run.
 ///
 /// # Errors
 /// [`StudyError`]: the folder of another study, or a file that cannot be read or written.
-pub fn merge(plan: &Plan, folder: &Path) -> Result<bool, StudyError> {
+pub fn merge(plan: &Plan, folder: &Path, keeping: &dyn Keeping) -> Result<bool, StudyError> {
     let store = Store::at(folder);
     store.check(plan)?;
     let _lock = store.lock()?;
     let Some(table) = table(plan, &store.rows(&mut Vec::new())?) else { return Ok(false) };
     store.write("study-timing.csv", &timing(plan, &store)?.to_csv()?)?;
-    store.write("study.parquet", &table.to_parquet()?)?;
-    store.write("study.csv", &table.to_csv()?)?;
+    let [csv, parquet] = TABLES;
+    keeping.publish(&[(csv, table.to_csv()?), (parquet, table.to_parquet()?)]).map_err(StudyError::Keep)?;
     Ok(true)
 }
 

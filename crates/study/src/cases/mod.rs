@@ -19,7 +19,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use merge::{merge, merged};
+pub use merge::{TABLES, merge, merged};
 pub use plan::{Plan, PlannedCase};
 pub use progress::{ShardStatus, StudyStatus, status};
 pub use row::{CaseStatus, result_columns};
@@ -75,7 +75,7 @@ pub enum StudyError {
         /// What the writer says.
         cause: String,
     },
-    /// The files of a case could not be written.
+    /// The files of a case, or the table, could not be written.
     #[error("{0}; finished cases are kept")]
     Keep(String),
 }

@@ -18,8 +18,15 @@ use stead_format::study::Keep;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_placement::certify::{Certificate, certify};
 
-/// Puts the files of a case into a folder of its own.
+/// Puts results where readers look for them: the files of a case into a folder of its own, the table into that of the study.
 pub trait Keeping: Sync {
+    /// Writes files of the study as one set that a manifest vouches for. They take the place of those of an earlier table, and what was
+    /// derived from another table goes.
+    ///
+    /// # Errors
+    /// What is wrong, as one line.
+    fn publish(&self, files: &[(&str, Vec<u8>)]) -> Result<(), String>;
+
     /// Whether they are there already.
     fn is_kept(&self, case: &PlannedCase) -> bool;
 
@@ -111,7 +118,7 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
         rows.get(&case.id).map(|row| Entry { id: case.id.clone(), row: row.clone(), timing })
     };
     store.close(settings.shard, mine.iter().filter_map(entry).collect())?;
-    finished.is_complete = merge(plan, settings.folder)?;
+    finished.is_complete = merge(plan, settings.folder, settings.keeping)?;
     if finished.is_complete {
         keep_best(plan, settings, monitor)?;
     }

@@ -5,6 +5,7 @@ use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType}
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::{FileMetaData, KeyValue};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
@@ -12,6 +13,10 @@ use parquet::record::Field;
 use parquet::schema::types::Type;
 use std::path::Path;
 use std::sync::Arc;
+use stead_format::input::sha256;
+
+/// The entry of a Parquet file's metadata that has the digest of its rows: of the table as CSV.
+const DIGEST: &str = "stead.sha256";
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +109,8 @@ impl Table {
         writer.into_inner().map_err(|cause| StudyError::format("the table", &cause))
     }
 
-    /// The table as Parquet, compressed by Snappy; every column is optional.
+    /// The table as Parquet, compressed by Snappy; every column is optional. Its metadata has the digest of the rows, since Parquet itself
+    /// does not tell a value that was changed on the disk.
     ///
     /// # Errors
     /// [`StudyError::Format`] when the writer fails.
@@ -112,7 +118,9 @@ impl Table {
         let fail = |cause: ParquetError| StudyError::format("the Parquet file", &cause);
         let schema = Arc::new(self.schema().map_err(fail)?);
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-        let properties = Arc::new(properties.set_created_by("stead".to_owned()).build());
+        let digest = KeyValue::new(DIGEST.to_owned(), sha256(&self.to_csv()?));
+        let properties = properties.set_created_by("stead".to_owned()).set_key_value_metadata(Some(vec![digest]));
+        let properties = Arc::new(properties.build());
         let mut bytes = Vec::new();
         let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties).map_err(fail)?;
         let mut group = writer.next_row_group().map_err(fail)?;
@@ -169,7 +177,8 @@ impl Table {
         let words = |cause: ParquetError| cause.to_string();
         let opened = std::fs::File::open(file).map_err(|cause| cause.to_string())?;
         let reader = SerializedFileReader::new(opened).map_err(words)?;
-        let fields = reader.metadata().file_metadata().schema_descr();
+        let metadata = reader.metadata().file_metadata();
+        let fields = metadata.schema_descr();
         let is_same = fields.num_columns() == columns.len()
             && fields.columns().iter().zip(columns).all(|(found, column)| found.name() == column.name);
         if !is_same {
@@ -180,13 +189,24 @@ impl Table {
             let row = row.map_err(words)?;
             rows.push(row.get_column_iter().map(|(_, field)| cell(field)).collect::<Result<Vec<_>, _>>()?);
         }
-        Ok(Self { columns: columns.to_vec(), rows })
+        let table = Self { columns: columns.to_vec(), rows };
+        let digest = table.to_csv().map(|csv| sha256(&csv)).map_err(|cause| cause.to_string())?;
+        if stated_digest(metadata) == Some(&digest) {
+            Ok(table)
+        } else {
+            Err("has other rows than were written".to_owned())
+        }
     }
 
     /// Where a column is.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
+}
+
+/// The digest of the rows that were written.
+fn stated_digest(metadata: &FileMetaData) -> Option<&String> {
+    metadata.key_value_metadata()?.iter().find(|entry| entry.key == DIGEST)?.value.as_ref()
 }
 
 fn cell(field: &Field) -> Result<Cell, String> {

@@ -52,6 +52,15 @@ fn why_there_is_no_bound_is_told() {
     let timed = CertificateSettings { time_limit: Some(0.0), ..settings };
     let late = run(&problem, 0.0, timed, &Monitor::silent());
     assert_eq!(late, (NoProof::TimeLimit, NoProof::TimeLimit, both));
+    // The deadline of the caller, before that of the settings or without one.
+    let over = Monitor::silent().with_deadline(Some(std::time::Instant::now()));
+    for time_limit in [None, Some(1e3)] {
+        let timed = CertificateSettings { time_limit, ..settings };
+        let (best, ..) = run(&problem, 1e-4, timed, &over);
+        assert_eq!(best, NoProof::TimeLimit);
+        let certificate = certify(&problem, (&PLACEMENT, 1e-4), &PLACEMENT, timed, &over);
+        assert_eq!(certificate.settings.time_limit, None);
+    }
     let mut robust = problem;
     robust.criterion.force_uncertainty = 0.1;
     let reason = || NoProof::Unsupported(Unsupported::UncertainForce);

@@ -11,6 +11,8 @@ use stead_study::analysis::{AxisEffect, Effects, Layouts, Level, Method};
 const COLUMNS: usize = 2;
 const LEFT: [i32; COLUMNS] = [95, 650];
 const WIDTH: i32 = 425;
+/// Width of a panel that is the only one. Pixels
+const ALONE: i32 = 980;
 const TOP: i32 = 116;
 const HEIGHT: i32 = 240;
 const ROW: i32 = 340;
@@ -21,34 +23,35 @@ pub fn effects(effects: &Effects, layouts: &Layouts) -> String {
     let rows = effects.axes.len().div_ceil(COLUMNS).max(1) as i32;
     picture((1100, TOP + ROW * rows), |canvas| {
         canvas.title(&format!("Effects on {}", effects.measure.name), (LEFT[0], 26));
-        let entries =
-            [(PALE, "a layout", 0), (BLUE, "mean over the other axes", 110), (GREEN, "the best of them", 330)];
-        for (colour, label, along) in entries {
+        let is_alone = effects.axes.len() == 1;
+        let mean = if is_alone { "mean of the layouts" } else { "mean over the other axes" };
+        for (colour, label, along) in [(PALE, "a layout", 0), (BLUE, mean, 110), (GREEN, "the best of them", 330)] {
             canvas.dot((f64::from(LEFT[0] + along + 5), 54.0), 4, colour);
             canvas.text(label, (LEFT[0] + along + 17, 54), TextStyle::new(12.0).coloured(INK));
         }
         for (number, axis) in effects.axes.iter().enumerate() {
             let top = TOP + ROW * (number / COLUMNS) as i32;
-            one(canvas, effects, layouts, axis, (LEFT[number % COLUMNS], top));
+            let left = LEFT[number % COLUMNS];
+            one(canvas, effects, layouts, axis, [left, left + if is_alone { ALONE } else { WIDTH }, top]);
         }
     })
 }
 
-fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEffect, (left, top): (i32, i32)) {
+fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEffect, [left, right, top]: [i32; 3]) {
     let values = || layouts.valued(&effects.measure);
     let levels = axis.levels.iter().map(|level| level.value);
     let y = roomy(values().map(|(_, value)| value).chain(levels).collect::<Vec<_>>().into_iter(), top + HEIGHT, top);
     let is_line = axis.method == Method::Line;
     let number = |level: &Level| level.number.unwrap_or(0.0);
     let x = if is_line {
-        roomy(axis.levels.iter().map(number), left, left + WIDTH)
+        roomy(axis.levels.iter().map(number), left, right)
     } else {
-        Scale::new(-0.5, axis.levels.len() as f64 - 0.5, left, left + WIDTH)
+        Scale::new(-0.5, axis.levels.len() as f64 - 0.5, left, right)
     };
     let mut panel = Panel::new(x, y, [5, 6], [axis.name.clone(), effects.measure.name.clone()]);
     if !is_line {
         let labels: Vec<String> = axis.levels.iter().map(|level| level.label.clone()).collect();
-        panel.x_ticks = Ticks::named(fitting(&labels, WIDTH / labels.len().max(1) as i32));
+        panel.x_ticks = Ticks::named(fitting(&labels, (right - left) / labels.len().max(1) as i32));
     }
     panel.x_label = cut(&axis.name, 54).into();
     let mut chart = LineChart::new(panel);
@@ -72,6 +75,10 @@ fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEff
     let colour = |value: f64| -> Colour { if Some(value) == best { GREEN } else { BLUE } };
     if !is_line {
         chart.marks.extend(means.iter().map(|[x, value]| Mark::Dot([*x, *value], 5, colour(*value))));
+    }
+    if effects.axes.len() == 1 {
+        // It explains all there is.
+        return chart.draw(canvas);
     }
     let share = axis.share.map_or_else(String::new, |share| format!("{} % of the variance, ", percent(share)));
     chart.marks.push(Mark::Heading(format!("{share}by {}", axis.method.word()).into(), INK));
