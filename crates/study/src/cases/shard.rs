@@ -12,7 +12,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use stead_format::Run;
 use stead_format::study::Keep;
 use stead_numerics::monitor::{Monitor, Progress};
@@ -135,9 +135,21 @@ fn is_placed(row: &[Cell]) -> bool {
     row.first() == Some(&Cell::Text(CaseStatus::Placed.word().to_owned()))
 }
 
-/// Places the cases with the smallest objective once more, where their files are to be kept and are not there.
+/// How long a shard waits before it looks again whether another one has done the best cases.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Places the cases with the smallest objective once more, where their files are to be kept and are not there. Of shards that end
+/// at the same time one does so, and the others wait for it: should it be killed, the next one goes on.
 fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<(), StudyError> {
     let Keep::Best(count) = plan.study.keep else { return Ok(()) };
+    let store = Store::at(settings.folder);
+    let _lock = loop {
+        match store.lock_best() {
+            Err(StudyError::Locked { .. }) if !monitor.should_stop() => std::thread::sleep(PAUSE),
+            Err(StudyError::Locked { .. }) => return Ok(()),
+            lock => break lock?,
+        }
+    };
     let cases: HashMap<usize, &PlannedCase> = plan.cases.iter().map(|case| (case.case.number, case)).collect();
     let missing: Vec<&PlannedCase> = best(plan, settings.folder, count)?
         .into_iter()

@@ -143,6 +143,11 @@ impl Store {
         Ok(lock)
     }
 
+    /// The lock of whoever writes the files of the best cases.
+    pub fn lock_best(&self) -> Result<Lock, StudyError> {
+        Lock::take(&self.shards().join("best.lock"), "the best cases of the study")
+    }
+
     /// The lock of a shard.
     pub fn lock_shard(&self, shard: Shard) -> Result<Lock, StudyError> {
         let lock = Lock::take(&self.of_shard(shard, ".lock"), &format!("shard {shard} of the study"))?;
