@@ -49,6 +49,7 @@ pub mod guide;
 mod identification;
 mod result;
 mod run;
+mod score;
 mod simulation;
 mod study;
 
@@ -57,7 +58,8 @@ pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
-pub use run::{Explanations, PlacementScore, Placements, Run};
+pub use run::{Placements, Run};
+pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;

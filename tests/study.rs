@@ -294,6 +294,12 @@ fn shards_out_of_range_other_studies_and_locks_are_refused() {
     );
     bench.write("odd/study.json", "{}");
     refused(&bench, &[STUDY, "--out", "odd"], &["odd/study.json: is no description of a study"]);
+    let below = format!("{RUN}/out");
+    refused(
+        &bench,
+        &[STUDY, "--out", &below],
+        &["run.toml/out/study.json: is below a file; allowed: a folder of this"],
+    );
 
     let lock = std::fs::File::options().write(true).open(bench.path("out/shards/0001-of-0001.lock")).unwrap();
     lock.try_lock().unwrap();

@@ -122,6 +122,9 @@ impl Store {
         };
         match std::fs::read(&path) {
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(()),
+            Err(cause) if cause.kind() == std::io::ErrorKind::NotADirectory => {
+                Err(folder("is below a file".to_owned()))
+            }
             Err(cause) => Err(StudyError::read(&path, cause)),
             Ok(bytes) => {
                 let header: Header = serde_json::from_slice(&bytes)
