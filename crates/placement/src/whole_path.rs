@@ -103,9 +103,10 @@ impl<'a, 'p> WholePath<'a, 'p> {
                 let beta = between(plan.betas[from], plan.betas[to]);
                 off_grid::score(problem, placement, (point, beta), plan, &near)
             };
+            let of_kept: Vec<f64> = kept.iter().map(|point| score(*point).unwrap_or(0.0)).collect();
             for point in span.clone().filter(|point| kept.binary_search(point).is_err()) {
                 let (from, to) = around(point);
-                let ends = [from, to].into_iter().filter_map(|place| score(kept[place])).fold(0.0, f64::max);
+                let ends = of_kept[from].max(of_kept[to]);
                 match score(point) {
                     None => blocked_points.push(point),
                     Some(score) if highest.is_none_or(|(known, _)| score - ends > known) => {
