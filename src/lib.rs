@@ -31,7 +31,7 @@
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
 //!
-//! [`init`] writes a commented starter set of files, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
+//! [`init`] writes a commented starter set of files, [`import_robot`] makes a robot file of a URDF, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
 //! number of threads does not change a result.
 //!
 //! # Conventions
@@ -68,6 +68,7 @@ pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
+pub use stead_format::urdf::{Deviation, ImportOptions, ImportedRobot, ImportedRow, import_robot};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;

@@ -14,6 +14,7 @@ fn commands(bench: &Bench) -> Vec<Vec<String>> {
                     .iter()
                     .for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()]));
             }
+            "import" => all.push(vec![name.to_owned(), "robot".to_owned()]),
             "identify" => ["fit", "plan"].iter().for_each(|below| all.push(vec![name.to_owned(), (*below).to_owned()])),
             _ => all.push(vec![name.to_owned()]),
         }
@@ -41,7 +42,7 @@ fn the_overview_groups_every_command_by_its_question() {
     assert!(listed.contains("unrecognized subcommand"), "{listed}");
     let names = commands(&bench);
     let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
-    for name in expected.into_iter().chain(["circularity", "init", "schema", "completions", "man"]) {
+    for name in expected.into_iter().chain(["circularity", "robot", "init", "schema", "completions", "man"]) {
         assert_eq!(names.iter().filter(|command| command.last().is_some_and(|last| last == name)).count(), 1, "{name}");
     }
 }
@@ -80,7 +81,12 @@ fn the_manual_has_a_page_for_every_command() {
     let bench = Bench::new();
     let ended = bench.stead(&["man", "pages/man1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let mut expected = vec!["stead.1".to_owned(), "stead-identify.1".to_owned(), "stead-study.1".to_owned()];
+    let mut expected = vec![
+        "stead.1".to_owned(),
+        "stead-identify.1".to_owned(),
+        "stead-import.1".to_owned(),
+        "stead-study.1".to_owned(),
+    ];
     expected.extend(commands(&bench).iter().map(|command| format!("stead-{}.1", command.join("-"))));
     let mut written: Vec<String> = bench.tree("pages/man1").into_keys().collect();
     expected.sort();

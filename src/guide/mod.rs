@@ -3,6 +3,7 @@
 //! | question | page |
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
+//! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -45,6 +46,8 @@ pub mod glossary {}
 pub mod identification_file {}
 #[doc = include_str!("identify.md")]
 pub mod identify {}
+#[doc = include_str!("import_robot.md")]
+pub mod import_robot {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 #[doc = include_str!("method.md")]
