@@ -27,6 +27,7 @@
 //! | [`CompensationRun`] | [`compensate`](CompensationRun::compensate) | [`CompensatedPath`] | `stead compensate` |
 //! | [`SimulationRun`] | [`simulate`](SimulationRun::simulate) | [`SimulatedPass`] | `stead simulate` |
 //! | [`StabilityRun`] | [`analyse`](StabilityRun::analyse) | [`StabilityAnalysis`] | `stead stability` |
+//! | [`Arm`] | [`pose_of`](Arm::pose_of) | [`PoseOfArm`] | `stead pose` |
 //! | [`Profile`] | [`circularity`](Profile::circularity) | [`Circularity`] | `stead circularity` |
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
@@ -48,6 +49,7 @@ mod error;
 pub mod guide;
 mod identification;
 mod result;
+mod robot;
 mod run;
 mod score;
 mod simulation;
@@ -58,11 +60,13 @@ pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
+pub use robot::{Arm, PoseOfArm, ShippedArms};
 pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;

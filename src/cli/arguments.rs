@@ -3,6 +3,8 @@
 use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
 use super::help;
 use super::import::ImportCommand;
+use super::pose::PoseOptions;
+use super::robots::RobotsOptions;
 use super::values::{field, finite, gap, noise, point, positive, sector, seed, shard, shards, threads};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -52,6 +54,12 @@ pub(super) enum Command {
     /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
     #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
+    /// Show where joint angles bring flange and tool, to compare with a teach pendant
+    #[command(after_long_help = help::POSE)]
+    Pose(PoseOptions),
+    /// List the arms that stead ships with
+    #[command(after_long_help = help::ROBOTS)]
+    Robots(RobotsOptions),
     /// Turn what other programs write into files of stead: a robot from a URDF
     #[command(subcommand)]
     Import(ImportCommand),

@@ -2,12 +2,13 @@
 //! the question that they answer.
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
     ("How round a measured profile is", &["circularity"]),
+    ("Robots", &["robots", "pose"]),
     ("Input files, shell and manual", &[]),
 ];
 
@@ -271,6 +272,28 @@ Exit codes:
   1  the small motions of the arm cannot be computed there, or a file could not be written
   2  wrong usage, bad input, or a results folder that cannot be written to";
 
+pub(super) const POSE: &str = "\
+Examples:
+  stead pose name:kuka-kr210-r2700 --controller-deg 0,-90,90,0,30,0
+  stead pose my/kr210.toml --joints-deg 10,80,-160,5,30,-20 --tool-of my/run.toml --json
+
+Frames are printed in the base frame of the rows, and in the controller's robot root where the robot file has [controller] and [root].
+A robot file without stiffness will do.
+
+Exit codes:
+  0  done; also where an angle is beyond its limits, which is noted
+  2  wrong usage or bad input";
+
+pub(super) const ROBOTS: &str = "\
+Examples:
+  stead robots
+  stead robots --json
+
+A shipped arm takes the place of a robot file by its name: robot = \"name:kuka-kr270-2\".
+
+Exit codes:
+  0  done";
+
 pub(super) const IMPORT_ROBOT: &str = "\
 Examples:
   stead import robot kr120.urdf --out my/kr120.toml
@@ -278,8 +301,7 @@ Examples:
   stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --out my/kr210.toml
 
 Files written: the robot file. Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like
-taken from a shipped arm, which ranks placements and does not predict millimetres. Shipped arms: kuka-kr100-ha,
-kuka-kr120-r3900, kuka-kr270-2, kuka-kr270-r2700, kuka-kr360-l240, kuka-kr500, staubli-tx200.
+taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict millimetres.
 
 Exit codes:
   0  done

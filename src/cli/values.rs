@@ -38,6 +38,13 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
 }
 
+/// Six numbers with commas between them.
+pub(super) fn six(text: &str) -> Result<[f64; 6], String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(|part| finite(part.trim())).collect();
+    let allowed = || "allowed: six finite decimal numbers with commas between them".to_owned();
+    numbers.ok().and_then(|numbers| numbers.try_into().ok()).ok_or_else(allowed)
+}
+
 /// Per cent in, a share out.
 pub(super) fn gap(text: &str) -> Result<f64, String> {
     finite(text).ok().and_then(CertificateSettings::gap).ok_or_else(|| format!("allowed: {GAPS_ALLOWED}"))
