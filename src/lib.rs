@@ -27,6 +27,7 @@
 //! | [`CompensationRun`] | [`compensate`](CompensationRun::compensate) | [`CompensatedPath`] | `stead compensate` |
 //! | [`SimulationRun`] | [`simulate`](SimulationRun::simulate) | [`SimulatedPass`] | `stead simulate` |
 //! | [`StabilityRun`] | [`analyse`](StabilityRun::analyse) | [`StabilityAnalysis`] | `stead stability` |
+//! | | [`Checked::read`] | [`Checked`] | `stead check` |
 //! | [`Arm`] | [`pose_of`](Arm::pose_of) | [`PoseOfArm`] | `stead pose` |
 //! | [`Profile`] | [`circularity`](Profile::circularity) | [`Circularity`] | `stead circularity` |
 //!
@@ -43,6 +44,7 @@
 //! fixed order, and transcendental functions do not come from the C library of the machine.
 
 mod assessment;
+mod check;
 mod circularity;
 mod compensation;
 mod error;
@@ -56,6 +58,7 @@ mod simulation;
 mod study;
 
 pub use assessment::{AssessmentRun, RobotAssessment};
+pub use check::Checked;
 pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
@@ -68,11 +71,11 @@ pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
 pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
-pub use stead_format::init::{StarterSet, init};
+pub use stead_format::init::{StarterSet, init, init_run};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
-pub use stead_format::urdf::{Deviation, ImportOptions, ImportedRobot, ImportedRow, import_robot};
+pub use stead_format::urdf::{Deviation, HomePose, ImportOptions, ImportedRobot, ImportedRow, import_robot};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;

@@ -49,6 +49,11 @@ impl Arm {
         Ok(self)
     }
 
+    /// The files that were read.
+    pub(crate) fn inputs(&self) -> &[InputFile] {
+        &self.inputs
+    }
+
     /// The kinematics of the arm.
     pub fn robot(&self) -> &Robot {
         &self.robot

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod assess;
+mod check;
 mod circularity;
 mod compensate;
 mod completions;
@@ -104,6 +105,7 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Check(options) => check::run(&options),
         Command::Pose(options) => pose::run(&options),
         Command::Robots(options) => robots::run(&options),
         Command::Import(command) => import::run(&command),

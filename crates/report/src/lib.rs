@@ -4,6 +4,7 @@
 
 pub mod assessment;
 pub mod certificate;
+pub mod check;
 pub mod circularity;
 mod columns;
 pub mod compensation;

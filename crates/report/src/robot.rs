@@ -172,7 +172,7 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
             arm.name.to_owned(),
             arm.robot.name().to_owned(),
             arm.robot.data_sheet().payload.map_or_else(String::new, |kg| fixed(kg, 0)),
-            fixed(wrist_reach(&arm.robot) * 1e3, 0),
+            fixed(arm.robot.geometry().reach() * 1e3, 0),
             yes(arm.has_stiffness),
             yes(arm.has_dynamics),
             arm.robot.controller().map_or_else(|| "-".to_owned(), |controller| controller.kind.word().to_owned()),
@@ -182,12 +182,6 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
     aligned(&rows, &[0, 1, 4, 5, 6, 7])
 }
 
-/// How far the wrist centre gets from axis 1 with the arm stretched out level. m
-fn wrist_reach(robot: &Robot) -> f64 {
-    let [_, second, third, fourth, ..] = robot.joints();
-    second.a.abs() + third.a.abs() + libm::hypot(fourth.a, fourth.d)
-}
-
 /// What `stead robots --json` prints.
 pub fn robots_json(arms: &[ShippedArm]) -> Value {
     let one = |arm: &ShippedArm| {
@@ -195,7 +189,7 @@ pub fn robots_json(arms: &[ShippedArm]) -> Value {
             "name": arm.name,
             "robot": arm.robot.name(),
             "payload_kg": arm.robot.data_sheet().payload,
-            "wrist_reach_mm": Unit { factor: 1e3, decimals: 3 }.number(wrist_reach(&arm.robot)),
+            "wrist_reach_mm": Unit { factor: 1e3, decimals: 3 }.number(arm.robot.geometry().reach()),
             "has_stiffness": arm.has_stiffness,
             "has_masses": arm.has_dynamics,
             "controller": arm.robot.controller().map(|controller| controller.kind.word()),

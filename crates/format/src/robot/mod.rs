@@ -65,6 +65,21 @@ pub(crate) fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
     })
 }
 
+/// Of a robot file, whether it states the stiffness of every joint; nothing of a file of another kind, known by its having no
+/// `[[joints]]`.
+///
+/// # Errors
+/// [`InputError`]: a file that cannot be read or is no TOML, and what is wrong in a robot file.
+pub fn says_stiffness(file: &Path) -> Result<Option<bool>, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    if !document.root().key("joints").is_given() {
+        return Ok(None);
+    }
+    let file: RobotFile = document.read()?;
+    Ok(Some(file.joints.iter().all(has_stiffness)))
+}
+
 /// Whether a row states its stiffness.
 pub(crate) fn has_stiffness(row: &JointRow) -> bool {
     row.stiffness_mnm_per_rad.is_some() || row.compliance_urad_per_nm.is_some()
