@@ -5,7 +5,7 @@
 //!
 //! - `coverage`: how often the stated error of the subsets covers the error at another placement, over NUMBER paths (250) with 40
 //!   other placements each; POINTS is the most points of a path (1200).
-//! - `adversarial`: NUMBER paths (20) of POINTS points (3000), of which ten neighbours decide; each is searched on subsets and by
+//! - `adversarial`: NUMBER paths (20; or those of FROM..TO) of POINTS points (3000), of which ten neighbours decide; each is searched on subsets and by
 //!   all points.
 //! - `quality`: five paths of POINTS points (1500), the last one of so many rounds that it winds joint 6 to its limits, each searched with NUMBER seeds (20) and once by all points; the best known is the
 //!   best of all these.
@@ -18,6 +18,7 @@ use rand_chacha::ChaCha8Rng;
 use std::env;
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 use stead_format::{Run, read_run};
@@ -49,9 +50,18 @@ fn main() -> Result<(), Failure> {
     run.search.generations = number(5, run.search.generations)?;
     match what.as_str() {
         "coverage" => coverage(&run, number(2, 250)?, number(3, 1200)?),
-        "adversarial" => adversarial(&run, number(2, 20)?, number(3, 3000)?),
+        "adversarial" => adversarial(&run, paths(arguments.get(2))?, number(3, 3000)?),
         "quality" => quality(&run, number(2, 20)?, number(3, 1500)?),
         _ => Err("what: coverage, adversarial or quality".into()),
+    }
+}
+
+/// Which paths: `FROM..TO`, or so many from the first.
+fn paths(text: Option<&String>) -> Result<Range<usize>, Failure> {
+    match text.map(|text| text.split_once("..").ok_or(text)) {
+        None => Ok(0..20),
+        Some(Ok((from, to))) => Ok(from.parse()?..to.parse()?),
+        Some(Err(number)) => Ok(0..number.parse()?),
     }
 }
 
@@ -185,9 +195,9 @@ fn changed(task: &Task, first: usize, change: impl Fn(f64, &mut PathPoint, &mut 
 }
 
 /// Paths on which ten neighbours decide, left out by both subsets where that is possible.
-fn adversarial(run: &Run, paths: usize, points: usize) -> Result<(), Failure> {
-    let mut as_good = 0;
-    for path in 0..paths {
+fn adversarial(run: &Run, paths: Range<usize>, points: usize) -> Result<(), Failure> {
+    let (first_path, mut as_good) = (paths.start, 0);
+    for path in paths {
         let mut random = ChaCha8Rng::seed_from_u64(1000 + path as u64);
         let shape = Shape { points, segments: random.random_range(1..=30), roughness: 0.0, rounds: None };
         let mut problem = Problem { task: task(shape, &mut random)?, ..run.problem.clone() };
@@ -223,7 +233,7 @@ fn adversarial(run: &Run, paths: usize, points: usize) -> Result<(), Failure> {
             (subsets, whole) => subsets.is_none() == whole.is_none(),
         };
         as_good += usize::from(is_as_good);
-        println!("  as good: {as_good} of {}", path + 1);
+        println!("  as good: {as_good} of {}", path + 1 - first_path);
     }
     Ok(())
 }
