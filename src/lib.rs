@@ -31,7 +31,8 @@
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
 //!
-//! [`init`] writes a commented starter set of files, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
+//! [`init`] writes a commented starter set of files, [`import_path`] makes a task file of a tool path
+//! from CAM, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
 //! number of threads does not change a result.
 //!
 //! # Conventions
@@ -61,6 +62,10 @@ pub use run::{Explanations, PlacementScore, Placements, Run};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::cam::gcode::Machine;
+pub use stead_format::cam::{
+    ImportedPath, LengthUnit, ProgramFormat, ReadSettings as PathSettings, Resampling, import_path,
+};
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;

@@ -2,6 +2,7 @@
 
 use super::given::{GivenPlacement, PlaceArguments};
 use super::help;
+use super::import::ImportCommand;
 use super::values::{
     damping_scale, field, finite, gap, noise, point, positive, rpm, sector, seed, shard, shards, threads, variant,
 };
@@ -55,6 +56,9 @@ pub(super) enum Command {
     /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
     #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
+    /// Turn what other programs write into files of stead: a tool path from CAM
+    #[command(subcommand)]
+    Import(ImportCommand),
     /// Write a small commented set of input files that runs
     #[command(after_long_help = help::INIT)]
     Init(InitOptions),

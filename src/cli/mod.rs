@@ -13,6 +13,7 @@ mod explain;
 mod given;
 mod help;
 mod identify;
+mod import;
 mod init;
 mod man;
 mod place;
@@ -101,6 +102,7 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Import(command) => import::run(&command),
         Command::Init(options) => init::run(&options),
         Command::Schema(options) => schema::run(&options),
         Command::Completions(options) => completions::run(&options),

@@ -3,6 +3,7 @@
 //! | question | page |
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
+//! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -45,6 +46,8 @@ pub mod glossary {}
 pub mod identification_file {}
 #[doc = include_str!("identify.md")]
 pub mod identify {}
+#[doc = include_str!("import_path.md")]
+pub mod import_path {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 #[doc = include_str!("method.md")]

@@ -18,6 +18,7 @@
 //! ```
 
 pub mod assess;
+pub mod cam;
 pub mod compensate;
 mod deserialize;
 pub mod document;

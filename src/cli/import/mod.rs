@@ -1,0 +1,19 @@
+//! `stead import`: what other programs write, as files of stead.
+
+mod path;
+
+use super::{Failure, help};
+use clap::Subcommand;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum ImportCommand {
+    /// Make a task file of a tool path from CAM: CLDATA or five-axis G-code
+    #[command(after_long_help = help::IMPORT_PATH)]
+    Path(path::PathOptions),
+}
+
+pub(super) fn run(command: &ImportCommand) -> Result<(), Failure> {
+    match command {
+        ImportCommand::Path(options) => path::run(options),
+    }
+}
