@@ -24,7 +24,6 @@ pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, Trans
 use crate::document::Document;
 use crate::field::FieldOverrides;
 use crate::input::{InputError, InputFile, input_file};
-use crate::place::Place;
 use crate::robot::{moving_robot_from, robot_from};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
