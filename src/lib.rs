@@ -31,8 +31,8 @@
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
 //!
-//! [`init`] writes a commented starter set of files, [`import_path`] makes a task file of a tool path
-//! from CAM, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
+//! [`init`] writes a commented starter set of files, [`import_robot`] makes a robot file of a URDF, [`import_path`] a task file
+//! of a tool path from CAM, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
 //! number of threads does not change a result.
 //!
 //! # Conventions
@@ -50,6 +50,7 @@ pub mod guide;
 mod identification;
 mod result;
 mod run;
+mod score;
 mod simulation;
 mod study;
 
@@ -58,7 +59,8 @@ pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
-pub use run::{Explanations, PlacementScore, Placements, Run};
+pub use run::{Placements, Run};
+pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
@@ -71,6 +73,7 @@ pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
+pub use stead_format::urdf::{Deviation, ImportOptions, ImportedRobot, ImportedRow, import_robot};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;

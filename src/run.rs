@@ -1,6 +1,7 @@
 //! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
 
 use crate::result::{Report, result};
+use crate::score::{Explanations, PlacementScore};
 use crate::{Error, Monitor, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -9,16 +10,15 @@ use std::time::Instant;
 use stead_format as format;
 use stead_format::field::{FieldOverride, FieldOverrides};
 use stead_placement::certify::{self, Certificate};
-use stead_placement::feasibility::{self, DeflectionMap, Explanation};
-use stead_placement::outcome::{Cases, Outcome, left_out};
-use stead_placement::place::{Infeasible, Score};
+use stead_placement::feasibility;
+use stead_placement::outcome::{Cases, Outcome};
+use stead_placement::place::Infeasible;
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::settings::CertificateSettings;
 use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
 use stead_report::document::{Timing, bytes};
 use stead_report::placement::{
-    Context, evaluation, place_json, placement_files, placement_text, score_files, summary_json, write_placement,
-    write_score,
+    Context, evaluation, place_json, placement_files, placement_text, summary_json, write_placement,
 };
 use stead_report::{Files, Folder};
 use stead_study::{self as study, Placed, Scored};
@@ -272,25 +272,6 @@ impl Placements {
     }
 }
 
-/// A given placement with its best and its worst plan.
-#[derive(Debug, Clone)]
-pub struct PlacementScore {
-    run: Arc<format::Run>,
-    score: Score,
-    map: Option<DeflectionMap>,
-    context: Context,
-}
-
-/// What each of the eight postures gives at one path point and one free angle.
-#[derive(Debug, Clone)]
-pub struct Explanations {
-    placement: Placement,
-    point: usize,
-    beta: f64,
-    postures: [Explanation; 8],
-    context: Context,
-}
-
 impl Report for Placements {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
@@ -331,75 +312,4 @@ impl Report for Placements {
     }
 }
 
-impl PlacementScore {
-    /// Both plans, in SI units.
-    pub fn score(&self) -> &Score {
-        &self.score
-    }
-
-    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does without. A stop that
-    /// the monitor asks for leaves out the map of a long path.
-    pub fn map(&mut self, monitor: &Monitor) {
-        if !self.run.maps {
-            return;
-        }
-        self.map = feasibility::deflection_map(&self.run.problem, &self.score.placement, monitor);
-        if self.map.is_none() {
-            self.context.warnings.push(left_out("the deflection map is"));
-        }
-        self.score.interrupted |= monitor.should_stop();
-    }
-}
-
-impl Explanations {
-    /// What each posture gives, in the order of their numbers.
-    pub fn postures(&self) -> &[Explanation; 8] {
-        &self.postures
-    }
-}
-
-impl Report for PlacementScore {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(score_files(&self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
-    }
-
-    fn document(&self) -> Value {
-        evaluation::score_json(&self.score, &self.context)
-    }
-
-    fn table(&self) -> String {
-        evaluation::score_text(&self.score, &self.context)
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.context.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.context.warnings
-    }
-}
-
-impl Report for Explanations {
-    fn document(&self) -> Value {
-        evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
-    }
-
-    fn table(&self) -> String {
-        evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.context.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.context.warnings
-    }
-}
-
-result!(Placements, PlacementScore, Explanations);
+result!(Placements);

@@ -17,6 +17,7 @@ mod help;
 mod identify;
 mod identify_plan;
 mod import_path;
+mod import_robot;
 mod looks_wrong;
 mod opw_oracle;
 mod place;

@@ -136,6 +136,22 @@ fn a_case_is_what_place_finds_with_the_same_values() {
 }
 
 #[test]
+fn shards_that_end_together_keep_the_best_cases_once() {
+    let bench = bench();
+    bench.write(STUDY, &format!("keep = \"best 4\"\n{AXES}"));
+    let shard = |shard: &str| {
+        let mut command = bench.command(&["study", "run", STUDY, "--out", "out", "--threads", "1", "--shard", shard]);
+        command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped()).spawn().unwrap()
+    };
+    let children = ["1/3", "2/3", "3/3"].map(shard);
+    for child in children {
+        let ended = Ended::from(child.wait_with_output().unwrap());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    assert_eq!(std::fs::read_dir(bench.path("out/cases")).unwrap().count(), 4);
+}
+
+#[test]
 fn an_edited_study_does_what_the_edit_has_changed() {
     let bench = bench();
     run(&bench, "out", &[]);
@@ -278,6 +294,12 @@ fn shards_out_of_range_other_studies_and_locks_are_refused() {
     );
     bench.write("odd/study.json", "{}");
     refused(&bench, &[STUDY, "--out", "odd"], &["odd/study.json: is no description of a study"]);
+    let below = format!("{RUN}/out");
+    refused(
+        &bench,
+        &[STUDY, "--out", &below],
+        &["run.toml/out/study.json: is below a file; allowed: a folder of this"],
+    );
 
     let lock = std::fs::File::options().write(true).open(bench.path("out/shards/0001-of-0001.lock")).unwrap();
     lock.try_lock().unwrap();

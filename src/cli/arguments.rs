@@ -1,19 +1,15 @@
 //! The arguments of the command line: subcommands and options.
 
-use super::given::{GivenPlacement, PlaceArguments};
+use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
 use super::help;
 use super::import::ImportCommand;
-use super::values::{
-    damping_scale, field, finite, gap, noise, point, positive, rpm, sector, seed, shard, shards, threads, variant,
-};
+use super::values::{field, finite, gap, noise, point, positive, sector, seed, shard, shards, threads};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
-use stead_format::Overrides;
 use stead_format::field::FieldOverride;
-use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;
 
 /// Workpiece placement optimiser for robotic machining.
@@ -56,7 +52,7 @@ pub(super) enum Command {
     /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
     #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
-    /// Turn what other programs write into files of stead: a tool path from CAM
+    /// Turn what other programs write into files of stead: a robot from a URDF, a tool path from CAM
     #[command(subcommand)]
     Import(ImportCommand),
     /// Write a small commented set of input files that runs
@@ -383,26 +379,4 @@ pub(super) struct StabilityOptions {
     /// Print one JSON document instead of a text
     #[arg(long)]
     pub json: bool,
-}
-
-/// What takes the place of a simulation file's.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub(super) struct ModelArguments {
-    /// How much of the arm is modelled, instead of the file's: springs, gravity, orthogonal or backlash
-    #[arg(long, value_name = "V", value_parser = variant)]
-    pub variant: Option<Variant>,
-    /// Factor on all damping of the arm, instead of the file's
-    #[arg(long, value_name = "S", value_parser = damping_scale, allow_hyphen_values = true)]
-    pub damping_scale: Option<f64>,
-    /// Spindle speed in rev/min, instead of the file's
-    #[arg(long, value_name = "N", value_parser = rpm, allow_hyphen_values = true)]
-    pub spindle_rpm: Option<f64>,
-}
-
-impl From<&ModelArguments> for Overrides {
-    fn from(model: &ModelArguments) -> Self {
-        let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
-        Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
-    }
 }

@@ -1,9 +1,11 @@
-//! The arguments that give a placement.
+//! The arguments that several commands share: those that give a placement, and those of a simulation's model.
 
-use super::values::{case, finite, quaternion};
+use super::values::{case, damping_scale, finite, quaternion, rpm, variant};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use stead_format::Overrides;
 use stead_placement::problem::Placement;
+use stead_simulation::arm::Variant;
 
 /// A placement: the workpiece origin in the robot base frame, and its yaw.
 #[derive(Debug, Args)]
@@ -92,5 +94,27 @@ impl GivenPlacement {
     /// The results folder whose placement is taken.
     pub fn placement_of(&self) -> Option<&Path> {
         self.turn.placement_of.as_deref()
+    }
+}
+
+/// What takes the place of a simulation file's.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct ModelArguments {
+    /// How much of the arm is modelled, instead of the file's: springs, gravity, orthogonal or backlash
+    #[arg(long, value_name = "V", value_parser = variant)]
+    pub variant: Option<Variant>,
+    /// Factor on all damping of the arm, instead of the file's
+    #[arg(long, value_name = "S", value_parser = damping_scale, allow_hyphen_values = true)]
+    pub damping_scale: Option<f64>,
+    /// Spindle speed in rev/min, instead of the file's
+    #[arg(long, value_name = "N", value_parser = rpm, allow_hyphen_values = true)]
+    pub spindle_rpm: Option<f64>,
+}
+
+impl From<&ModelArguments> for Overrides {
+    fn from(model: &ModelArguments) -> Self {
+        let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
+        Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
     }
 }

@@ -282,6 +282,20 @@ Exit codes:
   0  done
   2  wrong usage, a program that is refused, with line and word, or a file that is there already: nothing is written";
 
+pub(super) const IMPORT_ROBOT: &str = "\
+Examples:
+  stead import robot kr120.urdf --out my/kr120.toml
+  stead import robot cell.urdf --base-link base_link --tip-link tool0 --out my/arm.toml
+  stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --out my/kr210.toml
+
+Files written: the robot file. Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like
+taken from a shipped arm, which ranks placements and does not predict millimetres. Shipped arms: kuka-kr100-ha,
+kuka-kr120-r3900, kuka-kr270-2, kuka-kr270-r2700, kuka-kr360-l240, kuka-kr500, staubli-tx200.
+
+Exit codes:
+  0  done
+  2  wrong usage, a URDF that is refused, with line and element, or a file that is there already: nothing is written";
+
 pub(super) const INIT: &str = "\
 Examples:
   stead init place my-cell

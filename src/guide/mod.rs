@@ -4,6 +4,7 @@
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
+//! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -48,6 +49,8 @@ pub mod identification_file {}
 pub mod identify {}
 #[doc = include_str!("import_path.md")]
 pub mod import_path {}
+#[doc = include_str!("import_robot.md")]
+pub mod import_robot {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 #[doc = include_str!("method.md")]

@@ -28,6 +28,7 @@ pub mod inertial;
 pub mod init;
 pub mod input;
 pub mod manifest;
+mod new_file;
 pub mod place;
 mod placed;
 mod points;
@@ -49,6 +50,7 @@ mod testing;
 pub mod toml_file;
 pub mod tool;
 pub mod units;
+pub mod urdf;
 
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};

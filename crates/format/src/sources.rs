@@ -2,7 +2,6 @@
 
 use crate::input::InputError;
 use crate::task::{Imported, parse_csv};
-use crate::toml_file::TomlFile;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
@@ -41,15 +40,15 @@ impl Sources {
         once(&shared.files, file.to_owned(), || std::fs::read(file).map(Arc::from))
     }
 
-    /// The robot of a file, read by a function for this kind of use.
+    /// The robot of a file, read by a function for this kind of use; anew where values of the file were replaced.
     pub(crate) fn robot(
         &self,
-        source: &TomlFile,
+        (file, is_overridden): (&Path, bool),
         kind: Option<bool>,
-        read: impl FnOnce(&TomlFile) -> Result<Robot, InputError>,
+        read: impl FnOnce() -> Result<Robot, InputError>,
     ) -> Result<Robot, InputError> {
-        let Some(shared) = self.0.as_ref().filter(|_| !source.is_overridden()) else { return read(source) };
-        let robot = once(&shared.robots, (source.file().to_owned(), kind), || read(source).map(Arc::new))?;
+        let Some(shared) = self.0.as_ref().filter(|_| !is_overridden) else { return read() };
+        let robot = once(&shared.robots, (file.to_owned(), kind), || read().map(Arc::new))?;
         Ok(Robot::clone(&robot))
     }
 

@@ -9,9 +9,9 @@ use super::outcome::Generation;
 use super::problem::Placement;
 use super::redundancy::{self, Planner};
 use super::sense::Sense;
-use super::symmetry::about_axis_1;
+use super::symmetry::apart_about_axis_1;
 use rayon::prelude::*;
-use stead_model::robot::{Posture, angles::wrap};
+use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 
 /// A planner, and the table before it.
@@ -61,20 +61,17 @@ fn distinct<'s>(
     sorted: Vec<(&'s Candidate, Candidate)>,
     max_count: usize,
 ) -> Vec<(&'s Candidate, Candidate)> {
-    let mut kept: Vec<([f64; 3], (&Candidate, Candidate))> = Vec::new();
+    let mut kept: Vec<(&Candidate, Candidate)> = Vec::new();
     for (start, end) in sorted {
-        let place = about_axis_1(table.problem(), &end.placement);
-        let is_same = |(known, other): &([f64; 3], (&Candidate, Candidate))| {
-            other.1.scheme == end.scheme
-                && (known[0] - place[0]).abs() < SAME_PLACE[0]
-                && (known[1] - place[1]).abs() < SAME_PLACE[1]
-                && wrap(known[2] - place[2]).abs() < SAME_PLACE[2]
+        let is_same = |(_, known): &(&Candidate, Candidate)| {
+            let apart = apart_about_axis_1(table.problem(), &known.placement, &end.placement);
+            known.scheme == end.scheme && apart.iter().zip(SAME_PLACE).all(|(apart, same)| *apart < same)
         };
         if kept.len() < max_count && !kept.iter().any(is_same) {
-            kept.push((place, (start, end)));
+            kept.push((start, end));
         }
     }
-    kept.into_iter().map(|(_, pair)| pair).collect()
+    kept
 }
 
 /// Candidates of a search that are improved on the table and planned for every basin asked for.

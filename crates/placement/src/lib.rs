@@ -20,6 +20,7 @@
 
 mod beta_step;
 pub mod candidate;
+pub mod cell;
 pub mod certify;
 pub mod constraints;
 pub mod coordinate_search;

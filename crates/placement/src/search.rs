@@ -18,7 +18,7 @@ use super::problem::{Cell, Placement, Problem};
 use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
-use super::symmetry::{about_axis_1, is_axis_1_vertical};
+use super::symmetry::{apart_about_axis_1, is_axis_1_vertical};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -385,12 +385,10 @@ fn is_near(cell: &Cell, [a, b]: [&Placement; 2]) -> bool {
 }
 
 /// Whether they are when one of them is turned about axis 1 to the azimuth of the other.
-fn is_near_after_turn(problem: &Problem, pair: [&Placement; 2]) -> bool {
+fn is_near_after_turn(problem: &Problem, [a, b]: [&Placement; 2]) -> bool {
     let [x, y, z] = &problem.cell.position;
-    let [a, b] = pair.map(|placement| about_axis_1(problem, placement));
-    (a[0] - b[0]).abs() <= BASIN.0 * x.width().max(y.width())
-        && (a[1] - b[1]).abs() <= BASIN.0 * z.width()
-        && wrap(a[2] - b[2]).abs() <= BASIN.1
+    let [distance, height, yaw] = apart_about_axis_1(problem, a, b);
+    distance <= BASIN.0 * x.width().max(y.width()) && height <= BASIN.0 * z.width() && yaw <= BASIN.1
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 use super::criterion::{Aggregate, Criterion, Weights};
 use super::problem::{Placement, Problem};
 use nalgebra::Vector3;
-use stead_model::robot::Compliance;
+use stead_model::robot::{Compliance, angles::wrap};
 
 /// Why a problem cannot be treated by means of the symmetry.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -174,4 +174,10 @@ pub fn about_axis_1(problem: &Problem, placement: &Placement) -> [f64; 3] {
     let root = problem.robot.geometry().root_in_base;
     let (x, y) = (placement.x - root.x, placement.y - root.y);
     [libm::hypot(x, y), placement.z, placement.yaw - libm::atan2(y, x)]
+}
+
+/// How far apart two placements are about axis 1: in distance (m), in height (m) and in yaw less azimuth (rad); none is negative.
+pub fn apart_about_axis_1(problem: &Problem, a: &Placement, b: &Placement) -> [f64; 3] {
+    let [a, b] = [a, b].map(|placement| about_axis_1(problem, placement));
+    [(a[0] - b[0]).abs(), (a[1] - b[1]).abs(), wrap(a[2] - b[2]).abs()]
 }

@@ -87,26 +87,32 @@ impl<'a, 'p> WholePath<'a, 'p> {
             return Vec::new();
         };
         let (mut blocked_points, mut highest) = (Vec::new(), None);
-        for plan in &plans {
+        for (span, plan) in problem.task.segments().iter().zip(&plans) {
             let kept = &subset.points()[plan.points.clone()];
-            for (place, pair) in kept.windows(2).enumerate() {
-                let score = |point: usize| {
-                    let share = (point - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
-                    let between = |a: f64, b: f64| a + share * (b - a);
-                    let [from, to] = [&plan.joints[place], &plan.joints[place + 1]];
-                    let near = std::array::from_fn(|j| between(from[j], to[j]));
-                    let beta = between(plan.betas[place], plan.betas[place + 1]);
-                    off_grid::score(problem, placement, (point, beta), plan, &near)
-                };
-                let ends = pair.iter().filter_map(|point| score(*point)).fold(0.0, f64::max);
-                for point in pair[0] + 1..pair[1] {
-                    match score(point) {
-                        None => blocked_points.push(point),
-                        Some(score) if highest.is_none_or(|(known, _)| score - ends > known) => {
-                            highest = Some((score - ends, point));
-                        }
-                        Some(_) => {}
+            // Beyond the first and the last kept point beta stays.
+            let around = |point: usize| {
+                let after = kept.partition_point(|kept| *kept <= point);
+                (after.saturating_sub(1), after.min(kept.len() - 1))
+            };
+            let score = |point: usize| {
+                let (from, to) = around(point);
+                let apart = kept[to].saturating_sub(kept[from]);
+                let share = if apart > 0 { (point - kept[from]) as f64 / apart as f64 } else { 0.0 };
+                let between = |a: f64, b: f64| a + share * (b - a);
+                let near = std::array::from_fn(|j| between(plan.joints[from][j], plan.joints[to][j]));
+                let beta = between(plan.betas[from], plan.betas[to]);
+                off_grid::score(problem, placement, (point, beta), plan, &near)
+            };
+            let of_kept: Vec<f64> = kept.iter().map(|point| score(*point).unwrap_or(0.0)).collect();
+            for point in span.clone().filter(|point| kept.binary_search(point).is_err()) {
+                let (from, to) = around(point);
+                let ends = of_kept[from].max(of_kept[to]);
+                match score(point) {
+                    None => blocked_points.push(point),
+                    Some(score) if highest.is_none_or(|(known, _)| score - ends > known) => {
+                        highest = Some((score - ends, point));
                     }
+                    Some(_) => {}
                 }
             }
         }
@@ -163,7 +169,6 @@ fn deciding(problem: &Problem, none: &NoFeasiblePlan) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::testing::five_segments;
-    use nalgebra::{Rotation3, Vector3};
     use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
     /// The five segments with points `from` to `from + 3` changed, which a subset of ten points leaves out, and that subset.
@@ -180,10 +185,10 @@ mod tests {
         (problem, subset)
     }
 
-    /// The candidate in the middle of the cell as the subset sees it.
-    fn promised(problem: &Problem, subset: &PathSubset) -> Candidate {
+    /// A candidate in the middle of the cell at a yaw (rad) as the subset sees it.
+    fn promised(problem: &Problem, subset: &PathSubset, yaw: f64) -> Candidate {
         let middle = |k: usize| problem.cell.position[k].min + 0.5 * problem.cell.position[k].width();
-        let placement = Placement { x: middle(0), y: middle(1), z: middle(2), yaw: 0.0 };
+        let placement = Placement { x: middle(0), y: middle(1), z: middle(2), yaw };
         let thinned = subset.of(problem);
         let planner = Planner::new(&thinned);
         let objective = planner.objective(&placement, Sense::Min, None, &mut planner.workspace());
@@ -195,22 +200,29 @@ mod tests {
         let (problem, subset) = changed(26, |_, wrench| wrench.force *= 40.0);
         let finer = Planner::finer(&problem);
         let whole = WholePath::new(&finer);
-        let candidate = promised(&problem, &subset);
-        let (mean, points) = whole.check(&candidate);
-        assert!(points.is_empty() && WholePath::is_misjudged(&candidate, mean), "{mean:?} {candidate:?}");
-        let obstacles = whole.obstacles(&candidate, &subset);
-        assert!(obstacles.len() == 1 && (26..29).contains(&obstacles[0]), "{obstacles:?}");
+        let obstacles = |turn: i32| whole.obstacles(&promised(&problem, &subset, 0.3 * f64::from(turn)), &subset);
+        // Where the plan of the subset breaks no constraint.
+        let highest: Vec<usize> = (-10..10).map(obstacles).filter(|points| points.len() == 1).flatten().collect();
+        assert!(!highest.is_empty() && highest.iter().all(|point| (26..29).contains(point)), "{highest:?}");
     }
 
     #[test]
     fn points_where_the_plan_of_a_subset_is_forbidden_are_what_decides() {
-        let (problem, subset) = changed(26, |point, _| {
-            point.axis = Rotation3::from_axis_angle(&Vector3::x_axis(), 1.2) * point.axis;
-            point.feed = Rotation3::from_axis_angle(&Vector3::x_axis(), 1.2) * point.feed;
-        });
+        let (problem, subset) = changed(26, |point, _| point.position.z += 5.0);
         let finer = Planner::finer(&problem);
-        let candidate = promised(&problem, &subset);
-        let obstacles = WholePath::new(&finer).obstacles(&candidate, &subset);
-        assert!(!obstacles.is_empty() && obstacles.iter().all(|point| (26..29).contains(point)), "{obstacles:?}");
+        let whole = WholePath::new(&finer);
+        let candidate = promised(&problem, &subset, 0.0);
+        assert!(whole.obstacles(&candidate, &subset).starts_with(&[26, 27, 28]));
+        assert_eq!(whole.check(&candidate), (None, vec![26, 27, 28]));
+    }
+
+    #[test]
+    fn more_than_a_subset_promised_or_no_plan_is_misjudged() {
+        let (problem, subset) = changed(26, |_, _| {});
+        let candidate = promised(&problem, &subset, 0.0);
+        let mean = candidate.objective.mean().unwrap();
+        let misjudged = [None, Some(1.06 * mean), Some(1.04 * mean), Some(0.5 * mean)]
+            .map(|mean| WholePath::is_misjudged(&candidate, mean));
+        assert_eq!(misjudged, [true, true, false, false]);
     }
 }

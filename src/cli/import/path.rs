@@ -4,7 +4,6 @@ use super::super::values::{finite, positive};
 use super::super::{Failure, print, say_notes};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use nalgebra::Vector3;
 use std::path::PathBuf;
 use stead::{LengthUnit, Machine, PathSettings, ProgramFormat, Resampling, import_path};
 
@@ -35,7 +34,7 @@ pub(in super::super) struct PathOptions {
     pub tcp: bool,
     /// Where the rotary axes meet, for G-code without it: in the workpiece frame, or for a head from the tool tip upright
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true, conflicts_with = "tcp")]
-    pub pivot_mm: Option<Vector3<f64>>,
+    pub pivot_mm: Option<[f64; 3]>,
     /// Print segments, points, length, extents, tilt, feeds, and what was changed and why
     #[arg(long)]
     pub report: bool,
@@ -46,7 +45,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
         format: options.format,
         units: options.units,
         machine: options.machine,
-        pivot: options.pivot_mm.map(|mm| mm / 1e3),
+        pivot: options.pivot_mm.map(|mm| mm.map(|mm| mm / 1e3).into()),
         tool_centre_point: options.tcp,
         resampling: Resampling { chord: options.chord_mm / 1e3, step: options.step_mm / 1e3 },
     };
@@ -89,12 +88,12 @@ fn chord(text: &str) -> Result<f64, String> {
     positive(text).ok().filter(|chord| (1e-4..=10.0).contains(chord)).ok_or_else(allowed)
 }
 
-fn place(text: &str) -> Result<Vector3<f64>, String> {
+fn place(text: &str) -> Result<[f64; 3], String> {
     let allowed = || "allowed: three numbers up to 10000, as in 0,0,150".to_owned();
     let number = |text: &str| finite(text.trim()).ok().filter(|value| value.abs() <= 1e4);
     let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
     match numbers.as_deref() {
-        Some([x, y, z]) => Ok(Vector3::new(*x, *y, *z)),
+        Some([x, y, z]) => Ok([*x, *y, *z]),
         _ => Err(allowed()),
     }
 }

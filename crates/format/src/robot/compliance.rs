@@ -9,6 +9,8 @@ use stead_model::robot::{Compensator, Compliance};
 pub(super) const STIFFNESS: &str = "stiffness_mnm_per_rad";
 pub(super) const COMPLIANCE: &str = "compliance_urad_per_nm";
 pub(super) const COMPENSATOR: &str = "compensator";
+/// How to come by the stiffness of a joint, which no robot maker states.
+const WAYS: &str = "measure it (stead identify plan, from a rough value), or take that of a shipped arm (stead import robot --stiffness-like)";
 
 /// The law of a joint, from whichever of its three keys are given.
 pub(super) fn compliance_from(joint: &JointRow, at: &Place<'_>) -> Result<Compliance, InputError> {
@@ -29,7 +31,7 @@ pub(super) fn compliance_from(joint: &JointRow, at: &Place<'_>) -> Result<Compli
             return Err(at.key(COMPLIANCE).error(format!("is given beside {STIFFNESS}"), "only one of the two"));
         }
         (None, None) => {
-            return Err(at.key(STIFFNESS).missing(format!("{STIFFNESS} or {COMPLIANCE}, a number above 0")));
+            return Err(at.key(STIFFNESS).missing(format!("{STIFFNESS} or {COMPLIANCE}, a number above 0: {WAYS}")));
         }
     };
     Ok(match joint.compensator {

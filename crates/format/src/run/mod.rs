@@ -167,9 +167,9 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         None => None,
     };
     let moving = path_stability.as_ref().map(|analysis| analysis.variant >= Variant::Orthogonal);
-    let robot = source.sources.robot(&robot_source, moving, |source| match moving {
-        Some(is_orthogonal) => moving_robot_from(source, is_orthogonal),
-        None => robot_from(source),
+    let robot = source.sources.robot((robot_source.file(), robot_source.is_overridden()), moving, || match moving {
+        Some(is_orthogonal) => moving_robot_from(&robot_source, is_orthogonal),
+        None => robot_from(&robot_source),
     })?;
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let task_file = task_field.named_file()?;

@@ -11,11 +11,10 @@ use crate::refine::solver::{self, Ending};
 use crate::refine::{LENGTH_UNIT, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
-use crate::symmetry::about_axis_1;
+use crate::symmetry::apart_about_axis_1;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// How often a refinement is repeated with more points at the most.
@@ -185,10 +184,11 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
 
 /// Whether two basins have come to the same end: in the same postures to the same place, but for a turn about axis 1.
 fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
-    let [from, to] = [a, b].map(|basin| about_axis_1(problem, &basin.solution.placement));
-    let near = |k: usize| (from[k] - to[k]).abs() <= SAME * LENGTH_UNIT;
-    let mut plans = a.solution.plans.iter().zip(&b.solution.plans);
-    plans.all(|(a, b)| a.posture == b.posture) && near(0) && near(1) && wrap(from[2] - to[2]).abs() <= SAME
+    let (a, b) = (&a.solution, &b.solution);
+    let [distance, height, yaw] = apart_about_axis_1(problem, &a.placement, &b.placement);
+    a.plans.iter().zip(&b.plans).all(|(a, b)| a.posture == b.posture)
+        && distance.max(height) <= SAME * LENGTH_UNIT
+        && yaw <= SAME
 }
 
 /// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone

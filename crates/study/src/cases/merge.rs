@@ -1,9 +1,9 @@
 //! The rows of all shards as one table of results.
 
 use super::StudyError;
+use super::keeping::Keeping;
 use super::plan::Plan;
 use super::row::result_columns;
-use super::shard::Keeping;
 use super::store::{Rows, Store};
 use super::table::{Cell, Column, Kind, Table};
 use std::path::Path;

@@ -7,6 +7,7 @@
 //! results is written ([`merge`]); its bytes depend on nothing but the study.
 
 mod journal;
+mod keeping;
 mod lock;
 mod merge;
 mod plan;
@@ -19,11 +20,12 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use keeping::Keeping;
 pub use merge::{TABLES, merge, merged};
 pub use plan::{Plan, PlannedCase};
 pub use progress::{ShardStatus, StudyStatus, status};
 pub use row::{CaseStatus, result_columns};
-pub use shard::{Finished, Keeping, RunSettings, run};
+pub use shard::{Finished, RunSettings, run};
 pub use slurm::slurm_script;
 pub use store::Shard;
 pub use table::{Cell, Column, Kind, Table};

@@ -2,46 +2,21 @@
 
 use super::StudyError;
 use super::journal::{self, Entry, Journal, Timing};
+use super::keeping::Keeping;
 use super::merge::{best, merge};
 use super::plan::{Plan, PlannedCase};
 use super::row::{CaseStatus, result_columns, row_of, row_without};
 use super::store::{Rows, Shard, Store};
 use super::table::Cell;
-use crate::run::{Placed, RunError, place};
+use crate::run::{RunError, place};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::time::Instant;
-use stead_format::Run;
+use std::time::{Duration, Instant};
 use stead_format::study::Keep;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_placement::certify::{Certificate, certify};
-
-/// Puts results where readers look for them: the files of a case into a folder of its own, the table into that of the study.
-pub trait Keeping: Sync {
-    /// Writes files of the study as one set that a manifest vouches for. They take the place of those of an earlier table, and what was
-    /// derived from another table goes.
-    ///
-    /// # Errors
-    /// What is wrong, as one line.
-    fn publish(&self, files: &[(&str, Vec<u8>)]) -> Result<(), String>;
-
-    /// Whether they are there already.
-    fn is_kept(&self, case: &PlannedCase) -> bool;
-
-    /// Writes them.
-    ///
-    /// # Errors
-    /// What is wrong, as one line.
-    fn keep(
-        &self,
-        case: &PlannedCase,
-        run: &Run,
-        placed: Placed,
-        certificate: Option<Certificate>,
-    ) -> Result<(), String>;
-}
+use stead_placement::certify::certify;
 
 /// Where and how a shard is done.
 #[derive(Clone, Copy)]
@@ -135,9 +110,21 @@ fn is_placed(row: &[Cell]) -> bool {
     row.first() == Some(&Cell::Text(CaseStatus::Placed.word().to_owned()))
 }
 
-/// Places the cases with the smallest objective once more, where their files are to be kept and are not there.
+/// How long a shard waits before it looks again whether another one has done the best cases.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Places the cases with the smallest objective once more, where their files are to be kept and are not there. Of shards that end
+/// at the same time one does so, and the others wait for it: should it be killed, the next one goes on.
 fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<(), StudyError> {
     let Keep::Best(count) = plan.study.keep else { return Ok(()) };
+    let store = Store::at(settings.folder);
+    let _lock = loop {
+        match store.lock_best() {
+            Err(StudyError::Locked { .. }) if !monitor.should_stop() => std::thread::sleep(PAUSE),
+            Err(StudyError::Locked { .. }) => return Ok(()),
+            lock => break lock?,
+        }
+    };
     let cases: HashMap<usize, &PlannedCase> = plan.cases.iter().map(|case| (case.case.number, case)).collect();
     let missing: Vec<&PlannedCase> = best(plan, settings.folder, count)?
         .into_iter()

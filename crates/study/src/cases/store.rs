@@ -122,6 +122,9 @@ impl Store {
         };
         match std::fs::read(&path) {
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(()),
+            Err(cause) if cause.kind() == std::io::ErrorKind::NotADirectory => {
+                Err(folder("is below a file".to_owned()))
+            }
             Err(cause) => Err(StudyError::read(&path, cause)),
             Ok(bytes) => {
                 let header: Header = serde_json::from_slice(&bytes)
@@ -141,6 +144,11 @@ impl Store {
         let lock = Lock::wait(&self.path("study.lock"))?;
         clean(&self.folder, OF_FOLDER)?;
         Ok(lock)
+    }
+
+    /// The lock of whoever writes the files of the best cases.
+    pub fn lock_best(&self) -> Result<Lock, StudyError> {
+        Lock::take(&self.shards().join("best.lock"), "the best cases of the study")
     }
 
     /// The lock of a shard.

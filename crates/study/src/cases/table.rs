@@ -5,18 +5,23 @@ use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType}
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{FileMetaData, KeyValue};
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::Field;
 use parquet::schema::types::Type;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use stead_format::input::sha256;
 
-/// The entry of a Parquet file's metadata that has the digest of its rows: of the table as CSV.
+/// The entry of a Parquet file's metadata that has the digest of the file, taken with [`BLANK`] in its place.
 const DIGEST: &str = "stead.sha256";
+/// See [`DIGEST`].
+const BLANK: [u8; 64] = [b'0'; 64];
+/// Bytes between the name of an entry and its value at the most: the head of a text in Thrift's compact protocol.
+const MAX_HEAD: usize = 8;
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,8 +114,8 @@ impl Table {
         writer.into_inner().map_err(|cause| StudyError::format("the table", &cause))
     }
 
-    /// The table as Parquet, compressed by Snappy; every column is optional. Its metadata has the digest of the rows, since Parquet itself
-    /// does not tell a value that was changed on the disk.
+    /// The table as Parquet, compressed by Snappy; every column is optional. Its metadata has the digest of the file, since Parquet itself
+    /// does not tell bytes that were changed on the disk.
     ///
     /// # Errors
     /// [`StudyError::Format`] when the writer fails.
@@ -118,7 +123,7 @@ impl Table {
         let fail = |cause: ParquetError| StudyError::format("the Parquet file", &cause);
         let schema = Arc::new(self.schema().map_err(fail)?);
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-        let digest = KeyValue::new(DIGEST.to_owned(), sha256(&self.to_csv()?));
+        let digest = KeyValue::new(DIGEST.to_owned(), String::from_utf8_lossy(&BLANK).into_owned());
         let properties = properties.set_created_by("stead".to_owned()).set_key_value_metadata(Some(vec![digest]));
         let properties = Arc::new(properties.build());
         let mut bytes = Vec::new();
@@ -151,6 +156,9 @@ impl Table {
         }
         group.close().map_err(fail)?;
         writer.close().map_err(fail)?;
+        let digest = sha256(&bytes);
+        let place = place_of_digest(&bytes).ok_or_else(|| StudyError::format("the Parquet file", &"no digest"))?;
+        bytes[place].copy_from_slice(digest.as_bytes());
         Ok(bytes)
     }
 
@@ -175,10 +183,14 @@ impl Table {
     /// What is wrong with it, in words.
     pub fn from_parquet(file: &Path, columns: &[Column]) -> Result<Self, String> {
         let words = |cause: ParquetError| cause.to_string();
+        // Before it is parsed: a reader need not bear bytes that no writer wrote.
+        let bytes = std::fs::read(file).map_err(|cause| cause.to_string())?;
+        if !is_as_written(bytes) {
+            return Err("is not as it was written".to_owned());
+        }
         let opened = std::fs::File::open(file).map_err(|cause| cause.to_string())?;
         let reader = SerializedFileReader::new(opened).map_err(words)?;
-        let metadata = reader.metadata().file_metadata();
-        let fields = metadata.schema_descr();
+        let fields = reader.metadata().file_metadata().schema_descr();
         let is_same = fields.num_columns() == columns.len()
             && fields.columns().iter().zip(columns).all(|(found, column)| found.name() == column.name);
         if !is_same {
@@ -189,13 +201,7 @@ impl Table {
             let row = row.map_err(words)?;
             rows.push(row.get_column_iter().map(|(_, field)| cell(field)).collect::<Result<Vec<_>, _>>()?);
         }
-        let table = Self { columns: columns.to_vec(), rows };
-        let digest = table.to_csv().map(|csv| sha256(&csv)).map_err(|cause| cause.to_string())?;
-        if stated_digest(metadata) == Some(&digest) {
-            Ok(table)
-        } else {
-            Err("has other rows than were written".to_owned())
-        }
+        Ok(Self { columns: columns.to_vec(), rows })
     }
 
     /// Where a column is.
@@ -204,9 +210,22 @@ impl Table {
     }
 }
 
-/// The digest of the rows that were written.
-fn stated_digest(metadata: &FileMetaData) -> Option<&String> {
-    metadata.key_value_metadata()?.iter().find(|entry| entry.key == DIGEST)?.value.as_ref()
+/// Where the digest is in the bytes of a file.
+fn place_of_digest(bytes: &[u8]) -> Option<Range<usize>> {
+    let name = bytes.windows(DIGEST.len()).rposition(|window| window == DIGEST.as_bytes())?;
+    let after = name + DIGEST.len();
+    let is_digit = |byte: &u8| byte.is_ascii_hexdigit();
+    (after..after + MAX_HEAD)
+        .map(|start| start..start + BLANK.len())
+        .find(|place| bytes.get(place.clone()).is_some_and(|digits| digits.iter().all(is_digit)))
+}
+
+/// Whether the digest in a file is that of its bytes.
+fn is_as_written(mut bytes: Vec<u8>) -> bool {
+    let Some(place) = place_of_digest(&bytes) else { return false };
+    let stated = bytes[place.clone()].to_vec();
+    bytes[place].copy_from_slice(&BLANK);
+    sha256(&bytes).as_bytes() == stated
 }
 
 fn cell(field: &Field) -> Result<Cell, String> {

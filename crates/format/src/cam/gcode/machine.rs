@@ -41,7 +41,7 @@ impl Machine {
     }
 
     /// How the tool stands in the workpiece frame at angles of A, B and C (rad).
-    pub(super) fn workpiece_from_tool(self, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
+    pub(in super::super) fn workpiece_from_tool(self, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
         let about = |axis, angle| *Rotation3::from_axis_angle(&axis, angle).matrix();
         let tilt = match self {
             Self::TableAc | Self::HeadAc => about(Vector3::x_axis(), a),

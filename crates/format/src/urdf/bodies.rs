@@ -1,0 +1,51 @@
+//! The masses of a URDF in the frames of the rows.
+
+use super::forward::link_at;
+use super::read::{Kind, Urdf};
+use super::rows::Rows;
+use super::tree::Chain;
+use super::xml::quoted;
+use nalgebra::{Matrix3, Vector3};
+use stead_model::robot::{Inertial, Pose, Robot};
+
+/// The body behind each joint of the chain, with the links that are fixed to it, in the frame of the row.
+///
+/// # Errors
+/// Why the URDF does not state all six: a sentence without its full stop.
+pub(super) fn bodies(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> Result<[Inertial; 6], String> {
+    let mut base_from_row = rows.link_from_base;
+    let mut bodies = Vec::with_capacity(6);
+    for (k, joint) in chain.moving.into_iter().enumerate() {
+        let theta = rows.rows[k].offset_deg.to_radians();
+        base_from_row = base_from_row.then(&robot.rows()[k]).then(&about_z(theta));
+        let last = chain.path.iter().position(|other| *other == joint).unwrap_or_default();
+        let row_from_link = base_from_row.inverse().then(&link_at(urdf, chain, &[0.0; 6], last));
+        let link = urdf.joints[joint].child;
+        let body = rigid(urdf, link)?.ok_or_else(|| format!("link {} has no mass", quoted(&urdf.links[link].name)))?;
+        let body = body.placed(&row_from_link);
+        let checked = Inertial::new(body.mass(), *body.centre(), *body.inertia());
+        bodies.push(checked.map_err(|error| format!("link {}: {error}", quoted(&urdf.links[link].name)))?);
+    }
+    <[Inertial; 6]>::try_from(bodies).map_err(|_| "not six bodies".to_owned())
+}
+
+/// A link and all that is fixed to it, in its frame.
+fn rigid(urdf: &Urdf, link: usize) -> Result<Option<Inertial>, String> {
+    let mut whole: Option<Inertial> = None;
+    let mut open = vec![(link, Pose::identity())];
+    while let Some((link, pose)) = open.pop() {
+        if let Some(inertial) = &urdf.links[link].inertial {
+            let body =
+                inertial.map_err(|error| format!("link {}: {error}", quoted(&urdf.links[link].name)))?.placed(&pose);
+            whole = Some(whole.map_or(body, |whole| whole.joined(&body)));
+        }
+        let fixed = urdf.joints.iter().filter(|joint| joint.parent == link && joint.kind == Kind::Fixed);
+        open.extend(fixed.map(|joint| (joint.child, pose.then(&joint.origin))));
+    }
+    Ok(whole)
+}
+
+fn about_z(angle: f64) -> Pose<f64> {
+    let (sine, cosine) = libm::sincos(angle);
+    Pose { rotation: Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0), translation: Vector3::zeros() }
+}

@@ -1,0 +1,254 @@
+//! Robots from URDF files, the robot descriptions of ROS.
+//!
+//! A URDF is a tree of links and joints, each joint with an origin and an axis in its parent. A robot file is six modified
+//! Denavit-Hartenberg rows. [`import_robot`] finds the six joints of the arm, derives the rows, maps limits and speeds, compares
+//! both forward kinematics over random postures, and states what a URDF does not know: the stiffness of the joints above all.
+//!
+//! ```
+//! use stead_format::urdf::{ImportOptions, import_robot};
+//! # let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/urdf/fixtures/kuka.urdf");
+//! let robot = import_robot(&file, &ImportOptions::default())?;
+//! assert_eq!(robot.rows[1].a_mm, 350.0);
+//! assert!(robot.deviation.position_mm < 1e-9);
+//! # Ok::<(), stead_format::input::InputError>(())
+//! ```
+
+mod bodies;
+mod deviation;
+mod forward;
+mod meshes;
+mod notes;
+mod read;
+mod rows;
+mod stiffness;
+mod summary;
+mod toml_text;
+mod tree;
+mod xml;
+
+pub use deviation::{Deviation, POSTURES};
+pub use rows::ImportedRow;
+
+use crate::input::{InputError, sha256};
+use crate::new_file::write_new;
+use deviation::deviation;
+use read::{Kind, Limit, Urdf};
+use rows::Rows;
+use std::path::Path;
+use stead_model::robot::{Inertial, Joint, Pose, Robot, RobotError};
+use stiffness::Borrowed;
+use tree::{Chain, Tree};
+use xml::{one_line, quoted};
+
+/// What may be asked of an import.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ImportOptions<'a> {
+    /// The link that the rows start from; `base_link` or the root where left out.
+    pub base_link: Option<&'a str>,
+    /// The link that is the flange; `tool0`, `flange` or the last moving link where left out.
+    pub tip_link: Option<&'a str>,
+    /// A shipped arm whose joint stiffness is taken.
+    pub stiffness_like: Option<&'a str>,
+    /// Whether to look for the files of the shapes.
+    pub check_meshes: bool,
+}
+
+/// A robot from a URDF, as a robot file has it.
+#[derive(Debug, Clone)]
+pub struct ImportedRobot {
+    /// The name that the URDF gives.
+    pub name: String,
+    /// The link that the rows start from.
+    pub base_link: String,
+    /// The link that the last row is for.
+    pub tip_link: String,
+    /// The names of the six joints, base first.
+    pub joints: [String; 6],
+    /// The rows, base first.
+    pub rows: [ImportedRow; 6],
+    /// Limits of the joint angles of the rows. deg
+    pub limits_deg: [[f64; 2]; 6],
+    /// Speed of each joint, where the URDF states it. deg/s
+    pub max_speed_deg_per_s: [Option<f64>; 6],
+    /// The base frame of the rows in the base link. m
+    pub link_from_base: Pose<f64>,
+    /// The tip link in the frame of the last row. m
+    pub flange_from_tip: Pose<f64>,
+    /// How far the rows are from the URDF.
+    pub deviation: Deviation,
+    /// The bodies behind the joints in the frames of the rows, where the URDF states all.
+    pub bodies: Option<[Inertial; 6]>,
+    /// What the user should know.
+    pub notes: Vec<String>,
+    /// The robot file.
+    pub text: String,
+}
+
+/// Rows farther from their URDF than this are refused. mm
+const REFUSED_MM: f64 = 0.5;
+/// Rows turned farther from their URDF than this are refused. deg
+const REFUSED_DEG: f64 = 0.1;
+/// Limits of a joint that turns without end. rad
+const ENDLESS: f64 = std::f64::consts::TAU;
+
+/// Reads a URDF and derives the robot file of its arm.
+///
+/// # Errors
+/// [`InputError`] with file, line and element: a file that is no URDF, links that are no tree, a chain that is not six hinges, a joint
+/// without limits, an arm that is no upright elbow arm with a spherical wrist, or rows that miss the URDF by more than 0.5 mm or 0.1 deg.
+pub fn import_robot(file: &Path, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
+    imported(&Urdf::read(file)?, options)
+}
+
+/// As [`import_robot`], from the text of a file; `file` is its name in messages.
+///
+/// # Errors
+/// Those of [`import_robot`].
+pub fn import_robot_text(file: &Path, text: &str, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
+    imported(&Urdf::parse(file, text.to_owned())?, options)
+}
+
+fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
+    let borrowed = options.stiffness_like.map(Borrowed::of).transpose()?;
+    let tree = Tree::new(urdf)?;
+    let chain = Chain::new(urdf, &tree, options.base_link, options.tip_link)?;
+    let limits = limits_of(urdf, &chain)?;
+    let rows = Rows::derive(urdf, &chain)?;
+    let limits_deg = std::array::from_fn(|k| mapped(&rows.rows[k], limits[k]));
+    let speeds = speeds_of(urdf, &chain)?;
+    let robot = checked(urdf, &chain, &rows, &limits_deg)?;
+    let deviation = deviation(urdf, &chain, &rows, &robot, &limits);
+    refuse_far(urdf, &chain, deviation)?;
+    let bodies = bodies::bodies(urdf, &chain, &rows, &robot);
+    let mut imported = ImportedRobot {
+        name: one_line(&urdf.name),
+        base_link: urdf.links[chain.base].name.clone(),
+        tip_link: urdf.links[chain.tip].name.clone(),
+        joints: chain.moving.map(|joint| urdf.joints[joint].name.clone()),
+        rows: rows.rows,
+        limits_deg,
+        max_speed_deg_per_s: speeds,
+        link_from_base: rows.link_from_base,
+        flange_from_tip: rows.flange_from_tip,
+        deviation,
+        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref()),
+        bodies: bodies.as_ref().ok().copied(),
+        text: String::new(),
+    };
+    imported.notes.extend(
+        bodies
+            .err()
+            .filter(|_| urdf.links.iter().any(|link| link.inertial.is_some()))
+            .map(|reason| format!("masses and inertias are not taken: {reason}")),
+    );
+    if options.check_meshes {
+        imported.notes.extend(meshes::missing(urdf).iter().map(|name| format!("mesh {} is not found", quoted(name))));
+    }
+    imported.text = toml_text::text(&imported, urdf, &sha256(urdf.text.as_bytes()), borrowed.as_ref());
+    Ok(imported)
+}
+
+impl ImportedRobot {
+    /// Writes the robot file, which must not exist yet; folders to it are made.
+    ///
+    /// # Errors
+    /// [`InputError`] where the file exists or cannot be written: nothing is changed then.
+    pub fn write(&self, file: &Path) -> Result<(), InputError> {
+        write_new(file, &self.text)
+    }
+}
+
+/// The limits of the six joints as the URDF states them. rad
+fn limits_of(urdf: &Urdf, chain: &Chain) -> Result<[[f64; 2]; 6], InputError> {
+    let mut limits = [[-ENDLESS, ENDLESS]; 6];
+    for (k, joint) in chain.moving.into_iter().enumerate() {
+        if urdf.joints[joint].kind == Kind::Continuous {
+            continue;
+        }
+        const WANTED: &str =
+            "<limit lower=\"..\" upper=\"..\" velocity=\"..\"/> in rad and rad/s, lower below upper, within 1e6 deg";
+        limits[k] = match urdf.joints[joint].limit {
+            None | Some(Limit { lower: None, upper: None, .. }) => {
+                return Err(urdf.joint_error(joint, "has no limits", WANTED));
+            }
+            Some(Limit { lower, upper, .. }) => [lower, upper].map(Option::unwrap_or_default),
+        };
+        let [lower, upper] = limits[k];
+        if lower >= upper || lower < -LARGEST_LIMIT || upper > LARGEST_LIMIT {
+            return Err(urdf.joint_error(joint, format!("has limits from {lower} to {upper} rad"), WANTED));
+        }
+    }
+    Ok(limits)
+}
+
+/// No limit and no speed is above this. rad, rad/s
+const LARGEST_LIMIT: f64 = 17440.0;
+
+/// The speeds of the six joints. deg/s
+fn speeds_of(urdf: &Urdf, chain: &Chain) -> Result<[Option<f64>; 6], InputError> {
+    let mut speeds = [None; 6];
+    for (k, joint) in chain.moving.into_iter().enumerate() {
+        let velocity = urdf.joints[joint].limit.and_then(|limit| limit.velocity).filter(|velocity| *velocity != 0.0);
+        if let Some(velocity) = velocity {
+            let speed = rounded(velocity.to_degrees());
+            if !(speed > 0.0 && velocity <= LARGEST_LIMIT) {
+                let problem = format!("has a speed of {velocity} rad/s");
+                return Err(urdf.joint_error(
+                    joint,
+                    problem,
+                    "a velocity above 0 and not above 1e6 deg/s, or 0 where it is not known",
+                ));
+            }
+            speeds[k] = Some(speed);
+        }
+    }
+    Ok(speeds)
+}
+
+/// An angle or speed in deg without the digits that rounding has made: to 1e-9 deg.
+fn rounded(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9 + 0.0
+}
+
+/// Limits of a joint of the URDF (rad) as those of the row. deg
+fn mapped(row: &ImportedRow, limits: [f64; 2]) -> [f64; 2] {
+    let [from, to] = limits.map(|limit| rounded(row.sign * limit.to_degrees() + row.offset_deg));
+    if from <= to { [from, to] } else { [to, from] }
+}
+
+/// The arm that the rows make, with a compliance that nothing depends on.
+fn checked(urdf: &Urdf, chain: &Chain, rows: &Rows, limits_deg: &[[f64; 2]; 6]) -> Result<Robot, InputError> {
+    let joints = std::array::from_fn(|k| {
+        let (row, [min, max]) = (&rows.rows[k], limits_deg[k].map(f64::to_radians));
+        let (alpha, a, d) = (row.alpha_deg.to_radians(), row.a_mm / 1e3, row.d_mm / 1e3);
+        let (max_speed, max_acceleration, max_jerk) = (None, None, None);
+        Joint { alpha, a, d, min, max, max_speed, max_acceleration, max_jerk, compliance: 1e-6.into() }
+    });
+    Robot::new(urdf.name.as_str(), joints).map_err(|error| {
+        let number = match &error {
+            RobotError::Geometry { joint, .. } | RobotError::Limits { joint, .. } => *joint,
+            _ => 1,
+        };
+        let joint = chain.moving[number.clamp(1, 6) - 1];
+        urdf.joint_error(
+            joint,
+            format!("makes an arm that is not supported: {error}"),
+            "an elbow arm with a spherical wrist",
+        )
+    })
+}
+
+fn refuse_far(urdf: &Urdf, chain: &Chain, deviation: Deviation) -> Result<(), InputError> {
+    let Deviation { position_mm, angle_deg } = deviation;
+    if position_mm <= REFUSED_MM && angle_deg <= REFUSED_DEG {
+        return Ok(());
+    }
+    let link = &urdf.links[chain.tip];
+    let problem =
+        format!("is up to {position_mm:.3} mm and {angle_deg:.4} deg from where Denavit-Hartenberg rows have it");
+    let allowed = "axes that meet and are at right angles so well that it is within 0.5 mm and 0.1 deg";
+    Err(urdf.error(link.byte, format!("link {}", quoted(&link.name)), problem, allowed))
+}
+
+#[cfg(test)]
+mod tests;

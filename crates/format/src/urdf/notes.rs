@@ -1,0 +1,72 @@
+//! What the user should know of an import.
+
+use super::deviation::Deviation;
+use super::read::{Kind, Urdf};
+use super::rows::{Rows, written};
+use super::stiffness::Borrowed;
+use super::tree::Chain;
+use super::xml::quoted;
+use nalgebra::Matrix3;
+
+/// Rows farther from their URDF than this are noted. mm
+const NOTED_MM: f64 = 0.1;
+
+/// A sentence for each thing that a URDF does not say or that is not as usual.
+pub(super) fn notes(
+    urdf: &Urdf,
+    chain: &Chain,
+    rows: &Rows,
+    deviation: Deviation,
+    borrowed: Option<&Borrowed>,
+) -> Vec<String> {
+    let mut notes = vec![match borrowed {
+        Some(borrowed) => format!(
+            "joint stiffness is that of another arm, {}: it ranks placements of arms of that class, and does not predict millimetres",
+            borrowed.arm
+        ),
+        None => "joint stiffness is not in a URDF: measure it (stead identify plan), or take that of a shipped arm \
+                 (--stiffness-like kuka-kr270-2)"
+            .to_owned(),
+    }];
+    let Deviation { position_mm, angle_deg } = deviation;
+    if position_mm > NOTED_MM {
+        notes.push(format!(
+            "the numbers of the URDF are rounded: the rows are up to {position_mm:.3} mm and {angle_deg:.4} deg from it"
+        ));
+    }
+    let lateral = rows.rows[1].d_mm + libm::cos(rows.rows[2].alpha_deg.to_radians()) * rows.rows[2].d_mm;
+    if lateral.abs() > 0.01 {
+        notes.push(format!("lateral offset: the wrist is {:.3} mm beside the plane of axes 1 and 2", lateral.abs()));
+    }
+    let side: Vec<String> = chain.side(urdf).iter().take(12).map(|joint| quoted(&urdf.joints[*joint].name)).collect();
+    if !side.is_empty() {
+        notes.push(format!(
+            "joints that are not in the chain are left out: {}; where they are a parallelogram or a spring beside the arm, limits and \
+             stiffness of joints 2 and 3 depend on each other, which the rows do not say",
+            side.join(", ")
+        ));
+    }
+    for joint in chain.moving.map(|joint| &urdf.joints[joint]) {
+        if joint.kind == Kind::Continuous {
+            notes.push(format!(
+                "joint {} turns without end; its limits are written as a turn to either side",
+                quoted(&joint.name)
+            ));
+        }
+        if joint.limit.and_then(|limit| limit.velocity).is_none_or(|velocity| velocity == 0.0) {
+            notes.push(format!("joint {} has no speed in the URDF", quoted(&joint.name)));
+        }
+    }
+    let tip = rows.flange_from_tip;
+    let beside = libm::hypot(tip.translation.x, tip.translation.y) * 1e3;
+    if written(beside) > 1e-6 {
+        notes.push(format!("link {} is {beside:.3} mm beside axis 6", quoted(&urdf.links[chain.tip].name)));
+    }
+    if (tip.rotation - Matrix3::identity()).norm() > 1e-6 {
+        let link = quoted(&urdf.links[chain.tip].name);
+        notes.push(format!(
+            "link {link} is turned against the frame of the last row, whose z axis is axis 6: the robot file says how"
+        ));
+    }
+    notes
+}

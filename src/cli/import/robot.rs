@@ -1,0 +1,40 @@
+//! `stead import robot`: a robot file from a URDF.
+
+use super::super::{Failure, print, say_notes};
+use clap::Args;
+use std::path::PathBuf;
+use stead::{ImportOptions, import_robot};
+
+#[derive(Debug, Args)]
+pub(in super::super) struct RobotOptions {
+    /// Robot description (URDF; a xacro file is expanded first)
+    pub urdf: PathBuf,
+    /// Robot file (TOML) to write; it must not be there yet
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Link that the arm starts from [default: base_link, or the root]
+    #[arg(long, value_name = "LINK")]
+    pub base_link: Option<String>,
+    /// Link that is the flange [default: tool0, flange, or the last moving link]
+    #[arg(long, value_name = "LINK")]
+    pub tip_link: Option<String>,
+    /// Take the joint stiffness of a shipped arm, as kuka-kr270-2
+    #[arg(long, value_name = "NAME")]
+    pub stiffness_like: Option<String>,
+    /// Look for the mesh files that the URDF names, and note those that are missing
+    #[arg(long)]
+    pub check_meshes: bool,
+}
+
+pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
+    let asked = ImportOptions {
+        base_link: options.base_link.as_deref(),
+        tip_link: options.tip_link.as_deref(),
+        stiffness_like: options.stiffness_like.as_deref(),
+        check_meshes: options.check_meshes,
+    };
+    let robot = import_robot(&options.urdf, &asked).map_err(stead::Error::from)?;
+    robot.write(&options.out).map_err(stead::Error::from)?;
+    say_notes(&robot.notes);
+    print(format!("{robot}\nwritten: {}\n", options.out.display()).as_bytes())
+}

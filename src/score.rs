@@ -1,0 +1,106 @@
+//! What a given placement comes to, and what the postures give at one state.
+
+use crate::result::{Report, result};
+use crate::{Error, Monitor, Warning};
+use serde_json::Value;
+use std::path::PathBuf;
+use std::sync::Arc;
+use stead_format as format;
+use stead_placement::feasibility::{self, DeflectionMap, Explanation};
+use stead_placement::outcome::left_out;
+use stead_placement::place::Score;
+use stead_placement::problem::Placement;
+use stead_report::placement::{Context, evaluation, score_files, write_score};
+use stead_report::{Files, Folder};
+
+/// A given placement with its best and its worst plan.
+#[derive(Debug, Clone)]
+pub struct PlacementScore {
+    pub(crate) run: Arc<format::Run>,
+    pub(crate) score: Score,
+    pub(crate) map: Option<DeflectionMap>,
+    pub(crate) context: Context,
+}
+
+/// What each of the eight postures gives at one path point and one free angle.
+#[derive(Debug, Clone)]
+pub struct Explanations {
+    pub(crate) placement: Placement,
+    pub(crate) point: usize,
+    pub(crate) beta: f64,
+    pub(crate) postures: [Explanation; 8],
+    pub(crate) context: Context,
+}
+
+impl PlacementScore {
+    /// Both plans, in SI units.
+    pub fn score(&self) -> &Score {
+        &self.score
+    }
+
+    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does without. A stop that
+    /// the monitor asks for leaves out the map of a long path.
+    pub fn map(&mut self, monitor: &Monitor) {
+        if !self.run.maps {
+            return;
+        }
+        self.map = feasibility::deflection_map(&self.run.problem, &self.score.placement, monitor);
+        if self.map.is_none() {
+            self.context.warnings.push(left_out("the deflection map is"));
+        }
+        self.score.interrupted |= monitor.should_stop();
+    }
+}
+
+impl Explanations {
+    /// What each posture gives, in the order of their numbers.
+    pub fn postures(&self) -> &[Explanation; 8] {
+        &self.postures
+    }
+}
+
+impl Report for PlacementScore {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(score_files(&self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
+    }
+
+    fn document(&self) -> Value {
+        evaluation::score_json(&self.score, &self.context)
+    }
+
+    fn table(&self) -> String {
+        evaluation::score_text(&self.score, &self.context)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
+}
+
+impl Report for Explanations {
+    fn document(&self) -> Value {
+        evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
+    }
+
+    fn table(&self) -> String {
+        evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.context.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.context.warnings
+    }
+}
+
+result!(PlacementScore, Explanations);

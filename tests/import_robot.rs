@@ -1,0 +1,83 @@
+//! `stead import robot` from outside.
+
+use crate::common::{Bench, RUN};
+
+const URDF: &str = "crates/format/src/urdf/fixtures/kuka.urdf";
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.copy(URDF, "kuka.urdf");
+    bench
+}
+
+#[test]
+fn a_robot_is_imported_and_lacks_only_its_stiffness() {
+    let bench = bench();
+    let ended = bench.stead(&["import", "robot", "kuka.urdf", "--out", "my/arm.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for part in
+        ["wide_arm_k: from link base_link to link tool0", "theta_3 = q(joint_a3) + 90 deg", "written: my/arm.toml"]
+    {
+        assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
+    }
+    ended.assert_says(&["note: joint stiffness is not in a URDF", "identify plan", "--stiffness-like"]);
+    bench.replace(RUN, "robots/kuka-kr270-2.toml", "../my/arm.toml");
+    let place = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((place.code, place.stdout.as_str()), (Some(2), ""));
+    place.assert_says(&[
+        "arm.toml:",
+        "joints[1].stiffness_mnm_per_rad: is missing",
+        "identify plan",
+        "--stiffness-like",
+    ]);
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn with_the_stiffness_of_a_shipped_arm_it_is_placed() {
+    let bench = bench();
+    let import = ["import", "robot", "kuka.urdf", "--stiffness-like", "kuka-kr270-2", "--out", "arm.toml"];
+    let ended = bench.stead(&import);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: joint stiffness is that of another arm, KUKA KR270-2", "does not predict millimetres"]);
+    bench.replace(RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
+    bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [73.0, 461.0]");
+    let placed = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!(placed.code, Some(0), "{}", placed.stderr);
+}
+
+#[test]
+fn a_file_that_is_there_is_left_as_it_is() {
+    let bench = bench();
+    bench.write("arm.toml", "mine\n");
+    let before = bench.tree("");
+    let ended = bench.stead(&["import", "robot", "kuka.urdf", "--out", "arm.toml"]);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+    ended.assert_says(&["error: arm.toml: is there already, and is left as it is; allowed: "]);
+    assert_eq!(bench.tree(""), before);
+}
+
+#[test]
+fn what_is_refused_leaves_nothing_behind() {
+    let bench = bench();
+    let line = bench.replace(
+        "kuka.urdf",
+        "<joint name=\"joint_a3\" type=\"revolute\">",
+        "<joint name=\"joint_a3\" type=\"prismatic\">",
+    );
+    let before = bench.tree("");
+    let refused = |more: &[&str], parts: &[&str]| {
+        let ended = bench.stead(&[&["import", "robot"], more, &["--out", "my/arm.toml"]].concat());
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+        ended.assert_says(parts);
+        assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+        assert_eq!(bench.tree(""), before);
+    };
+    refused(
+        &["kuka.urdf"],
+        &[&format!("error: kuka.urdf:{line}: joint \"joint_a3\": is a prismatic joint"), "; allowed: "],
+    );
+    refused(&["none.urdf"], &["error: none.urdf: cannot be read", "; allowed: "]);
+    refused(&["kuka.urdf", "--stiffness-like", "kr270"], &["--stiffness-like: is no shipped arm", "kuka-kr270-2"]);
+    refused(&["kuka.urdf", "--tip-link", "tool9"], &["--tip-link: names no link", "nearest one is \"tool0\""]);
+}
