@@ -84,6 +84,45 @@ fn nothing_is_written_on_an_error() {
     assert_eq!(bench.tree(""), before);
 }
 
+/// Bad programs, each with where it is refused, the word, what was found, and what is allowed.
+#[test]
+fn each_bad_program_is_refused_in_one_line_and_nothing_is_written() {
+    const CUT: &str = "UNITS/MM\nFEDRAT/MMPM,600\nGOTO/0,0,0,0,0,1\n";
+    const CODES: &str = "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F600\n";
+    for (start, text, said) in [
+        (CUT, "GOTO/1,nan,3", [":4: GOTO: ", "found '1,nan,3'", "3 or 6 finite numbers"]),
+        (CUT, "GOTO/1,2,3,0,1", [":4: GOTO: ", "found '1,2,3,0,1'", "3 or 6 finite numbers"]),
+        (CUT, "CIRCLE/5,0,0,0,0,1\nGOTO/5,6,0", [":5: GOTO: the arc misses its end", "found '5,6,0'", "0.05 mm"]),
+        (CUT, "CIRCLE/5,0,0,0,0,0\nGOTO/5,5,0", [":5: GOTO: the axis of the arc", "found '5,5,0'", "a direction"]),
+        (CUT, "GOTO/1,2,3,0,0,0", [":4: GOTO: the tool axis has no length", "found '1,2,3,0,0,0'", "a direction"]),
+        (CUT, "GODLTA/0,0,5", [":4: GODLTA: moves the tool", "found '0,0,5'", "GOTO, RAPID, CIRCLE and FROM"]),
+        (CUT, "UNITS/INCHES", [":4: UNITS: is not what the file before says", "found 'INCHES'", "one unit"]),
+        (CUT, "MSYS/0,0,0,1,0,0,1,0,0", [":4: MSYS: ", "found '0,0,0,1,0,0,1,0,0'", "right angles"]),
+        (
+            "",
+            "GOTO/0,0,0\nGOTO/9,0,0",
+            [": --units: does not state its unit", "UNITS/MM", "--units mm or --units inch"],
+        ),
+        (CODES, "G0 G1 X11", [":4: G: two ways to move", "found 'G1'", "one of G0, G1, G2, G3"]),
+        (CODES, "G20 X2", [":4: G: contradicts the unit", "found 'G20'", "one unit of length"]),
+        (CODES, "G2 X11 I5 R5", [":4: R: a radius and a centre", "found 'R5'", "R, or I, J and K"]),
+        (CODES, "G3 X11 I4", [":4: I: the arc misses its end", "found 'I4'", "the same radius"]),
+        (CODES, "G1 X5 A3", [":4: A: a rotary axis of a machine", "found 'A3'", "--machine table-ac"]),
+        ("", "0 BEGIN PGM PART MM", [":1: Heidenhain conversational is not read", "'0 BEGIN PGM PART MM'", "CLDATA"]),
+        (CODES, "#100 = 3", [":4: a macro program (variables) is not read", "found '#100 = 3'", "numbers alone"]),
+    ] {
+        let bench = Bench::new();
+        bench.write("bad", &format!("{start}{text}\nGOTO/9,9,0\n"));
+        let before = bench.tree("");
+        let ended = bench.stead(&["import", "path", "bad", "--out", "new/task.csv", "--report"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{text}");
+        assert_eq!(ended.stderr.trim_end().lines().count(), 1, "{}", ended.stderr);
+        let [place, found, allowed] = said;
+        ended.assert_says(&[&format!("error: bad{place}"), found, "; allowed: ", allowed]);
+        assert_eq!(bench.tree(""), before, "{text}");
+    }
+}
+
 #[test]
 fn an_imported_path_is_placed_with_stated_forces() {
     let bench = bench();
@@ -95,6 +134,8 @@ fn an_imported_path_is_placed_with_stated_forces() {
     refused.assert_says(&["task: has no force columns", "[tool] and [cut]", "[forces] with feed_n"]);
     let forces = "[forces]\nfeed_n = -90.0\nnormal_n = -25.0\naxis_n = 10.0\n";
     let run = bench.read("new/run.toml").replace("max_beta_rate_deg_per_mm = 0.9", "max_beta_rate_deg_per_mm = 9.0");
+    let run =
+        run.replace("population = 32\ngenerations = 8\nbasins = 2", "population = 12\ngenerations = 2\nbasins = 1");
     bench.write("new/run.toml", &format!("{run}\n{forces}"));
     let ended = bench.stead(&["place", "new/run.toml", "--out", "out", "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);

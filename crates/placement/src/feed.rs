@@ -45,8 +45,6 @@ const MAX_HALVINGS: usize = 10;
 const POSES_PER_BLEND: f64 = 4.0;
 /// Steps that one thread evaluates at least.
 const MIN_SHARE: usize = 250;
-/// A shorter step is a turn of the tool in place, to which no feed belongs. m
-const STANDSTILL: f64 = 1e-9;
 /// A programmed feed that is higher by this share is held: rounding.
 const FEED_ROUNDING: f64 = 1e-6;
 
@@ -172,6 +170,8 @@ struct Sample {
 struct Step {
     limit: Option<FeedLimit>,
     length: f64,
+    /// Whether the tool turns in place, to which no feed belongs.
+    is_in_place: bool,
     /// Its first pose.
     start: Sample,
     /// Ways are from the start of the step.
@@ -188,7 +188,7 @@ impl Limits {
         let by_speed = steps.iter().filter_map(|step| step.limit).reduce(FeedLimit::smaller);
         let by_acceleration = self.has_accelerations().then(|| {
             // Between two turns of the tool in place the feed starts and stops.
-            let stretches = steps.split(|step| step.length < STANDSTILL).filter(|stretch| !stretch.is_empty());
+            let stretches = steps.split(|step| step.is_in_place).filter(|stretch| !stretch.is_empty());
             let held = stretches.filter_map(|stretch| {
                 let mut samples = vec![stretch[0].start];
                 let mut start = 0.0;
@@ -216,19 +216,20 @@ impl Limits {
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
         let nodes = motion.nodes(ends, spacing / length);
         let point = plan.points.start + place;
+        let is_in_place = problem.task.path().turns_in_place(point);
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
         let between = nodes.windows(2).map(|pair| (f64::midpoint(pair[0].part, pair[1].part), rates_between(pair)));
         let limit = at_nodes.chain(between).filter_map(|(part, rates): (f64, [f64; 6])| {
             let feeds = (0..6).filter_map(|j| Some((self.speeds[j]? * length / rates[j].abs(), j + 1)));
-            let (feed, joint) = smallest(feeds).filter(|_| length >= STANDSTILL)?;
+            let (feed, joint) = smallest(feeds).filter(|_| !is_in_place)?;
             Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point: nearest(part) })
         });
         let limit = limit.reduce(FeedLimit::smaller);
         let samples = if self.has_accelerations() { &nodes[1..] } else { &[] };
         let sample = |node: &Node| Sample { way: node.part * length, point: nearest(node.part), joints: node.joints };
         let start = Sample { way: 0.0, point: point - 1, joints: *ends[0] };
-        Step { limit, length, start, samples: samples.iter().map(sample).collect() }
+        Step { limit, length, is_in_place, start, samples: samples.iter().map(sample).collect() }
     }
 
     /// The highest feed of a segment by the accelerations of its joints.

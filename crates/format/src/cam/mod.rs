@@ -22,6 +22,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
+/// No coordinate is larger than this: a wrong unit, or no coordinate at all. m
+const LARGEST: f64 = 100.0;
+
 /// A unit of length of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LengthUnit {

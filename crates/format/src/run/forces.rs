@@ -4,18 +4,35 @@ use crate::document::NamedFile;
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::scalars::Whole;
 use crate::task::Imported;
 use crate::tool::Cutting;
 use crate::units::N;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_model::task::{Task, ToolPath, Wrench};
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
-/// One force for the whole path, in the frame of each path point: what the workpiece does to the tool.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The force along the path, in the frame of each path point: what the workpiece does to the tool.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForcesTable {
+    /// Along the feed, taken normal to the tool axis.
+    pub feed_n: N,
+    /// To the left of the feed, tool axis x feed: towards or away from the wall.
+    pub normal_n: N,
+    /// Along the tool axis, from the work into the spindle.
+    pub axis_n: N,
+    /// Segments with another force.
+    pub segment: Option<Vec<SegmentForces>>,
+}
+
+/// The force along one segment, in place of that for the whole path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SegmentForces {
+    /// Its number in the task, from 1.
+    pub number: Whole<1, 4294967295>,
     /// Along the feed, taken normal to the tool axis.
     pub feed_n: N,
     /// To the left of the feed, tool axis x feed: towards or away from the wall.
@@ -26,13 +43,25 @@ pub struct ForcesTable {
 
 impl ForcesTable {
     /// The wrench at every point of a path, in the workpiece frame.
-    fn wrenches(&self, path: &ToolPath) -> Vec<Wrench> {
-        let own = Vector3::from([self.feed_n, self.normal_n, self.axis_n].map(Quantity::si));
-        let at = |point: &stead_model::task::PathPoint| Wrench {
-            force: point.workpiece_from_point() * own,
+    fn wrenches(&self, path: &ToolPath, at: &Place<'_>) -> Result<Vec<Wrench>, InputError> {
+        let vector = |forces: [N; 3]| Vector3::from(forces.map(Quantity::si));
+        let count = path.segments().len();
+        let mut own = vec![None; count];
+        for (table, place) in self.segment.iter().flatten().zip(1..) {
+            let at = at.key("segment").element(place).key("number");
+            let Some(forces) = own.get_mut(table.number.count() - 1) else {
+                return Err(at.error("is no segment of the task", format!("whole numbers from 1 to {count}")));
+            };
+            if forces.replace(vector([table.feed_n, table.normal_n, table.axis_n])).is_some() {
+                return Err(at.error("is there twice", "each segment once"));
+            }
+        }
+        let all = vector([self.feed_n, self.normal_n, self.axis_n]);
+        let at = |(index, point): (usize, &PathPoint)| Wrench {
+            force: point.workpiece_from_point() * own[path.segment_of(index)].unwrap_or(all),
             moment: Vector3::zeros(),
         };
-        path.points().iter().map(at).collect()
+        Ok(path.points().iter().enumerate().map(at).collect())
     }
 }
 
@@ -68,7 +97,7 @@ impl ForceTables<'_> {
                 return Err(forces_at.error(problem, SOURCES));
             }
             (Some(wrenches), None, _) => wrenches,
-            (None, Some(forces), _) => forces.wrenches(&imported.path),
+            (None, Some(forces), _) => forces.wrenches(&imported.path, forces_at)?,
             (None, None, Some(cutting)) => cutting.path_forces()?.wrenches(&imported.path),
             (None, None, None) => {
                 let problem = "has no force columns, and there is neither [tool] and [cut] to compute them nor [forces] to state them";
@@ -115,6 +144,27 @@ mod tests {
                 "{along:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_segment_may_have_forces_of_its_own() {
+        let own = "[[forces.segment]]\nnumber = 1\nfeed_n = -40\nnormal_n = 5\naxis_n = 6\n";
+        let run = read(&format!("{FORCES}{own}"), false).unwrap();
+        let task = &run.problem.task;
+        for (index, (point, wrench)) in task.points().iter().zip(task.wrenches()).enumerate() {
+            let feed_n = if task.path().segment_of(index) == 0 { -40.0 } else { -100.0 };
+            assert!((point.feed.dot(&wrench.force) - feed_n).abs() < 1e-9, "{index}");
+        }
+        for (change, place, allowed) in [
+            ("number = 9", "forces.segment[1].number: is no segment of the task", "whole numbers from 1 to "),
+            ("number = 0", "forces.segment[1].number", "allowed"),
+        ] {
+            let message =
+                read(&format!("{FORCES}{}", own.replace("number = 1", change)), false).unwrap_err().to_string();
+            assert!(message.contains(place) && message.contains(allowed), "{message}");
+        }
+        let message = read(&format!("{FORCES}{own}{own}"), false).unwrap_err().to_string();
+        assert!(message.contains("forces.segment[2].number: is there twice"), "{message}");
     }
 
     #[test]

@@ -77,7 +77,7 @@ pub struct RunFile {
     pub tool: Option<ToolTable>,
     /// What the cutter cuts.
     pub cut: Option<CutTable>,
-    /// One force for the whole path, in the frame of each path point, in place of force columns or of `[tool]` and `[cut]`.
+    /// Forces in the frame of each path point, in place of force columns or of `[tool]` and `[cut]`.
     pub forces: Option<ForcesTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,

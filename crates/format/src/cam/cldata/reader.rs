@@ -1,15 +1,13 @@
 //! The modal state of CLDATA, statement by statement.
 
 use super::super::arc::{Arc, ArcError, MISSED};
-use super::super::{LengthUnit, Move, Program, Resampling};
+use super::super::{LARGEST, LengthUnit, Move, Program, Resampling};
 use super::statement::Statement;
 use super::words::moves_unknown;
 use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 
-/// No coordinate is larger than this. m
-const LARGEST: f64 = 1e4;
 /// Directions of a frame may be this far from unit length and right angles: digits as printed.
 const FRAME_ROUNDING: f64 = 1e-3;
 /// A tool axis is shorter than this is none.

@@ -1,7 +1,8 @@
 //! Arcs of G-code: the centre by I, J, K or the radius R, in one of three planes, with a rise along its normal.
 
 use super::super::arc::{Arc, ArcError};
-use super::reader::{Block, Motion, Reader, State};
+use super::reader::{Block, Motion, Reader};
+use super::state::State;
 use crate::input::InputError;
 use nalgebra::Vector3;
 
@@ -34,7 +35,7 @@ pub(super) fn arc_of(
     if let Some(turns) = block.get('P') {
         return Err(reader.fail(block.line, ('P', turns), "an arc of several turns", "one turn or less in a block"));
     }
-    let [start, last] = [&reader.state, end].map(|state| Vector3::from(state.position.map(Option::unwrap_or_default)));
+    let [start, last] = [reader.state.programmed(), end.programmed()];
     let mut axis = Vector3::zeros();
     axis[reader.modes.plane] = if motion == Motion::Clockwise { -1.0 } else { 1.0 };
     let offsets = ['I', 'J', 'K'].map(|letter| block.get(letter));

@@ -7,6 +7,7 @@ mod arc;
 mod block;
 mod machine;
 mod reader;
+mod state;
 
 pub(super) use block::foreign;
 pub use machine::Machine;

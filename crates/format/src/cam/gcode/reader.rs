@@ -1,16 +1,13 @@
 //! The modal state of G-code, block by block.
 
-use super::super::{LengthUnit, Move, Program, ReadSettings};
+use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
 use super::arc::arc_of;
 use super::block::Word;
+use super::state::State;
 use crate::input::InputError;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::path::Path;
 
-/// No coordinate is larger than this. m
-const LARGEST: f64 = 1e4;
-/// Moves are taken in parts in which no rotary axis turns by more than this. rad
-const TURN_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// No rotary axis is programmed beyond this. deg
 const LARGEST_ANGLE: f64 = 1e5;
 
@@ -39,13 +36,6 @@ pub(super) struct Modes {
     offset: Option<u32>,
 }
 
-/// Where the machine is: the programmed position (m) and angles (rad), as far as they are known.
-#[derive(Clone, Copy)]
-pub(super) struct State {
-    pub position: [Option<f64>; 3],
-    pub angles: [f64; 3],
-}
-
 /// Reads blocks into moves.
 pub(super) struct Reader<'a> {
     file: &'a Path,
@@ -55,7 +45,8 @@ pub(super) struct Reader<'a> {
     pub state: State,
     /// As programmed, without its unit.
     feed: Option<f64>,
-    has_turned: bool,
+    /// Whether the tool was turned without and with tool centre point control.
+    has_turned: [bool; 2],
 }
 
 /// One block.
@@ -83,7 +74,7 @@ impl<'a> Reader<'a> {
             offset: None,
         };
         let state = State { position: [None; 3], angles: [0.0; 3] };
-        Self { file, settings, program: Program::default(), modes, state, feed: None, has_turned: false }
+        Self { file, settings, program: Program::default(), modes, state, feed: None, has_turned: [false; 2] }
     }
 
     /// Takes a block; false after the one that ends the program.
@@ -137,11 +128,12 @@ impl<'a> Reader<'a> {
 
     /// The program, when the file is at its end.
     pub fn finish(mut self) -> Program {
-        if self.has_turned
-            && let Some(machine) = self.settings.machine
-        {
-            let control = if self.modes.is_controlled { "with" } else { "without" };
-            self.program.note(format!("angles of {}, {control} tool centre point control", machine.word()));
+        if let Some(machine) = self.settings.machine {
+            for (has_turned, control) in self.has_turned.into_iter().zip(["without", "with"]) {
+                if has_turned {
+                    self.program.note(format!("angles of {}, {control} tool centre point control", machine.word()));
+                }
+            }
         }
         self.program
     }
@@ -218,9 +210,11 @@ impl<'a> Reader<'a> {
             ));
         }
         let end = self.target(block, metres)?;
-        let is_known = |state: &State| state.position.iter().all(Option::is_some);
-        if !is_known(&self.state) || !is_known(&end) {
-            if motion != Motion::Rapid && self.state.position.iter().any(Option::is_some) && is_known(&end) {
+        if end.angles != [0.0; 3] && !self.modes.is_controlled && self.settings.pivot.is_none() {
+            return self.turn_without_control(block, motion, end);
+        }
+        if !self.state.is_known() || !end.is_known() {
+            if motion != Motion::Rapid && self.state.position.iter().any(Option::is_some) && end.is_known() {
                 self.program.note("moves from where the tool was not known in all axes, taken as rapid ones");
             } else if is_arc {
                 return Err(self.fail(
@@ -231,13 +225,13 @@ impl<'a> Reader<'a> {
                 ));
             }
             self.state = end;
-            return if is_known(&end) { self.push_end(block.line, end, None, true, false) } else { Ok(()) };
+            return if end.is_known() { self.push_end(block.line, end, None, true, false) } else { Ok(()) };
         }
         if motion == Motion::Rapid {
             self.state = end;
             return self.push_end(block.line, end, None, true, false);
         }
-        let states = if is_arc { arc_of(self, block, motion, &end, metres)? } else { self.line_to(&end) };
+        let states = if is_arc { arc_of(self, block, motion, &end, metres)? } else { self.state.line_to(&end) };
         let first_move = self.program.moves.len();
         for state in states {
             self.push_end(block.line, state, None, false, is_arc)?;
@@ -254,7 +248,7 @@ impl<'a> Reader<'a> {
         for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
             if !(value.abs() * metres <= LARGEST) {
-                return Err(self.fail(block.line, (letter, value), "not a position of a usual size", "up to 10 m"));
+                return Err(self.fail(block.line, (letter, value), "not a position of a usual size", "up to 100 m"));
             }
             end.position[axis] = match (self.modes.is_incremental, self.state.position[axis]) {
                 (false, _) => Some(value * metres),
@@ -290,30 +284,23 @@ impl<'a> Reader<'a> {
                     return Err(self.fail(block.line, word, "a rotary axis of a machine that is not named", allowed));
                 }
             }
-            if end.angles[axis] != 0.0 && !self.modes.is_controlled && self.settings.pivot.is_none() {
-                let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
-                return Err(self.fail(block.line, word, "a rotary axis without tool centre point control", allowed));
-            }
-            self.has_turned = true;
         }
         Ok(end)
     }
 
-    /// A straight move to where the machine shall be, in parts where the tool turns.
-    fn line_to(&self, end: &State) -> Vec<State> {
-        let turn = (0..3).map(|k| (end.angles[k] - self.state.angles[k]).abs()).fold(0.0, f64::max);
-        let parts = (turn / TURN_STEP - 1e-6).ceil().clamp(1.0, 1e5) as u32;
-        let between = |from: f64, to: f64, part: u32| from + (to - from) * f64::from(part) / f64::from(parts);
-        let mut states: Vec<State> = (1..parts)
-            .map(|part| State {
-                position: std::array::from_fn(|k| {
-                    self.state.position[k].zip(end.position[k]).map(|(from, to)| between(from, to, part))
-                }),
-                angles: std::array::from_fn(|k| between(self.state.angles[k], end.angles[k], part)),
-            })
-            .collect();
-        states.push(*end);
-        states
+    /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
+    fn turn_without_control(&mut self, block: &Block<'_>, motion: Motion, end: State) -> Result<(), InputError> {
+        if motion != Motion::Rapid {
+            let word = block.words.iter().find(|(letter, _)| "ABC".contains(*letter));
+            let word = word.or_else(|| block.words.iter().find(|(letter, _)| "XYZ".contains(*letter)));
+            let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
+            let problem = "a rotary axis without tool centre point control";
+            return Err(self.fail(block.line, word.copied().unwrap_or(('G', 1.0)), problem, allowed));
+        }
+        self.program
+            .note("rapid moves of a turned tool without tool centre point control: where it is then is not known here");
+        self.state = State { position: [None; 3], ..end };
+        Ok(())
     }
 
     /// Adds the move to a state.
@@ -325,7 +312,8 @@ impl<'a> Reader<'a> {
         is_rapid: bool,
         is_arc: bool,
     ) -> Result<(), InputError> {
-        let programmed = Vector3::from(state.position.map(Option::unwrap_or_default));
+        let programmed = state.programmed();
+        self.has_turned[usize::from(self.modes.is_controlled)] |= state.angles != [0.0; 3];
         let (rotation, position) = match self.settings.machine {
             None => (Matrix3::identity(), programmed),
             Some(machine) => {
@@ -338,7 +326,7 @@ impl<'a> Reader<'a> {
             }
         };
         if !position.iter().all(|value| value.abs() <= 2.0 * LARGEST) {
-            return Err(self.fail(line, ('X', programmed.x), "not a position of a usual size", "up to 10 m"));
+            return Err(self.fail(line, ('X', programmed.x), "not a position of a usual size", "up to 100 m"));
         }
         let axis = rotation.column(2).into_owned();
         self.program.moves.push(Move { position, axis, feed, is_rapid, is_arc, line });

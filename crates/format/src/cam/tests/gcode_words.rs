@@ -106,6 +106,24 @@ fn five_axes_with_and_without_tool_centre_point_control() {
 }
 
 #[test]
+fn rotary_axes_may_be_set_by_rapids_before_tool_centre_point_control() {
+    let machine = ReadSettings { machine: Some(Machine::TableAc), ..settings() };
+    let text = "G21 G90\nG0 X0 Y0 Z0 A-20 C90\nG43.4 H1\nG0 X5 Y0 Z9\nG1 Z0 F600\nX20\nG49\nG0 Z90\nG0 A0 C0\nG0 X1 Y1 Z1\nG1 X9\nM30\n";
+    let read = program(text, &machine).unwrap();
+    let lines: Vec<(usize, bool)> = read.moves.iter().map(|one| (one.line, one.is_rapid)).collect();
+    assert_eq!(lines, [(4, true), (5, false), (6, false), (10, true), (11, false)]);
+    assert!(
+        (read.moves[0].axis - Vector3::new(libm::sin((-20.0_f64).to_radians()), 0.0, read.moves[0].axis.z)).norm()
+            < 1e-9
+    );
+    assert!(read.notes.keys().any(|note| note.contains("where it is then is not known")), "{:?}", read.notes);
+    assert!(read.notes.contains_key("angles of table-ac, with tool centre point control"), "{:?}", read.notes);
+    // A cut with the tool turned and the control off is refused, with or without the angle in the block.
+    refused(&text.replace("G0 Z90\n", "G1 Z90\n"), &machine, ":8: Z", &["without tool centre point control"]);
+    refused(&text.replace("G43.4", "G43"), &machine, ":5: Z", &["without tool centre point control", "--pivot-mm"]);
+}
+
+#[test]
 fn each_broken_block_names_line_word_value_and_what_is_allowed() {
     for (text, word, parts) in [
         ("G2 X10 Y10 I5 J1", "I", ["misses its end", "same radius"]),
@@ -123,7 +141,7 @@ fn each_broken_block_names_line_word_value_and_what_is_allowed() {
         ("G1 X1e", "", ["not a letter with a number", "X-1.5"]),
         ("G1 Xnan", "", ["not a letter with a number", "'Xnan'"]),
         ("G1 X1e9", "E", ["a letter that is not known", "'E9'"]),
-        ("G1 X99999999", "X", ["usual size", "10 m"]),
+        ("G1 X99999999", "X", ["usual size", "100 m"]),
         ("G1 F0 X5", "F", ["not a feed", "above 0"]),
         ("G93 G1 X5", "X", ["G93 without a feed", "F with each"]),
         ("G83 X5 R2 Z-9", "G", ["not known here", "G0-G4"]),
