@@ -23,6 +23,8 @@ pub mod compensate;
 mod deserialize;
 pub mod document;
 pub mod field;
+#[cfg(any(test, feature = "fuzzing"))]
+pub mod fuzzing;
 pub mod identify;
 pub mod inertial;
 pub mod init;

@@ -1,13 +1,12 @@
 //! An imported tool path: its points as a task file, and what was found and changed.
 
-use super::segments::{Counts, Point, Resampling, segments};
+use super::segments::{Counts, Point, Resampling, expected_points, segments};
 use super::{Program, counted};
 use crate::input::InputError;
+use crate::new_file::write_new;
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 /// The points of a program, ready to be written as a task file.
@@ -21,6 +20,11 @@ pub struct ImportedPath {
     notes: Vec<String>,
 }
 
+/// More points than this are a step that is meant for another unit.
+const LARGEST_COUNT: f64 = 2e7;
+
+/// Feeds of cutting moves. m/s
+const FEEDS: std::ops::RangeInclusive<f64> = 1e-7..=1e2;
 /// What can be scored of a program, where nothing is.
 const SCORED: &str = "at least one cutting move at 5.05 deg or more from the tool axis";
 
@@ -36,6 +40,20 @@ impl ImportedPath {
             return Err(InputError::new(file, "a cutting move before the first feed")
                 .at_line(without.line)
                 .allowed("a feed before the first cutting move, or none in the whole program"));
+        }
+        if let Some((line, feed)) =
+            cutting().find_map(|one| one.feed.filter(|feed| !FEEDS.contains(feed)).map(|feed| (one.line, feed)))
+        {
+            return Err(InputError::new(file, "a cutting move with no usual feed")
+                .at_line(line)
+                .found(format!("{:e} mm/s", feed * 1e3))
+                .allowed("a feed from 0.0001 to 100000 mm/s"));
+        }
+        let expected = expected_points(&program, resampling);
+        if expected > LARGEST_COUNT {
+            let problem = format!("{expected:.0} points within --step-mm");
+            return Err(InputError::new(file, problem)
+                .allowed(format!("{LARGEST_COUNT:.0} points at most: a larger --step-mm")));
         }
         let (segments, counts) = segments(&program, resampling);
         if !segments.iter().flatten().any(|point| point.is_scored) {
@@ -98,23 +116,7 @@ impl ImportedPath {
     /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already or cannot be written: nothing is left behind
     /// then.
     pub fn write(&self, out: &Path) -> Result<(), InputError> {
-        let text = self.csv(out)?;
-        let cannot = |cause: std::io::Error| {
-            let problem = match cause.kind() {
-                ErrorKind::AlreadyExists => "is there already, and is left as it is".to_owned(),
-                _ => format!("cannot be written: {cause}"),
-            };
-            InputError::new(out, problem).allowed("the name of a new file in a folder that can be written to")
-        };
-        if let Some(folder) = out.parent() {
-            std::fs::create_dir_all(folder).map_err(cannot)?;
-        }
-        let mut file = OpenOptions::new().write(true).create_new(true).open(out).map_err(cannot)?;
-        file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(|cause| {
-            // What is removed here is what was made here.
-            let _ = std::fs::remove_file(out);
-            cannot(cause)
-        })
+        write_new(out, &self.csv(out)?)
     }
 
     /// Number of segments.

@@ -85,6 +85,15 @@ impl Knot {
     }
 }
 
+/// About how many points a program has at most.
+pub(super) fn expected_points(program: &Program, resampling: Resampling) -> f64 {
+    let steps = |pair: &[Move]| match pair[1].is_rapid {
+        true => 0.0,
+        false => 1.0 + (pair[1].position - pair[0].position).norm() / resampling.step,
+    };
+    program.moves.windows(2).map(steps).sum()
+}
+
 /// The segments of a program.
 pub(super) fn segments(program: &Program, resampling: Resampling) -> (Vec<Vec<Point>>, Counts) {
     let mut counts = Counts::default();

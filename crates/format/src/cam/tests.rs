@@ -2,8 +2,6 @@
 
 use super::*;
 use crate::task::{Imported, parse_csv};
-use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 mod cldata_words;
 mod gcode_words;
@@ -39,34 +37,7 @@ fn refused(text: &str, settings: &ReadSettings, place: &str, parts: &[&str]) {
     }
 }
 
-const POCKET: &str = "\
-TOOL PATH/POCKET,TOOL,MILL_10
-TLDATA/MILL,10.0000,0.0000,75.0000,0.0000,0.0000
-MSYS/0.0000,0.0000,0.0000,1.0000000,0.0000000,0.0000000,0.0000000,1.0000000,0.0000000
-$$ centerline data
-UNITS/MM
-LOAD/TOOL,1
-SPINDL/RPM,12000,CLW
-RAPID
-GOTO/0.0000,0.0000,50.0000,0.0000000,0.0000000,1.0000000
-RAPID
-GOTO/0.0000,0.0000,3.0000
-FEDRAT/MMPM,300.0000
-GOTO/0.0000,0.0000,-5.0000
-FEDRAT/MMPM,1200.0000
-GOTO/35.0000,0.0000,-5.0000
-GOTO/35.0000,20.0000,-5.0000
-CIRCLE/30.0,20.0,-5.0,0.0,0.0,1.0,5.0,0.02,0.5,10.0,0.0
-GOTO/30.0000,25.0000,-5.0000
-GOTO/0.0000,25.0000,-5.0000
-GOTO/0.0000,25.0000,-5.0000
-GOTO/0.0000,25.0000,3.0000
-RAPID
-GOTO/0.0000,0.0000,50.0000
-PAINT/PATH
-END-OF-PATH
-FINI
-";
+const POCKET: &str = include_str!("fixtures/pocket.cls");
 
 #[test]
 fn a_pocket_becomes_a_segment_with_its_plunge_and_its_retract_unscored() {
@@ -138,55 +109,16 @@ fn a_program_without_a_wall_a_format_or_a_whole_set_of_feeds_is_refused() {
     assert!(path.to_string().contains("no feed in the program"));
 }
 
-/// Programs that are read, of every kind.
-fn fixtures() -> Vec<(String, ReadSettings)> {
-    let five_axis = ReadSettings { machine: Some(Machine::TableAc), ..settings() };
-    vec![
-        (POCKET.to_owned(), settings()),
-        (cldata_words::EVERY_WORD.to_owned(), settings()),
-        (gcode_words::THREE_AXES.to_owned(), settings()),
-        (gcode_words::FIVE_AXES.to_owned(), five_axis),
-    ]
+#[test]
+fn more_points_than_memory_holds_are_refused() {
+    let fine = ReadSettings { resampling: Resampling { chord: 1e-5, step: 1e-6 }, ..settings() };
+    refused("UNITS/MM\nGOTO/0,0,0\nGOTO/90000,0,0\nFINI\n", &fine, "", &["90000001 points", "a larger --step-mm"]);
 }
 
 #[test]
-fn broken_programs_never_panic() {
-    let fixtures = fixtures();
-    let mut random = ChaCha8Rng::seed_from_u64(16);
-    let mut read = 0;
-    for round in 0..20_000 {
-        let (text, settings) = &fixtures[round % fixtures.len()];
-        let mut bytes = text.clone().into_bytes();
-        (0..random.random_range(1..4)).for_each(|_| mutate(&mut bytes, &mut random));
-        // Few points: long lines are not divided.
-        let settings = ReadSettings { resampling: Resampling { chord: 1e-3, step: 1.0 }, ..*settings };
-        if let Ok(path) = import_bytes(Path::new("f"), &bytes, &settings) {
-            read += 1;
-            let _ = path.csv(Path::new("out.csv"));
-            let _ = path.to_string();
-        }
-    }
-    assert!((2000..18_000).contains(&read), "{read} of 20000 broken programs are read");
-}
-
-/// One change of a text: a byte, a piece left out, doubled or cut off, a number put in.
-fn mutate(bytes: &mut Vec<u8>, random: &mut impl Rng) {
-    if bytes.is_empty() {
-        return;
-    }
-    let at = random.random_range(0..bytes.len());
-    let end = (at + random.random_range(1..30)).min(bytes.len());
-    const NUMBERS: [&str; 10] = ["nan", "-inf", "1e308", "1e-308", "-0", "0", "1e9", "$", "/", ",,"];
-    match random.random_range(0..6) {
-        0 => bytes[at] = random.random(),
-        1 => drop(bytes.drain(at..end)),
-        2 => {
-            let piece = bytes[at..end].to_vec();
-            let to = random.random_range(0..bytes.len());
-            drop(bytes.splice(to..to, piece));
-        }
-        3 if random.random_range(0..8) == 0 => bytes.truncate(at),
-        4 => drop(bytes.splice(at..end.min(at + 3), NUMBERS[random.random_range(0..NUMBERS.len())].bytes())),
-        _ => bytes[at] = b"0123456789.-,/$\n GXYZFIJKR"[random.random_range(0..26)],
-    }
+fn feeds_that_no_machine_has_are_refused() {
+    let program = |feed: &str| format!("UNITS/MM\nGOTO/0,0,0\nFEDRAT/{feed}\nGOTO/9,0,0\nFINI\n");
+    refused(&program("1e-9"), &settings(), ":4", &["no usual feed", "e-11 mm/s", "0.0001 to 100000 mm/s"]);
+    refused(&program("1e300"), &settings(), ":3: FEDRAT", &["usual size"]);
+    refused(&program("-5"), &settings(), ":3: FEDRAT", &["not a feed", "above 0"]);
 }

@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 use std::path::Path;
 
 /// No rotary axis is programmed beyond this. deg
-const LARGEST_ANGLE: f64 = 1e5;
+const LARGEST_ANGLE: f64 = 3.6e4;
 
 /// The letters that a block may have.
 const LETTERS: &str = "GXYZABCIJKRFSTMNOHDP";
@@ -268,7 +268,7 @@ impl<'a> Reader<'a> {
             let Some(value) = block.get(letter) else { continue };
             let word = (letter, value);
             if !(value.abs() <= LARGEST_ANGLE) {
-                return Err(self.fail(block.line, word, "not an angle of a usual size", "up to 100000 deg"));
+                return Err(self.fail(block.line, word, "not an angle of a usual size", "up to 36000 deg"));
             }
             let before = if self.modes.is_incremental { self.state.angles[axis] } else { 0.0 };
             end.angles[axis] = before + value.to_radians();

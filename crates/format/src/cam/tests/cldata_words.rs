@@ -3,40 +3,7 @@
 use super::*;
 
 /// Every word that the reader knows, in inches, turned upside down, in both orders where there are two.
-pub const EVERY_WORD: &str = "\
-PARTNO a part / with, signs $$ and a comment
-MACHIN/MILL,1
-UNITS/INCHES
-MULTAX/ON
-TOOL PATH/ONE,TOOL,T1
-TLDATA/MILL,.5,0.,3.,0.,0.
-MSYS/1.,0.,0.,1.,0.,0.,0.,-1.,0.
-CUTCOM/OFF
-LOADTL/1
-SPINDL/6000,RPM,CLW
-COOLNT/ON
-FROM/0.,0.,2.,0.,0.,1.
-RAPID/
-GOTO/0.,0.,.1
-FEDRAT/30.,IPM
-GOTO/1.,0.,0. $$ ramp
-CIRCLE/1.,1.,0.,0.,0.,1.
-GOTO/2.,1.,0.
-FEDRAT/MMPR,.1
-GOTO/2., $
-  2., $
-  0.
-FEDRAT/IPR,.005
-CUTCOM/LEFT,1
-GOTO/2.,3.,0.,0.,0.6,0.8
-CYCLE/OFF
-CSYS/1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,0.
-RAPID
-GOTO/0.,0.,9.
-END-OF-PATH
-FINI
-GOTO/nonsense
-";
+pub const EVERY_WORD: &str = include_str!("../fixtures/every_word.cls");
 
 fn line(text: &str) -> String {
     format!("UNITS/MM\nFEDRAT/600\nGOTO/0,0,0\n{text}\nGOTO/9,9,0\nFINI\n")

@@ -4,48 +4,10 @@ use super::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// Three axes: both ways to state arcs, three planes, incremental and absolute.
-pub const THREE_AXES: &str = "\
-%
-O1234 (PART)
-N10 G90 G94 G17 G49 G40 G80
-N15 G21
-N20 G28 G91 Z0.
-N25 G90
-N30 T1 M6
-S12000 M3
-G4 X2.
-G54
-G0 X0. Y0.
-G43 Z10. H1
-Z2.
-G1 Z-1. F300.
-X20. F1200.
-G3 X30. Y10. I0. J10.
-G2 X40. Y20. R10.
-G91 G1 X5. Y0.
-G90
-G18 G2 X55. Z-1. I5. K0.
-G17 G1 Y30.
-(done)
-G0 Z10.
-M5
-M30
-";
+pub const THREE_AXES: &str = include_str!("../fixtures/three_axes.nc");
 
 /// Five axes with tool centre point control and inverse time.
-pub const FIVE_AXES: &str = "\
-G21 G90 G94
-G54
-G43.4 H1
-G0 X0 Y0 Z20 A0 C0
-G1 Z0 F600
-X20
-X40 A20 C30
-G93 X60 A30 C60 F30
-G94 G0 Z50 F600
-G49
-M2
-";
+pub const FIVE_AXES: &str = include_str!("../fixtures/five_axes.nc");
 
 fn line(text: &str) -> String {
     format!("G21 G90\nG0 X0 Y0 Z0\nG1 X1 F600\n{text}\nG1 X50\nM30\n")

@@ -146,11 +146,11 @@ fn feeds_of_the_task_bound_the_joint_steps_and_give_the_time() {
         let step = 1.5 * path.step_length(k) / (0.01 + 1e-4 * k as f64);
         assert!(problem.joint_steps(k).iter().all(|allowed| (allowed / step.min(MAX_JOINT_STEP) - 1.0).abs() < 1e-12));
     }
-    // One move faster than any joint follows: no plan, and the point is named.
+    // One move faster than any joint follows: no plan, and the segment and the reason are named.
     let mut feeds: Vec<f64> = (0..105).map(|k| 0.01 + 1e-4 * k as f64).collect();
     feeds[50] = 50.0;
     let fast = five_segments().task.path().clone().with_feeds(feeds).unwrap();
     problem.task = Task::new(fast, five_segments().task.wrenches().to_vec()).unwrap();
     let said = scored(&problem).unwrap_err();
-    assert!(said.contains("point 50") || said.contains("points 49 to 50"), "{said}");
+    assert!(said.contains("segment 3") && said.contains("steps of the joints"), "{said}");
 }
