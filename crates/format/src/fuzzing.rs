@@ -63,7 +63,7 @@ impl Reader {
         let gcode = self == Self::Gcode;
         ReadSettings {
             format: Some(format),
-            units: (gcode && kind % 3 == 0).then_some(LengthUnit::Millimetre),
+            units: (gcode && kind.is_multiple_of(3)).then_some(LengthUnit::Millimetre),
             machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),
             pivot: (gcode && kind % 7 < 2).then(|| nalgebra::Vector3::z() * 0.3),
             tool_centre_point: kind % 7 == 6,

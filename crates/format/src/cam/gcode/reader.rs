@@ -247,7 +247,7 @@ impl<'a> Reader<'a> {
         let mut end = self.state;
         for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
-            if !(value.abs() * metres <= LARGEST) {
+            if value.abs() * metres > LARGEST {
                 return Err(self.fail(block.line, (letter, value), "not a position of a usual size", "up to 100 m"));
             }
             end.position[axis] = match (self.modes.is_incremental, self.state.position[axis]) {
@@ -267,7 +267,7 @@ impl<'a> Reader<'a> {
         for (axis, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
             let word = (letter, value);
-            if !(value.abs() <= LARGEST_ANGLE) {
+            if value.abs() > LARGEST_ANGLE {
                 return Err(self.fail(block.line, word, "not an angle of a usual size", "up to 36000 deg"));
             }
             let before = if self.modes.is_incremental { self.state.angles[axis] } else { 0.0 };
