@@ -2,12 +2,15 @@
 
 use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
 use crate::input::InputError;
+use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
-use crate::units::{Kg, Mm, Positive};
+use crate::toml_file::TomlFile;
+use crate::units::{Deg, Kg, Mm, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_model::robot::Spindle;
+use std::path::Path;
+use stead_model::robot::{Pose, Spindle};
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
 /// point and its z axis along the tool, out of the spindle to the work.
@@ -15,8 +18,17 @@ use stead_model::robot::Spindle;
 pub struct SpindleTable {
     /// Tool centre point in the flange frame.
     pub xyz_mm: Vector<Mm>,
-    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame.
-    pub rotation: Matrix,
+    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame;
+    /// exactly one of this and the four keys below.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
     /// Mass of all that the flange carries: spindle, holder and tool. Needed where motion or stability is computed.
     pub mass_kg: Option<Kg<Positive>>,
     /// Centre of mass of all that the flange carries, in the flange frame.
@@ -25,17 +37,30 @@ pub struct SpindleTable {
     pub inertia_kg_m2: Option<InertiaTable>,
 }
 
+/// Reads the table `[spindle]` of a file, as of a run file, whatever else is in it; with the bytes of the file.
+///
+/// # Errors
+/// [`InputError`] with file, line and field.
+pub fn read_spindle(file: &Path) -> Result<(Spindle, Vec<u8>), InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let at = document.root().key("spindle");
+    if !at.is_given() {
+        return Err(at.missing("a table [spindle] with xyz_mm and an orientation, as in a run file"));
+    }
+    let table: SpindleTable = at.read()?;
+    Ok((table.spindle(&at)?, source.bytes().to_vec()))
+}
+
 impl SpindleTable {
     /// The spindle that the table describes.
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a matrix that is no rotation, a body that cannot be.
     pub(crate) fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
-        let mut spindle = Spindle::new(self.rotation.matrix(), self.xyz_mm.vector()).map_err(|problem| {
-            let tolerance = Spindle::ROTATION_TOLERANCE;
-            let rule = format!("a right-handed rotation matrix [row, row, row] within {tolerance}");
-            at.key("rotation").error(problem, rule)
-        })?;
+        let flange_from_tool =
+            Pose { rotation: orientation_keys!(self).rotation(at)?, translation: self.xyz_mm.vector() };
+        let mut spindle = Spindle { flange_from_tool, payload: None };
         if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() || self.inertia_kg_m2.is_some() {
             spindle.payload = Some(inertial_from(self.mass_kg, self.centre_of_mass_mm, self.inertia_kg_m2, at)?);
         }

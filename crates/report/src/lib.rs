@@ -4,6 +4,7 @@
 
 pub mod assessment;
 pub mod certificate;
+pub mod check;
 pub mod circularity;
 mod columns;
 pub mod compensation;
@@ -15,6 +16,7 @@ pub mod names;
 pub mod output;
 pub mod picture;
 pub mod placement;
+pub mod robot;
 pub mod simulation;
 pub mod stability;
 pub mod study;

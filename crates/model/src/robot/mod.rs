@@ -27,6 +27,7 @@ pub mod angles;
 pub mod chain;
 mod compliance;
 pub mod conditioning;
+mod controller;
 mod data_sheet;
 mod dynamics;
 mod forward;
@@ -41,6 +42,7 @@ pub mod turns;
 mod uncertainty;
 
 pub use compliance::{Compensator, Compliance};
+pub use controller::{Controller, ControllerKind};
 pub use data_sheet::DataSheet;
 pub use dynamics::{JointDynamics, Orthogonal};
 pub use forward::Frames;
@@ -87,6 +89,8 @@ pub struct Robot {
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
+    controller: Option<Box<Controller>>,
+    unverified: Vec<String>,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -192,12 +196,25 @@ impl Robot {
             data_sheet: DataSheet::default(),
             uncertainty: None,
             dynamics: None,
+            controller: None,
+            unverified: Vec::new(),
         })
     }
 
     /// The name given by the robot file.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Which of its numbers nobody has checked against their source, each with what is known of them.
+    pub fn unverified(&self) -> &[String] {
+        &self.unverified
+    }
+
+    /// The same arm, with numbers that nobody has checked against their source.
+    pub fn with_unverified(mut self, unverified: Vec<String>) -> Self {
+        self.unverified = unverified;
+        self
     }
 
     /// The six rows, base first.
