@@ -183,9 +183,8 @@ impl ToolPath {
         Self::partly_scored(points.into_iter().map(|(segment, point)| (segment, point, true)))
     }
 
-    /// As [`ToolPath::new`], with whether each point is scored. A point that is not scored must be reached, but has no part in the
-    /// objective and no force: in a plunge along the tool axis or a turn of the tool in place there is no wall. Its `feed` only says from
-    /// where the angle beta counts, and it may be where the point before it is.
+    /// As [`ToolPath::new`], with whether each point is scored. One that is not must be reached, but has no part in the objective and no
+    /// force, as in a plunge. Its `feed` only says from where beta counts, and it may be where the point before it is.
     ///
     /// # Errors
     /// [`TaskError`] at the first point that breaks a rule, or where no point is scored.
@@ -205,8 +204,8 @@ impl ToolPath {
             if segment == before + 1 {
                 path.segments.push(index..index + 1);
             } else if segment == before && before > 0 {
-                let is_same_place = (path.points[index - 1].position - point.position).norm() < SAME_PLACE;
-                if is_same_place && is_scored && all_scored[index - 1] {
+                let way = path.points[index - 1].position - point.position;
+                if way.norm() < SAME_PLACE && is_scored && all_scored[index - 1] {
                     return Err(TaskError::Repeated { point: index });
                 }
                 path.segments[segment as usize - 1].end = index + 1;
@@ -306,9 +305,8 @@ impl Task {
                 }
             }
         }
-        for (_, wrench) in wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point)) {
-            *wrench = Wrench::zero();
-        }
+        let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
+        unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
         Ok(Self { path, wrenches })
     }
 
