@@ -33,7 +33,8 @@
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
 //!
-//! [`init`] writes a commented starter set of files, [`import_robot`] makes a robot file of a URDF, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
+//! [`init`] writes a commented starter set of files, [`import_robot`] makes a robot file of a URDF, [`import_path`] a task file
+//! of a tool path from CAM, [`schema`] gives the JSON Schema of a kind of file. A [`Monitor`] shows the progress of a long job and stops it. Jobs use the threads of the rayon pool that they are called in; the
 //! number of threads does not change a result.
 //!
 //! # Conventions
@@ -69,6 +70,10 @@ pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::cam::gcode::Machine;
+pub use stead_format::cam::{
+    ImportedPath, LengthUnit, ProgramFormat, ReadSettings as PathSettings, Resampling, import_path,
+};
 pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init, init_run};

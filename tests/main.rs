@@ -16,6 +16,7 @@ mod feed;
 mod help;
 mod identify;
 mod identify_plan;
+mod import_path;
 mod import_robot;
 mod looks_wrong;
 mod opw_oracle;

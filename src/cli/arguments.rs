@@ -65,7 +65,7 @@ pub(super) enum Command {
     /// List the arms that stead ships with
     #[command(after_long_help = help::ROBOTS)]
     Robots(RobotsOptions),
-    /// Turn what other programs write into files of stead: a robot from a URDF
+    /// Turn what other programs write into files of stead: a robot from a URDF, a tool path from CAM
     #[command(subcommand)]
     Import(ImportCommand),
     /// Write a small commented set of input files that runs

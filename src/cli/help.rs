@@ -272,6 +272,17 @@ Exit codes:
   1  the small motions of the arm cannot be computed there, or a file could not be written
   2  wrong usage, bad input, or a results folder that cannot be written to";
 
+pub(super) const IMPORT_PATH: &str = "\
+Examples:
+  stead import path part.cls --units mm --out my/part.csv --report
+  stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv
+
+Files written: the task file. It has no forces: a run takes them from [tool] and [cut], or from [forces].
+
+Exit codes:
+  0  done
+  2  wrong usage, a program that is refused, with line and word, or a file that is there already: nothing is written";
+
 pub(super) const CHECK: &str = "\
 Examples:
   stead check my/run.toml
@@ -310,7 +321,8 @@ A shipped arm takes the place of a robot file by its name: robot = \"name:kuka-k
 Files written: none.
 
 Exit codes:
-  0  done";
+  0  done
+  2  wrong usage";
 
 pub(super) const IMPORT_ROBOT: &str = "\
 Examples:

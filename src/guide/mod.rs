@@ -3,6 +3,7 @@
 //! | question | page |
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
+//! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
@@ -47,6 +48,8 @@ pub mod glossary {}
 pub mod identification_file {}
 #[doc = include_str!("identify.md")]
 pub mod identify {}
+#[doc = include_str!("import_path.md")]
+pub mod import_path {}
 #[doc = include_str!("import_robot.md")]
 pub mod import_robot {}
 #[doc = include_str!("library.md")]

@@ -42,13 +42,12 @@ pub struct InputError {
 impl InputError {
     /// A problem with a file as a whole.
     pub fn new(file: &Path, problem: impl Into<String>) -> Self {
-        let problem: String = problem.into();
         Self {
             file: file.into(),
             line: None,
             set_by: None,
             field: None,
-            problem: problem.into(),
+            problem: one_line(problem),
             found: None,
             allowed: None,
         }
@@ -69,19 +68,19 @@ impl InputError {
 
     /// Adds the field.
     pub fn in_field(mut self, field: impl Into<String>) -> Self {
-        self.field = Some(field.into().into());
+        self.field = Some(one_line(field));
         self
     }
 
     /// Adds the value found.
     pub fn found(mut self, value: impl Into<String>) -> Self {
-        self.found = Some(value.into().into());
+        self.found = Some(one_line(value));
         self
     }
 
     /// Adds the value found, if there is one.
     pub fn found_if(mut self, value: Option<String>) -> Self {
-        self.found = value.map(Into::into);
+        self.found = value.map(one_line);
         self
     }
 
@@ -90,6 +89,12 @@ impl InputError {
         self.allowed = Some(allowed.into().into());
         self
     }
+}
+
+/// A text without the line breaks and other controls of the file that it comes from.
+fn one_line(text: impl Into<String>) -> Box<str> {
+    let text = text.into();
+    if text.contains(char::is_control) { text.replace(char::is_control, " ").into() } else { text.into() }
 }
 
 impl fmt::Display for InputError {

@@ -18,11 +18,14 @@
 //! ```
 
 pub mod assess;
+pub mod cam;
 pub mod catalogue;
 pub mod compensate;
 mod deserialize;
 pub mod document;
 pub mod field;
+#[cfg(any(test, feature = "fuzzing"))]
+pub mod fuzzing;
 pub mod identify;
 pub mod inertial;
 pub mod init;

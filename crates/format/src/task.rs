@@ -22,12 +22,15 @@ const REQUIRED: [&str; 10] =
     ["segment", "x_mm", "y_mm", "z_mm", "feed_x", "feed_y", "feed_z", "axis_x", "axis_y", "axis_z"];
 const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
 const NORMAL: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
+/// Feed of the move to the point, and whether it is scored.
+const FOLLOWING: [&str; 2] = ["feed_mm_per_s", "scored"];
 const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
 
 /// Reads a tool path: columns `segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z`, optionally
 /// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
-/// `moment_x_nm,moment_y_nm,moment_z_nm`, and `normal_x,normal_y,normal_z`, the normal of the surface that is cut; in any order,
-/// all in the workpiece frame.
+/// `moment_x_nm,moment_y_nm,moment_z_nm`, `normal_x,normal_y,normal_z`, the normal of the surface that is cut, `feed_mm_per_s`, the
+/// feed of the move to the point, and `scored`, 0 for a point that only has to be reached and else 1; in any order, all in the
+/// workpiece frame.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value that is
@@ -49,11 +52,16 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut normals = columns.normal.map(|_| Vec::new());
+    let mut feeds = columns.feed.map(|_| Vec::new());
     let mut lines = Vec::new();
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
         let at = |k: usize| row.vector([0, 1, 2].map(|axis| columns.required[k + axis]));
-        points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }));
+        let is_scored = columns.scored.map_or(Ok(true), |scored| flag(&row, scored))?;
+        if let (Some(feeds), Some(feed)) = (feeds.as_mut(), columns.feed) {
+            feeds.push(positive(&row, feed)? * 1e-3);
+        }
+        points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }, is_scored));
         if let (Some(wrenches), Some(force)) = (wrenches.as_mut(), columns.force) {
             let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| row.vector(moment))?;
             wrenches.push(Wrench { force: row.vector(force)?, moment });
@@ -63,10 +71,15 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
         }
         lines.push(row.line());
     }
-    let path = ToolPath::new(points).and_then(|path| match normals {
+    let with_normals = |path: ToolPath| match normals {
         Some(normals) => path.with_surface_normals(normals),
         None => Ok(path),
-    });
+    };
+    let with_feeds = |path: ToolPath| match feeds {
+        Some(feeds) => path.with_feeds(feeds),
+        None => Ok(path),
+    };
+    let path = ToolPath::partly_scored(points).and_then(with_normals).and_then(with_feeds);
     let path = path.map_err(|e| locate(file, &lines, &e))?;
     Ok(Imported { path, wrenches, lines })
 }
@@ -77,11 +90,13 @@ struct Columns {
     force: Option<[usize; 3]>,
     moment: Option<[usize; 3]>,
     normal: Option<[usize; 3]>,
+    feed: Option<usize>,
+    scored: Option<usize>,
 }
 
 impl Columns {
     fn find(table: &CsvTable<'_>) -> Result<Self, InputError> {
-        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL);
+        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL).chain(&FOLLOWING);
         let allowed = all().copied().collect::<Vec<_>>().join(",");
         let fail = |column: &str, problem: &str| table.fail(column, problem, &allowed);
         for name in table.header() {
@@ -111,7 +126,8 @@ impl Columns {
         if moment.is_some() && force.is_none() {
             return Err(fail(FORCE[0], "missing column: moments need forces beside them"));
         }
-        Ok(Self { required, force, moment, normal })
+        let [feed, scored] = FOLLOWING.map(place);
+        Ok(Self { required, force, moment, normal, feed, scored })
     }
 }
 
@@ -119,10 +135,29 @@ fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
     row.text(column).parse().map_err(|_| row.fail(column, "not a segment number", "whole numbers from 1"))
 }
 
+fn flag(row: &Row<'_>, column: usize) -> Result<bool, InputError> {
+    match row.text(column) {
+        "0" => Ok(false),
+        "1" => Ok(true),
+        _ => Err(row.fail(column, "not 0 or 1", "1 for a point that is scored, 0 for one that only has to be reached")),
+    }
+}
+
+fn positive(row: &Row<'_>, column: usize) -> Result<f64, InputError> {
+    let value = row.number(column)?;
+    if value > 0.0 { Ok(value) } else { Err(row.fail(column, "not above zero", "a feed above 0 mm/s")) }
+}
+
 /// A broken rule of the path, at its line of the file.
 fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
     let (point, field, found, allowed) = match error {
-        TaskError::Empty | TaskError::Wrenches { .. } | TaskError::Normals { .. } => {
+        TaskError::NothingScored => {
+            return InputError::new(file, error.to_string()).in_field("scored").allowed("1 in at least one row");
+        }
+        TaskError::Feed { point, feed } => {
+            (*point, "feed_mm_per_s", Some(format!("{}", feed * 1e3)), "a feed above 0 mm/s".to_owned())
+        }
+        TaskError::Empty | TaskError::Wrenches { .. } | TaskError::Normals { .. } | TaskError::Feeds { .. } => {
             return InputError::new(file, error.to_string()).allowed("at least one row under the header");
         }
         TaskError::NotFinite { point, field } => (*point, *field, None, "finite numbers".to_owned()),

@@ -82,12 +82,16 @@ impl Problem {
         Turn::between(&points[point - 1].workpiece_from_point(), &points[point].workpiece_from_point())
     }
 
-    /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set. rad
+    /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set and the tool does not turn in
+    /// place, which has neither length nor feed. rad
     pub fn spindle_turn_limit(&self, point: usize) -> Option<f64> {
         self.turn_limit(point, &self.redundancy)
     }
 
     fn turn_limit(&self, point: usize, limits: &Redundancy) -> Option<f64> {
+        if self.task.path().turns_in_place(point) {
+            return None;
+        }
         let by_length = limits.max_spindle_turn.map(|limit| limit * self.step_length(point));
         let by_time = limits.max_spindle_speed.map(|limit| limit * self.step_time(point));
         by_length.into_iter().chain(by_time).reduce(f64::min)

@@ -99,8 +99,10 @@ impl fmt::Display for FeedLimit {
 /// The feed of a cut: as programmed, and as the arm holds it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CutFeed {
-    /// The programmed feed. m/s
+    /// The programmed feed; where the task states feeds, the highest of them. m/s
     pub programmed: f64,
+    /// The highest programmed feed of each segment. m/s
+    pub programmed_segments: Vec<f64>,
     /// The highest feed of each segment; `None` where no limit of a joint is known or none of these joints moves.
     pub segments: Vec<Option<FeedLimit>>,
 }
@@ -111,10 +113,11 @@ impl CutFeed {
         self.segments.iter().flatten().copied().reduce(FeedLimit::smaller)
     }
 
-    /// The feed with which a segment (from 0) is cut: the programmed one, or the highest where that is lower. m/s
+    /// The highest feed with which a segment (from 0) is cut: the highest programmed one, or the highest that the arm holds where that
+    /// is lower. m/s
     pub fn held(&self, segment: usize) -> f64 {
         let limit = self.segments.get(segment).copied().flatten();
-        limit.filter(|limit| self.is_beyond(limit)).map_or(self.programmed, |limit| limit.feed)
+        limit.filter(|limit| self.is_beyond(limit)).map_or_else(|| self.programmed_for(segment), |limit| limit.feed)
     }
 
     /// Number of segments that cannot be cut with the programmed feed.
@@ -122,8 +125,12 @@ impl CutFeed {
         self.segments.iter().flatten().filter(|limit| self.is_beyond(limit)).count()
     }
 
+    fn programmed_for(&self, segment: usize) -> f64 {
+        self.programmed_segments.get(segment).copied().unwrap_or(self.programmed)
+    }
+
     fn is_beyond(&self, limit: &FeedLimit) -> bool {
-        limit.feed < self.programmed * (1.0 - FEED_ROUNDING)
+        limit.feed < self.programmed_for(limit.segment - 1) * (1.0 - FEED_ROUNDING)
     }
 }
 
@@ -133,7 +140,12 @@ pub fn cut_feed(problem: &Problem, blend: f64, plans: &[SegmentPlan]) -> CutFeed
     let limits =
         Limits { speeds: of(|joint| joint.max_speed), accelerations: of(|joint| joint.max_acceleration), blend };
     let segment = |(index, plan): (usize, &SegmentPlan)| limits.segment(problem, index + 1, plan);
-    CutFeed { programmed: problem.redundancy.feed, segments: plans.par_iter().enumerate().map(segment).collect() }
+    let programmed_segments: Vec<f64> = (0..plans.len()).map(|segment| problem.programmed_feed(segment)).collect();
+    CutFeed {
+        programmed: programmed_segments.iter().copied().reduce(f64::max).unwrap_or(problem.redundancy.feed),
+        programmed_segments,
+        segments: plans.par_iter().enumerate().map(segment).collect(),
+    }
 }
 
 /// The limits of the joints where they are known, rad/s and rad/s^2, and the blending distance, m.
@@ -158,6 +170,10 @@ struct Sample {
 struct Step {
     limit: Option<FeedLimit>,
     length: f64,
+    /// Whether the tool turns in place, to which no feed belongs.
+    is_in_place: bool,
+    /// Its first pose.
+    start: Sample,
     /// Ways are from the start of the step.
     samples: Vec<Sample>,
 }
@@ -171,13 +187,18 @@ impl Limits {
         let steps: Vec<Step> = steps.map(|place| self.step(problem, segment, plan, place)).collect();
         let by_speed = steps.iter().filter_map(|step| step.limit).reduce(FeedLimit::smaller);
         let by_acceleration = self.has_accelerations().then(|| {
-            let mut samples = vec![Sample { way: 0.0, point: plan.points.start, joints: plan.joints[0] }];
-            let mut start = 0.0;
-            for step in &steps {
-                samples.extend(step.samples.iter().map(|sample| Sample { way: start + sample.way, ..*sample }));
-                start += step.length;
-            }
-            self.by_acceleration(segment, &samples)
+            // Between two turns of the tool in place the feed starts and stops.
+            let stretches = steps.split(|step| step.is_in_place).filter(|stretch| !stretch.is_empty());
+            let held = stretches.filter_map(|stretch| {
+                let mut samples = vec![stretch[0].start];
+                let mut start = 0.0;
+                for step in stretch {
+                    samples.extend(step.samples.iter().map(|sample| Sample { way: start + sample.way, ..*sample }));
+                    start += step.length;
+                }
+                self.by_acceleration(segment, &samples)
+            });
+            held.reduce(FeedLimit::smaller)
         });
         by_speed.into_iter().chain(by_acceleration.flatten()).reduce(FeedLimit::smaller)
     }
@@ -195,18 +216,20 @@ impl Limits {
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
         let nodes = motion.nodes(ends, spacing / length);
         let point = plan.points.start + place;
+        let is_in_place = problem.task.path().turns_in_place(point);
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
         let between = nodes.windows(2).map(|pair| (f64::midpoint(pair[0].part, pair[1].part), rates_between(pair)));
         let limit = at_nodes.chain(between).filter_map(|(part, rates): (f64, [f64; 6])| {
             let feeds = (0..6).filter_map(|j| Some((self.speeds[j]? * length / rates[j].abs(), j + 1)));
-            let (feed, joint) = smallest(feeds)?;
+            let (feed, joint) = smallest(feeds).filter(|_| !is_in_place)?;
             Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point: nearest(part) })
         });
         let limit = limit.reduce(FeedLimit::smaller);
         let samples = if self.has_accelerations() { &nodes[1..] } else { &[] };
         let sample = |node: &Node| Sample { way: node.part * length, point: nearest(node.part), joints: node.joints };
-        Step { limit, length, samples: samples.iter().map(sample).collect() }
+        let start = Sample { way: 0.0, point: point - 1, joints: *ends[0] };
+        Step { limit, length, is_in_place, start, samples: samples.iter().map(sample).collect() }
     }
 
     /// The highest feed of a segment by the accelerations of its joints.

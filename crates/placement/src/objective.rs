@@ -40,6 +40,7 @@ impl Problem {
             if self.criterion.segment_weights.is_empty() { 1.0 } else { self.segment_weight(path.segment_of(point)) };
         match self.criterion.aggregate {
             Aggregate::Mean | Aggregate::Rms => segment * path.weight(point),
+            Aggregate::Max if !path.is_scored(point) => 0.0,
             Aggregate::Max => segment,
         }
     }
@@ -62,7 +63,8 @@ impl Problem {
 
     /// Sum of the weights of all points.
     pub fn total_weight(&self) -> f64 {
-        if self.task.path().is_thinned() {
+        let path = self.task.path();
+        if path.is_thinned() || path.first_unscored().is_some() {
             return (0..self.task.points().len()).map(|point| self.point_weight(point)).sum();
         }
         let points = |(weight, span): (&f64, &std::ops::Range<usize>)| weight * span.len() as f64;

@@ -65,10 +65,10 @@ pub struct DeflectionFigures {
 }
 
 impl DeflectionFigures {
-    /// Those of the points of a plan.
-    pub fn of(points: &[PlanPoint]) -> Self {
-        let figures = |of: &dyn Fn(&PlanPoint) -> f64| MeanAndMax::of(points.iter().map(|point| of(point).abs()));
-        let surface: Option<Vec<f64>> = points.iter().map(|point| point.surface_part.map(f64::abs)).collect();
+    /// Those of the points of a plan that are scored.
+    pub fn of<'a>(points: impl Iterator<Item = &'a PlanPoint> + Clone) -> Self {
+        let figures = |of: &dyn Fn(&PlanPoint) -> f64| MeanAndMax::of(points.clone().map(|point| of(point).abs()));
+        let surface: Option<Vec<f64>> = points.clone().map(|point| point.surface_part.map(f64::abs)).collect();
         Self {
             wall: figures(&|point| point.normal_part),
             surface: surface.map(MeanAndMax::of),

@@ -2,12 +2,13 @@
 //!
 //! The points are spread evenly over what changes along the path: position, tool axis, feed direction and force. Each stands for
 //! the points around it: the score is taken as linear in the distance along the path between two kept points of a segment, and as
-//! constant beyond the first and the last, so that the weights of a segment sum up to the number of its points. Between kept
+//! constant beyond the first and the last, so that the weights of a segment sum up to the number of its scored points. Between kept
 //! points beta and the joints may change by what all the steps between them allow together. What the points left out forbid is not
 //! seen: whoever uses a subset checks the whole path, and adds the points that decide ([`PathSubset::add`]).
 
 use super::problem::Problem;
-use stead_model::task::{KeptPoint, Task};
+use std::ops::Range;
+use stead_model::task::{KeptPoint, Task, ToolPath};
 
 /// Points kept of a path, ascending.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,7 +50,7 @@ impl PathSubset {
     /// The points nearest to the middles of so many cells, which are as long in what changes along the path.
     fn spread(task: &Task, travelled: &[f64], count: usize) -> Self {
         let spans = task.segments();
-        let length = |span: &std::ops::Range<usize>| travelled[span.end - 1] - travelled[span.start];
+        let length = |span: &Range<usize>| travelled[span.end - 1] - travelled[span.start];
         let whole: f64 = spans.iter().map(length).sum();
         let free = count.saturating_sub(spans.len()) as f64;
         let mut points = Vec::with_capacity(count + spans.len());
@@ -63,7 +64,7 @@ impl PathSubset {
             let offset = if cells < STAGGERED { (0.5 + index as f64 * STAGGER).fract() } else { 0.5 };
             points.extend((0..cells).map(|cell| {
                 let at = travelled[span.start] + (cell as f64 + offset) / cells as f64 * length(span);
-                nearest(&travelled[span.clone()], at) + span.start
+                scored_near(task.path(), span, nearest(&travelled[span.clone()], at) + span.start)
             }));
         }
         points.dedup();
@@ -106,22 +107,24 @@ impl PathSubset {
             while next < kept.len() && kept[next].point < span.end {
                 next += 1;
             }
-            let own = &mut kept[first..next];
-            let (Some(head), Some(tail)) = (own.first().map(|k| k.point), own.last().map(|k| k.point)) else {
-                continue;
-            };
-            own[0].weight += (head - span.start) as f64;
-            own[next - first - 1].weight += (span.end - tail) as f64;
-            for place in 1..own.len() {
-                let (from, to) = (own[place - 1].point, own[place].point);
+            let own: Vec<usize> = (first..next).filter(|place| path.is_scored(kept[*place].point)).collect();
+            let (Some(head), Some(tail)) = (own.first().copied(), own.last().copied()) else { continue };
+            let scored = |points: Range<usize>| points.filter(|point| path.is_scored(*point)).count() as f64;
+            let (before, after) = (scored(span.start..kept[head].point), scored(kept[tail].point..span.end));
+            kept[head].weight += before;
+            kept[tail].weight += after;
+            for pair in own.windows(2) {
+                let [from, to] = [pair[0], pair[1]].map(|place| kept[place].point);
                 let steps: Vec<f64> = (from + 1..=to).map(|point| path.step_length(point)).collect();
                 let whole: f64 = steps.iter().sum();
                 let mut done = 0.0;
                 for (k, step) in steps.iter().enumerate() {
                     // The share of the point at the start of this step.
                     let share = if whole > 0.0 { done / whole } else { k as f64 / steps.len() as f64 };
-                    own[place - 1].weight += 1.0 - share;
-                    own[place].weight += share;
+                    if path.is_scored(from + k) {
+                        kept[pair[0]].weight += 1.0 - share;
+                        kept[pair[1]].weight += share;
+                    }
                     done += step;
                 }
             }
@@ -151,6 +154,14 @@ fn travelled(task: &Task) -> Vec<f64> {
         }
     }
     travelled
+}
+
+/// The scored point of a segment that is nearest by number to a point; that point, where none is scored.
+fn scored_near(path: &ToolPath, span: &Range<usize>, point: usize) -> usize {
+    let mut apart = 0..span.len();
+    let near = |apart: usize| [point.checked_sub(apart), Some(point + apart)].into_iter().flatten();
+    let found = apart.find_map(|apart| near(apart).find(|near| span.contains(near) && path.is_scored(*near)));
+    found.unwrap_or(point)
 }
 
 /// The index of the value nearest to `at` in ascending values.
@@ -195,5 +206,26 @@ mod tests {
             let estimate: f64 = subset.weighted(task).iter().map(|kept| kept.weight * along(kept.point)).sum();
             assert!((whole - estimate).abs() < 1e-9, "{count}");
         }
+    }
+
+    #[test]
+    fn points_that_are_not_scored_stand_for_nothing() {
+        let problem = five_segments();
+        let task = &problem.task;
+        let is_scored = |point: usize| point % 21 > 2 && point % 7 != 5;
+        let points =
+            (0..105).map(|point| (task.path().segment_of(point) as u32 + 1, task.points()[point], is_scored(point)));
+        let path = ToolPath::partly_scored(points).unwrap();
+        let problem = Problem { task: Task::new(path, task.wrenches().to_vec()).unwrap(), ..problem };
+        let scored = (0..105).filter(|point| is_scored(*point)).count() as f64;
+        for count in [5, 12, 40] {
+            let mut subset = PathSubset::new(&problem.task, count);
+            subset.add(&[0, 1, 5]);
+            let thinned = subset.of(&problem);
+            assert!((thinned.total_weight() - scored).abs() < 1e-9, "{count}: {}", thinned.total_weight());
+            let unscored = subset.points().iter().position(|point| !is_scored(*point)).unwrap();
+            assert_eq!(thinned.point_weight(unscored), 0.0);
+        }
+        assert_eq!(problem.total_weight(), scored);
     }
 }

@@ -132,7 +132,7 @@ pub struct Constraints {
 pub struct Redundancy {
     /// Number of grid values of beta over a full turn.
     pub beta_count: usize,
-    /// Feed speed; with the joint speeds it bounds the joint step from point to point. m/s
+    /// Feed speed where the task states none; with the joint speeds it bounds the joint step from point to point. m/s
     pub feed: f64,
     /// Largest change of beta along the path, where one is set. rad/m
     pub max_beta_rate: Option<f64>,
@@ -254,9 +254,15 @@ impl Problem {
         self.task.points().iter().map(|point| rotation * point.feed).collect()
     }
 
-    /// Time from path point `point - 1` to `point` at the given feed, both in one segment. s
+    /// Time from path point `point - 1` to `point`, both in one segment: at the feed of the task, or at the given one where it states
+    /// none; infinite for a turn of the tool in place, which the controller takes its own time for. s
     pub fn step_time(&self, point: usize) -> f64 {
-        self.step_length(point) / self.redundancy.feed
+        self.task.path().step_time(point, self.redundancy.feed)
+    }
+
+    /// The highest feed that is programmed for a segment (from 0). m/s
+    pub fn programmed_feed(&self, segment: usize) -> f64 {
+        self.task.path().highest_feed(segment).unwrap_or(self.redundancy.feed)
     }
 
     /// Distance along the path from point `point - 1` to `point`. m

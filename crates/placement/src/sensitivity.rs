@@ -26,7 +26,7 @@ pub fn mean_by_stiffness(problem: &Problem, placement: &Placement, plans: &[Segm
             state(&changed, *point, placement, *beta, *posture).map_or(0.0, |state| state.score())
         };
         let scores: Vec<f64> = states.par_iter().with_min_len(64).map(score).collect();
-        scores.iter().sum::<f64>() / scores.len() as f64
+        scores.iter().sum::<f64>() / problem.task.path().scored_count() as f64
     };
     std::array::from_fn(|joint| {
         let [stiffer, softer] =
@@ -62,7 +62,7 @@ pub fn with_set_alone(problem: &Problem, set: &Robot) -> Problem {
 pub fn mean_by(problem: &Problem, placement: &Placement, plan: &Plan) -> f64 {
     let score =
         |p: &PlanPoint| state(problem, p.point, placement, p.beta, p.posture).map_or(p.score, |state| state.score());
-    plan.points.iter().map(score).sum::<f64>() / plan.points.len() as f64
+    plan.points.iter().map(score).sum::<f64>() / problem.task.path().scored_count() as f64
 }
 
 /// The objective of a plan at a placement, with scores that cover force errors of a relative size. m

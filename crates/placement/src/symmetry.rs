@@ -33,6 +33,12 @@ pub enum Unsupported {
         /// The first such path point, from 0.
         point: usize,
     },
+    /// A point is not scored.
+    #[error("point {point} of the task is not scored")]
+    Unscored {
+        /// The first such path point, from 0.
+        point: usize,
+    },
     /// A compliance that must be constant changes with its joint angle.
     #[error("the compliance of joint {joint} changes with its angle")]
     VaryingCompliance {

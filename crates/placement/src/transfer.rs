@@ -15,9 +15,9 @@ const STANDSTILL: f64 = 1e-7;
 
 /// The times of a plan: the cut itself, each segment with the feed that the arm holds, and the moves between segments.
 pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
-    let path = problem.task.path();
     let feed = cut_feed(problem, settings.blend, plans);
-    let cutting = (0..path.segments().len()).map(|s| path.segment_length(s) / feed.held(s)).sum();
+    let cutting =
+        plans.iter().enumerate().map(|(s, plan)| cutting_time(problem, settings, feed.held(s), s, plan)).sum();
     let transfers = plans
         .windows(2)
         .enumerate()
@@ -28,6 +28,23 @@ pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPla
         })
         .collect();
     Cycle { feed, cutting, transfers }
+}
+
+/// The time of a segment (from 0): each move with its feed, or with the highest that the arm holds along the segment (m/s) where that is
+/// lower; a turn of the tool in place from rest to rest, where the speeds of the joints are known. s
+fn cutting_time(problem: &Problem, settings: &TransferSettings, held: f64, segment: usize, plan: &SegmentPlan) -> f64 {
+    let path = problem.task.path();
+    if path.feed(plan.points.start).is_none() && path.first_unscored().is_none() {
+        return path.segment_length(segment) / held;
+    }
+    let step = |place: usize| {
+        let point = plan.points.start + place;
+        if path.turns_in_place(point) {
+            return duration(problem, settings, &plan.joints[place - 1], &plan.joints[place]).unwrap_or(0.0);
+        }
+        path.step_length(point) / path.feed(point).map_or(held, |feed| feed.min(held))
+    };
+    (1..plan.joints.len()).map(step).sum()
 }
 
 /// Shortest time from rest at `from` to rest at `to` (joint angles in rad); `None` when a joint that has to move has no

@@ -161,7 +161,7 @@ impl Grid {
             mean,
             max,
             percentiles: [0.8 * mean, max],
-            deflection: DeflectionFigures::of(&points),
+            deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,
             mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             points,
@@ -180,6 +180,7 @@ impl Grid {
         };
         let feed = CutFeed {
             programmed: problem().redundancy.feed,
+            programmed_segments: vec![problem().redundancy.feed; 5],
             segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
         };
         let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };

@@ -1,5 +1,6 @@
 //! `stead import`: what other programs write, as files of stead.
 
+mod path;
 mod robot;
 
 use super::{Failure, help};
@@ -7,6 +8,9 @@ use clap::Subcommand;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ImportCommand {
+    /// Make a task file of a tool path from CAM: CLDATA or five-axis G-code
+    #[command(after_long_help = help::IMPORT_PATH)]
+    Path(path::PathOptions),
     /// Derive a robot file from a URDF: geometry, limits, speeds; states what a URDF does not know
     #[command(after_long_help = help::IMPORT_ROBOT)]
     Robot(robot::RobotOptions),
@@ -14,6 +18,7 @@ pub(super) enum ImportCommand {
 
 pub(super) fn run(command: &ImportCommand) -> Result<(), Failure> {
     match command {
+        ImportCommand::Path(options) => path::run(options),
         ImportCommand::Robot(options) => robot::run(options),
     }
 }

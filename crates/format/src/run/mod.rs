@@ -2,6 +2,7 @@
 
 mod certificate;
 mod criterion;
+mod forces;
 mod notes;
 mod output;
 mod postures;
@@ -13,22 +14,22 @@ mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
+pub use forces::ForcesTable;
 pub use output::OutputTable;
 pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
 
-use crate::document::{Document, NamedFile};
+use crate::document::Document;
 use crate::field::FieldOverrides;
 use crate::input::{InputError, InputFile, input_file};
-use crate::place::Place;
 use crate::robot::{moving_robot_from, robot_from};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
-use crate::task::Imported;
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
+use forces::ForceTables;
 use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
@@ -36,7 +37,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_model::published::Published;
-use stead_model::task::Task;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_simulation::arm::Variant;
@@ -77,6 +77,8 @@ pub struct RunFile {
     pub tool: Option<ToolTable>,
     /// What the cutter cuts.
     pub cut: Option<CutTable>,
+    /// Forces in the frame of each path point, in place of force columns or of `[tool]` and `[cut]`.
+    pub forces: Option<ForcesTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,
     /// What is made beside the plans.
@@ -179,7 +181,9 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         input_file("robot", robot_file.name, robot_source.bytes()),
         input_file("task", &task_file.name, &task_file.bytes),
     ];
-    let task = task_from(imported, &task_file, &task_field, cutting.as_ref(), run.stability.is_some())?;
+    let is_for_stability = run.stability.is_some();
+    let tables = ForceTables { forces: run.forces.as_ref(), cutting: cutting.as_ref(), is_for_stability };
+    let task = tables.task(imported, &task_file, &task_field, &at.key("forces"))?;
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
@@ -200,31 +204,4 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
     Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
-}
-
-/// Puts the forces to the path: those of the file, or those of the cutter and its cut, which may be there for the stability
-/// alone.
-fn task_from(
-    imported: Imported,
-    file: &NamedFile,
-    field: &Place<'_>,
-    cutting: Option<&Cutting<'_>>,
-    is_for_stability: bool,
-) -> Result<Task, InputError> {
-    let rule = "force columns in the task or tables [tool] and [cut], one and not both";
-    let wrenches = match (imported.wrenches, cutting) {
-        (Some(_), Some(cutting)) if !is_for_stability => {
-            let problem = format!("forces come from one place only, and the task {} has force columns", file.name);
-            return Err(cutting.tool_at.error(problem, rule));
-        }
-        (Some(wrenches), _) => wrenches,
-        (None, Some(cutting)) => cutting.path_forces()?.wrenches(&imported.path),
-        (None, None) => {
-            let problem = "has no force columns, and there are no tables [tool] and [cut] to compute them";
-            return Err(field.error(problem, rule));
-        }
-    };
-    let at = cutting.map_or(field, |cutting| &cutting.tool_at);
-    Task::new(imported.path, wrenches)
-        .map_err(|e| at.error(format!("gives no usable forces: {e}"), "values whose forces are finite"))
 }

@@ -34,7 +34,9 @@ pub(super) fn direction_note(task: &Task) -> Option<String> {
         let (feed, chord) = (points[point - 1].feed, points[*point].position - points[point - 1].position);
         libm::acos((feed.dot(&chord) / chord.norm()).clamp(-1.0, 1.0)).to_degrees()
     };
-    let mut inner = task.segments().iter().flat_map(|span| span.clone().skip(1));
+    // The feed of a point that is not scored says nothing, and neither does the way to one.
+    let are_scored = |point: &usize| task.path().is_scored(*point) && task.path().is_scored(point - 1);
+    let mut inner = task.segments().iter().flat_map(|span| span.clone().skip(1)).filter(are_scored);
     let first = inner.find(|point| off(point) > FEED_TO_PATH_DEG)?;
     let (from, angle) = (first - 1, off(&first));
     Some(format!("at point {from} the feed is {angle:.0} deg off the way to the next point: check the signs of feed_*"))

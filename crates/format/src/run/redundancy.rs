@@ -63,6 +63,7 @@ impl RedundancyTable {
 /// Refuses limits on the turn of the spindle that its axis alone passes, whatever beta is.
 pub(super) fn check_axis_turns(problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
     let inner = problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
+    let inner = inner.filter(|point| !problem.task.path().turns_in_place(*point));
     let turned = inner.map(|point| (point, problem.axis_turn(point)));
     let by_length = turned.clone().map(|(point, turn)| (point, turn / problem.step_length(point)));
     let by_time = turned.map(|(point, turn)| (point, turn / problem.step_time(point)));

@@ -3,6 +3,7 @@
 //! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches with it, given by
 //! the file or computed by a cutting model (see [`crate::cutting`]).
 
+mod following;
 mod thinned;
 
 pub use thinned::KeptPoint;
@@ -64,6 +65,10 @@ pub struct ToolPath {
     points: Vec<PathPoint>,
     segments: Vec<Range<usize>>,
     surface_normals: Option<Vec<Vector3<f64>>>,
+    /// Feed of the move to each point, where the task states it. m/s
+    feeds: Option<Vec<f64>>,
+    /// Whether each point is scored, where some are not.
+    scored: Option<Vec<bool>>,
     thinned: Option<thinned::Thinned>,
 }
 
@@ -133,6 +138,25 @@ pub enum TaskError {
         /// The number found.
         found: u32,
     },
+    /// No point is scored.
+    #[error("no point of the path is scored")]
+    NothingScored,
+    /// A feed is not above zero.
+    #[error("point {point}: the feed must be above 0 and finite, but is {feed} m/s")]
+    Feed {
+        /// The point.
+        point: usize,
+        /// The feed. m/s
+        feed: f64,
+    },
+    /// There are not as many feeds as points.
+    #[error("{feeds} feeds for {points} points")]
+    Feeds {
+        /// Number of feeds.
+        feeds: usize,
+        /// Number of points.
+        points: usize,
+    },
     /// There are not as many wrenches as points.
     #[error("{wrenches} wrenches for {points} points")]
     Wrenches {
@@ -156,14 +180,32 @@ impl ToolPath {
     /// # Errors
     /// [`TaskError`] at the first point that breaks a rule.
     pub fn new(points: impl IntoIterator<Item = (u32, PathPoint)>) -> Result<Self, TaskError> {
-        let mut path = Self { points: Vec::new(), segments: Vec::new(), surface_normals: None, thinned: None };
-        for (index, (segment, point)) in points.into_iter().enumerate() {
+        Self::partly_scored(points.into_iter().map(|(segment, point)| (segment, point, true)))
+    }
+
+    /// As [`ToolPath::new`], with whether each point is scored. One that is not must be reached, but has no part in the objective and no
+    /// force, as in a plunge. Its `feed` only says from where beta counts, and it may be where the point before it is.
+    ///
+    /// # Errors
+    /// [`TaskError`] at the first point that breaks a rule, or where no point is scored.
+    pub fn partly_scored(points: impl IntoIterator<Item = (u32, PathPoint, bool)>) -> Result<Self, TaskError> {
+        let mut path = Self {
+            points: Vec::new(),
+            segments: Vec::new(),
+            surface_normals: None,
+            feeds: None,
+            scored: None,
+            thinned: None,
+        };
+        let mut all_scored = Vec::new();
+        for (index, (segment, point, is_scored)) in points.into_iter().enumerate() {
             let point = check_point(index, point)?;
             let before = path.segments.len() as u32;
             if segment == before + 1 {
                 path.segments.push(index..index + 1);
             } else if segment == before && before > 0 {
-                if (path.points[index - 1].position - point.position).norm() < SAME_PLACE {
+                let way = path.points[index - 1].position - point.position;
+                if way.norm() < SAME_PLACE && is_scored && all_scored[index - 1] {
                     return Err(TaskError::Repeated { point: index });
                 }
                 path.segments[segment as usize - 1].end = index + 1;
@@ -171,8 +213,14 @@ impl ToolPath {
                 return Err(TaskError::SegmentOrder { point: index, before, found: segment });
             }
             path.points.push(point);
+            all_scored.push(is_scored);
         }
-        if path.points.is_empty() { Err(TaskError::Empty) } else { Ok(path) }
+        match all_scored.iter().filter(|is_scored| **is_scored).count() {
+            _ if all_scored.is_empty() => return Err(TaskError::Empty),
+            0 => return Err(TaskError::NothingScored),
+            count => path.scored = (count < all_scored.len()).then_some(all_scored),
+        }
+        Ok(path)
     }
 
     /// States the normal of the surface to be cut at every point, in the workpiece frame, and makes it exactly unit.
@@ -242,11 +290,11 @@ fn check_point(index: usize, mut point: PathPoint) -> Result<PathPoint, TaskErro
 }
 
 impl Task {
-    /// Puts a wrench to every point.
+    /// Puts a wrench to every point; none to a point that is not scored, whatever is given for it.
     ///
     /// # Errors
     /// [`TaskError::Wrenches`] when the numbers differ, [`TaskError::NotFinite`] for a wrench with NaN or infinity.
-    pub fn new(path: ToolPath, wrenches: Vec<Wrench>) -> Result<Self, TaskError> {
+    pub fn new(path: ToolPath, mut wrenches: Vec<Wrench>) -> Result<Self, TaskError> {
         if wrenches.len() != path.points.len() {
             return Err(TaskError::Wrenches { wrenches: wrenches.len(), points: path.points.len() });
         }
@@ -257,6 +305,8 @@ impl Task {
                 }
             }
         }
+        let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
+        unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
         Ok(Self { path, wrenches })
     }
 

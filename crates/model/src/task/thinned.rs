@@ -1,6 +1,6 @@
 //! A path thinned to some of its points, which stand for the others.
 
-use super::{Task, ToolPath};
+use super::{SAME_PLACE, Task, ToolPath};
 
 /// A point that is kept of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,8 @@ pub(super) struct Thinned {
     weights: Vec<f64>,
     /// Distance along the whole path from the point before, in the same segment. m
     steps: Vec<f64>,
+    /// Whether the tool turns in place on the way from the point before.
+    turns: Vec<bool>,
 }
 
 impl ToolPath {
@@ -26,13 +28,28 @@ impl ToolPath {
     fn thinned(&self, kept: &[KeptPoint]) -> Self {
         let mut segments = Vec::with_capacity(self.segments.len());
         let mut steps = Vec::with_capacity(kept.len());
+        let mut turns = Vec::with_capacity(kept.len());
+        let mut feeds = self.feeds.as_ref().map(|_| Vec::with_capacity(kept.len()));
         for (place, KeptPoint { point, .. }) in kept.iter().enumerate() {
             let segment = self.segment_of(*point);
             let before = place.checked_sub(1).map(|before| kept[before].point);
             match before.filter(|before| self.segment_of(*before) == segment) {
-                Some(before) => steps.push((before + 1..=*point).map(|p| self.step_length(p)).sum()),
+                Some(before) => {
+                    let passed = before + 1..=*point;
+                    let length: f64 = passed.clone().map(|p| self.step_length(p)).sum();
+                    steps.push(length);
+                    turns.push(passed.clone().any(|p| self.turns_in_place(p)));
+                    if let (Some(feeds), Some(own)) = (feeds.as_mut(), &self.feeds) {
+                        let time: f64 = passed.map(|p| self.step_length(p) / own[p]).sum();
+                        feeds.push(if time > 0.0 { length / time } else { own[*point] });
+                    }
+                }
                 None => {
                     steps.push(0.0);
+                    turns.push(false);
+                    if let (Some(feeds), Some(own)) = (feeds.as_mut(), &self.feeds) {
+                        feeds.push(own[*point]);
+                    }
                     segments.push(place..place);
                 }
             }
@@ -47,7 +64,9 @@ impl ToolPath {
                 .surface_normals
                 .as_ref()
                 .map(|normals| kept.iter().map(|kept| normals[kept.point]).collect()),
-            thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps }),
+            feeds,
+            scored: self.scored.as_ref().map(|scored| kept.iter().map(|kept| scored[kept.point]).collect()),
+            thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps, turns }),
         }
     }
 
@@ -59,9 +78,20 @@ impl ToolPath {
         }
     }
 
-    /// How many points a point stands for: 1 but in a thinned path.
+    /// How many scored points a point stands for: 1 but in a thinned path, 0 where it is not scored.
     pub fn weight(&self, point: usize) -> f64 {
-        self.thinned.as_ref().map_or(1.0, |thinned| thinned.weights[point])
+        match &self.thinned {
+            Some(thinned) => thinned.weights[point],
+            None => f64::from(u8::from(self.is_scored(point))),
+        }
+    }
+
+    /// Whether the tool turns in place, which no feed belongs to, on the way to a point from the one before, in the same segment.
+    pub fn turns_in_place(&self, point: usize) -> bool {
+        match &self.thinned {
+            Some(thinned) => thinned.turns[point],
+            None => self.scored.is_some() && self.step_length(point) < SAME_PLACE,
+        }
     }
 
     /// Whether this is some of the points of a longer path.

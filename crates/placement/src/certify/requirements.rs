@@ -18,6 +18,9 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if !problem.criterion.segment_weights.is_empty() {
         return Err(Unsupported::OtherCriterion { key: "weight of a segment" });
     }
+    if let Some(point) = problem.task.path().first_unscored() {
+        return Err(Unsupported::Unscored { point });
+    }
     require_constant(problem, &[0, 1, 2, 3, 4, 5])?;
     if problem.criterion.force_uncertainty != 0.0 {
         return Err(Unsupported::UncertainForce);

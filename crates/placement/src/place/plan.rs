@@ -82,14 +82,17 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
             });
         }
     }
+    let path = problem.task.path();
+    let scored = points.iter().filter(|p| path.is_scored(p.point));
+    let count = path.scored_count() as f64;
     Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
         objective: problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score))),
-        mean: points.iter().map(|p| p.score).sum::<f64>() / points.len() as f64,
-        max: points.iter().map(|p| p.score).fold(0.0, f64::max),
-        percentiles: [0.5, 0.95].map(|share| percentile(points.iter().map(|p| p.score), share)),
-        deflection: DeflectionFigures::of(&points),
-        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / points.len() as f64),
+        mean: scored.clone().map(|p| p.score).sum::<f64>() / count,
+        max: scored.clone().map(|p| p.score).fold(0.0, f64::max),
+        percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
+        deflection: DeflectionFigures::of(scored),
+        mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
         points,
     }

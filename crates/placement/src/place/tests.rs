@@ -17,6 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use stead_model::robot::angles::yaw_from_q4;
 
 mod choice;
+mod following;
 mod long_path;
 
 fn small() -> SearchSettings {

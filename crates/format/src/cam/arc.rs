@@ -1,0 +1,112 @@
+//! Arcs as points that are nowhere farther from the arc than the chord error.
+
+use super::Resampling;
+use nalgebra::{Rotation3, Unit, Vector3};
+use std::f64::consts::{PI, TAU};
+
+/// A start or end that is farther than this from its arc misses it: digits as CAM systems print them, in inches too. m
+pub(super) const MISSED: f64 = 5e-5;
+/// An arc that turns by less than this ends where it starts: a full circle. rad
+const FULL: f64 = 1e-9;
+
+/// An arc about an axis, counter-clockwise seen against it, with an even rise along the axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arc {
+    pub start: Vector3<f64>,
+    pub end: Vector3<f64>,
+    pub centre: Vector3<f64>,
+    /// Its direction; of any length but zero.
+    pub axis: Vector3<f64>,
+    /// Full turns beside the part of a turn from start to end.
+    pub more_turns: u32,
+}
+
+/// Why there is no such arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ArcError {
+    /// The axis has no length.
+    Axis,
+    /// The radius at the start, which is that of a point, and at the end. m
+    Radius(f64, f64),
+}
+
+impl Arc {
+    /// The radius at the start. m
+    pub fn radius(&self) -> Option<f64> {
+        let axis = Unit::try_new(self.axis, 1e-9)?;
+        let arm = self.start - self.centre;
+        Some((arm - axis.into_inner() * arm.dot(&axis)).norm())
+    }
+
+    /// How far the end is from the plane of the start, along the axis. m
+    pub fn rise(&self) -> f64 {
+        Unit::try_new(self.axis, 1e-9).map_or(0.0, |axis| (self.end - self.start).dot(&axis))
+    }
+
+    /// The points after the start up to the end, which is the last, so many that neither the chord error nor the step is passed.
+    pub fn points(&self, resampling: &Resampling) -> Result<Vec<Vector3<f64>>, ArcError> {
+        let axis = Unit::try_new(self.axis, 1e-9).ok_or(ArcError::Axis)?;
+        let across = |point: Vector3<f64>| {
+            let arm = point - self.centre;
+            arm - axis.into_inner() * arm.dot(&axis)
+        };
+        let (from, to) = (across(self.start), across(self.end));
+        let radius = from.norm();
+        if radius < 1e-9 || (radius - to.norm()).abs() > MISSED {
+            return Err(ArcError::Radius(radius, to.norm()));
+        }
+        let turn = libm::atan2(axis.dot(&from.cross(&to)), from.dot(&to)).rem_euclid(TAU);
+        let turn = if turn < FULL || TAU - turn < FULL { TAU } else { turn } + TAU * f64::from(self.more_turns);
+        let part = 2.0 * libm::acos((1.0 - resampling.chord / radius).clamp(-1.0, 1.0));
+        let part = part.min(resampling.step / radius).clamp(1e-4, PI / 4.0);
+        let count = (turn / part).ceil().max(1.0) as usize;
+        let rise = self.end - self.start - (to - from);
+        let growth = to.norm() / radius - 1.0;
+        let mut points: Vec<Vector3<f64>> = (1..count)
+            .map(|k| {
+                let share = k as f64 / count as f64;
+                let arm = Rotation3::from_axis_angle(&axis, turn * share) * from * (1.0 + growth * share);
+                self.start - from + arm + rise * share
+            })
+            .collect();
+        points.push(self.end);
+        Ok(points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+
+    const FINE: Resampling = Resampling { chord: 1e-5, step: 0.1 };
+
+    fn arc(end: Vector3<f64>, axis: Vector3<f64>) -> Arc {
+        Arc { start: vector![0.01, 0.0, 0.0], end, centre: Vector3::zeros(), axis, more_turns: 0 }
+    }
+
+    #[test]
+    fn points_are_on_the_arc_and_chords_within_the_error() {
+        for (axis, quarters) in [(Vector3::z(), 1.0), (-Vector3::z(), 3.0)] {
+            let arc = arc(vector![0.0, 0.01, 0.0], axis * 3.0);
+            let points = arc.points(&FINE).unwrap();
+            let all: Vec<_> = std::iter::once(arc.start).chain(points).collect();
+            assert!(all.iter().all(|point| (point.norm() - 0.01).abs() < 1e-12));
+            let length: f64 = all.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+            assert!((length / (0.01 * quarters * PI / 2.0) - 1.0).abs() < 1e-3, "{length}");
+            assert!(all.windows(2).all(|pair| 0.01 - ((pair[0] + pair[1]) / 2.0).norm() <= 1.001e-5));
+            assert_eq!(all.last(), Some(&arc.end));
+        }
+    }
+
+    #[test]
+    fn a_full_circle_a_helix_and_arcs_that_are_none() {
+        let full = arc(vector![0.01, 0.0, 0.0], Vector3::z()).points(&FINE).unwrap();
+        assert!(full.len() > 60 && full.iter().any(|point| point.x < -0.0099));
+        let helix = arc(vector![0.0, 0.01, 0.004], Vector3::z()).points(&FINE).unwrap();
+        let middle = helix[helix.len() / 2 - 1];
+        assert!((middle.z - 0.002).abs() < 3e-4 && (middle.xy().norm() - 0.01).abs() < 1e-12);
+        assert_eq!(arc(Vector3::zeros(), Vector3::zeros()).points(&FINE), Err(ArcError::Axis));
+        assert_eq!(arc(vector![0.0, 0.02, 0.0], Vector3::z()).points(&FINE), Err(ArcError::Radius(0.01, 0.02)));
+    }
+}

@@ -1,0 +1,91 @@
+//! Blocks of G-code: letters with numbers, comments left out; and programs that are something else by their name.
+
+/// A letter, in upper case, with its number.
+pub(super) type Word = (char, f64);
+
+/// The words of a line, or the text that is none of them.
+pub(super) fn words<'a>(line: &'a str, words: &mut Vec<Word>) -> Result<(), &'a str> {
+    words.clear();
+    let mut rest = line.trim_start();
+    loop {
+        rest = rest.trim_start_matches([' ', '\t', '\r']);
+        let Some(letter) = rest.chars().next() else { return Ok(()) };
+        match letter {
+            ';' | '%' => return Ok(()),
+            '/' if words.is_empty() => rest = &rest[1..],
+            '(' => match rest.find(')') {
+                Some(end) => rest = &rest[end + 1..],
+                None => return Err(rest),
+            },
+            _ if letter.is_ascii_alphabetic() => {
+                let behind = rest[1..].trim_start_matches([' ', '\t']);
+                let length = behind.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c))).unwrap_or(behind.len());
+                let value = behind[..length].parse().map_err(|_| rest)?;
+                words.push((letter.to_ascii_uppercase(), value));
+                rest = &behind[length..];
+            }
+            _ => return Err(rest),
+        }
+    }
+}
+
+/// What a line is written in, where that is a language which is not read.
+pub(crate) fn foreign(line: &str) -> Option<&'static str> {
+    const HEIDENHAIN: &str = "Heidenhain conversational";
+    let line = line.trim().trim_start_matches('/').to_ascii_uppercase();
+    let body = line.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    let starts = |words: &[&str]| words.iter().any(|word| body.starts_with(word));
+    let is_numbered = body.len() < line.len();
+    if starts(&["BEGIN PGM", "CYCL DEF", "CYCL CALL", "TOOL CALL", "BLK FORM", "FN ", "LBL ", "CALL LBL", "PLANE "])
+        || (is_numbered && starts(&["L ", "CC ", "C ", "CR "]))
+    {
+        return Some(HEIDENHAIN);
+    }
+    let code = line.split(['(', ';']).next().unwrap_or_default();
+    let code = code.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    let is_o_word = code.starts_with("O<")
+        || (code.starts_with('O')
+            && ["SUB", "IF", "WHILE", "DO", "CALL", "REPEAT", "ELSE", "END"].iter().any(|w| code.contains(w)));
+    if is_o_word {
+        return Some("a macro program (O-words)");
+    }
+    if code.contains(['#', '=']) {
+        return Some("a macro program (variables)");
+    }
+    let is_macro =
+        ["IF", "WHILE", "GOTO", "REPEAT", "FOR", "CALL", "DEF ", "PROC ", "MCALL", "CYCLE", "TRAORI", "TRANS", "ROT"];
+    is_macro.iter().any(|word| code.starts_with(word)).then_some("a macro program (control words)")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_and_without_spaces_and_comments() {
+        let mut found = Vec::new();
+        assert_eq!(words("/N10 G01X-1.5 y .5(a comment)F 250. ; more", &mut found), Ok(()));
+        assert_eq!(found, [('N', 10.0), ('G', 1.0), ('X', -1.5), ('Y', 0.5), ('F', 250.0)]);
+        assert_eq!(words("%", &mut found), Ok(()));
+        assert_eq!(words("X1 Ynan", &mut found), Err("Ynan"));
+        assert_eq!(words("X1 (open", &mut found), Err("(open"));
+        assert_eq!(words("X1 ü", &mut found), Err("ü"));
+    }
+
+    #[test]
+    fn other_languages_by_name() {
+        for (line, name) in [
+            ("0 BEGIN PGM PART MM", Some("Heidenhain conversational")),
+            ("7 L X+10 Y+5 R0 FMAX", Some("Heidenhain conversational")),
+            ("CYCL DEF 32.0 TOLERANCE", Some("Heidenhain conversational")),
+            ("#100 = 3", Some("a macro program (variables)")),
+            ("N5 G1 X#1", Some("a macro program (variables)")),
+            ("IF [1 EQ 1] GOTO 5", Some("a macro program (control words)")),
+            ("O100 while [1 LT 2]", Some("a macro program (O-words)")),
+            ("O1234 (PART)", None),
+            ("N10 G1 X5 (IF = #)", None),
+        ] {
+            assert_eq!(foreign(line), name, "{line}");
+        }
+    }
+}

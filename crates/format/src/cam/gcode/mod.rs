@@ -1,0 +1,47 @@
+//! G-code of ISO 6983: straight moves and arcs with up to five axes.
+//!
+//! Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a named [`Machine`],
+//! along a move in proportion to the way, so moves that turn the tool are taken in small parts.
+
+mod arc;
+mod block;
+mod machine;
+mod reader;
+mod state;
+
+pub(super) use block::foreign;
+pub use machine::Machine;
+
+use super::{Program, ReadSettings};
+use crate::input::InputError;
+use reader::Reader;
+use std::path::Path;
+
+/// Reads the moves of a G-code program.
+///
+/// # Errors
+/// [`InputError`] with line and word: another language by its name, a code that is not known or that another in the same block or mode
+/// contradicts, an arc that misses its end, a unit that is not stated, rotary axes without their machine.
+pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
+    let mut reader = Reader::new(file, settings);
+    let mut words = Vec::new();
+    for (place, line) in text.lines().enumerate() {
+        let number = place + 1;
+        if let Some(language) = foreign(line) {
+            return Err(InputError::new(file, format!("{language} is not read"))
+                .at_line(number)
+                .found(format!("'{}'", line.trim()))
+                .allowed("G-code with numbers alone, or CLDATA: let the CAM system post one of them"));
+        }
+        if let Err(text) = block::words(line, &mut words) {
+            return Err(InputError::new(file, "not a letter with a number")
+                .at_line(number)
+                .found(format!("'{}'", text.trim()))
+                .allowed("G-code words, as X-1.5, and comments in ( ) or behind ;"));
+        }
+        if !reader.take(number, &words)? {
+            break;
+        }
+    }
+    Ok(reader.finish())
+}

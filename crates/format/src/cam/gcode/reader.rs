@@ -1,0 +1,379 @@
+//! The modal state of G-code, block by block.
+
+use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
+use super::arc::arc_of;
+use super::block::Word;
+use super::state::State;
+use crate::input::InputError;
+use nalgebra::Matrix3;
+use std::path::Path;
+
+/// No rotary axis is programmed beyond this. deg
+const LARGEST_ANGLE: f64 = 3.6e4;
+
+/// The letters that a block may have.
+const LETTERS: &str = "GXYZABCIJKRFSTMNOHDP";
+
+/// How the tool moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    Rapid,
+    Line,
+    /// Seen against the normal of the plane.
+    Clockwise,
+    CounterClockwise,
+}
+
+/// What holds until another code of its group.
+pub(super) struct Modes {
+    pub motion: Option<Motion>,
+    /// Normal of the plane of arcs: 0 for x (G19), 1 for y (G18), 2 for z (G17).
+    pub plane: usize,
+    unit: Option<LengthUnit>,
+    pub is_incremental: bool,
+    is_inverse_time: bool,
+    is_controlled: bool,
+    offset: Option<u32>,
+}
+
+/// Reads blocks into moves.
+pub(super) struct Reader<'a> {
+    file: &'a Path,
+    pub settings: &'a ReadSettings,
+    program: Program,
+    pub modes: Modes,
+    pub state: State,
+    /// As programmed, without its unit.
+    feed: Option<f64>,
+    /// Whether the tool was turned without and with tool centre point control.
+    has_turned: [bool; 2],
+}
+
+/// One block.
+pub(super) struct Block<'a> {
+    pub line: usize,
+    pub words: &'a [Word],
+}
+
+impl Block<'_> {
+    /// The number of a letter, where the block has it.
+    pub fn get(&self, letter: char) -> Option<f64> {
+        self.words.iter().find(|(own, _)| *own == letter).map(|(_, value)| *value)
+    }
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(file: &'a Path, settings: &'a ReadSettings) -> Self {
+        let modes = Modes {
+            motion: None,
+            plane: 2,
+            unit: settings.units,
+            is_incremental: false,
+            is_inverse_time: false,
+            is_controlled: settings.tool_centre_point,
+            offset: None,
+        };
+        let state = State { position: [None; 3], angles: [0.0; 3] };
+        Self { file, settings, program: Program::default(), modes, state, feed: None, has_turned: [false; 2] }
+    }
+
+    /// Takes a block; false after the one that ends the program.
+    pub fn take(&mut self, line: usize, words: &[Word]) -> Result<bool, InputError> {
+        let block = Block { line, words };
+        for (place, (letter, value)) in words.iter().enumerate() {
+            if !LETTERS.contains(*letter) {
+                return Err(self.fail(line, (*letter, *value), "a letter that is not known here", LETTERS));
+            }
+            if !"GMN".contains(*letter) && words[..place].iter().any(|(before, _)| before == letter) {
+                return Err(self.fail(line, (*letter, *value), "is there twice in a block", "each letter once"));
+            }
+        }
+        let (mut is_home, mut is_dwell) = (false, false);
+        let mut motions = 0;
+        for word in words.iter().filter(|(letter, _)| *letter == 'G') {
+            let before = self.modes.motion;
+            match self.code(line, *word)? {
+                Code::Motion(motion) => {
+                    motions += 1;
+                    if motions > 1 && before != Some(motion) {
+                        return Err(self.fail(line, *word, "two ways to move in one block", "one of G0, G1, G2, G3"));
+                    }
+                    self.modes.motion = Some(motion);
+                }
+                Code::Home => is_home = true,
+                Code::Dwell => is_dwell = true,
+                Code::Mode => {}
+            }
+        }
+        if let Some(feed) = block.get('F') {
+            if !(feed > 0.0 && feed <= 1e7) {
+                return Err(self.fail(line, ('F', feed), "not a feed", "a feed above 0"));
+            }
+            self.feed = Some(feed);
+        }
+        if let Some(tool) = block.get('T') {
+            let name = format!("T{tool}");
+            if !self.program.tools.contains(&name) {
+                self.program.tools.push(name);
+            }
+        }
+        if is_home {
+            self.state.position = [None; 3];
+            self.program.note("G28, G30 or G53: where the tool is then is not known here");
+        } else if !is_dwell && words.iter().any(|(letter, _)| "XYZABCIJKR".contains(*letter)) {
+            self.travel(&block)?;
+        }
+        Ok(!words.iter().any(|word| *word == ('M', 2.0) || *word == ('M', 30.0)))
+    }
+
+    /// The program, when the file is at its end.
+    pub fn finish(mut self) -> Program {
+        if let Some(machine) = self.settings.machine {
+            for (has_turned, control) in self.has_turned.into_iter().zip(["without", "with"]) {
+                if has_turned {
+                    self.program.note(format!("angles of {}, {control} tool centre point control", machine.word()));
+                }
+            }
+        }
+        self.program
+    }
+
+    /// What a G code does; modes are set.
+    fn code(&mut self, line: usize, word: Word) -> Result<Code, InputError> {
+        let tenths = (word.1 * 10.0).round();
+        let is_code = (tenths - word.1 * 10.0).abs() < 1e-6 && (0.0..1e4).contains(&tenths);
+        let modes = &mut self.modes;
+        match if is_code { tenths as i64 } else { -1 } {
+            0 => return Ok(Code::Motion(Motion::Rapid)),
+            10 => return Ok(Code::Motion(Motion::Line)),
+            20 => return Ok(Code::Motion(Motion::Clockwise)),
+            30 => return Ok(Code::Motion(Motion::CounterClockwise)),
+            170 => modes.plane = 2,
+            180 => modes.plane = 1,
+            190 => modes.plane = 0,
+            200 | 210 => return self.set_unit(line, word).map(|()| Code::Mode),
+            40 => return Ok(Code::Dwell),
+            280 | 300 | 530 => return Ok(Code::Home),
+            434 => modes.is_controlled = true,
+            490 => modes.is_controlled = self.settings.tool_centre_point,
+            540..=590 if tenths % 10.0 == 0.0 => {
+                let offset = (tenths / 10.0) as u32;
+                if modes.offset.is_some_and(|before| before != offset) {
+                    let problem = "a second work offset, and how the two lie to each other is not in the file";
+                    return Err(self.fail(line, word, problem, "one of G54 to G59 for the whole program"));
+                }
+                modes.offset = Some(offset);
+            }
+            900 => modes.is_incremental = false,
+            910 => modes.is_incremental = true,
+            930 => modes.is_inverse_time = true,
+            940 => modes.is_inverse_time = false,
+            90 | 50 | 51 | 400 | 430 | 500 | 610 | 611 | 640 | 690 | 800 | 911 | 970 | 980 | 990 => {}
+            _ => {
+                let allowed = "G0-G4, G17-G19, G20, G21, G28, G30, G40, G43, G43.4, G49, G53-G59, G61, G64, G69, G80, G90, G91, G93, \
+                               G94, G97-G99";
+                return Err(self.fail(line, word, "a code that is not known here", allowed));
+            }
+        }
+        Ok(Code::Mode)
+    }
+
+    fn set_unit(&mut self, line: usize, word: Word) -> Result<(), InputError> {
+        let unit = if word.1 == 20.0 { LengthUnit::Inch } else { LengthUnit::Millimetre };
+        match self.modes.unit {
+            Some(before) if before != unit => {
+                let problem = format!("contradicts the unit stated before, {}", before.word());
+                Err(self.fail(line, word, &problem, "one unit of length for the whole program, as --units says"))
+            }
+            _ => {
+                self.modes.unit = Some(unit);
+                Ok(())
+            }
+        }
+    }
+
+    /// Moves to the position of a block.
+    fn travel(&mut self, block: &Block<'_>) -> Result<(), InputError> {
+        let first =
+            block.words.iter().find(|(letter, _)| "XYZABCIJKR".contains(*letter)).copied().unwrap_or(('X', 0.0));
+        let Some(motion) = self.modes.motion else {
+            return Err(self.fail(block.line, first, "a position before any of G0 to G3", "G0, G1, G2 or G3 before"));
+        };
+        let metres = self.unit(block.line, first)?.metres();
+        let is_arc = matches!(motion, Motion::Clockwise | Motion::CounterClockwise);
+        if !is_arc && let Some(word) = block.words.iter().find(|(letter, _)| "IJKR".contains(*letter)) {
+            return Err(self.fail(
+                block.line,
+                *word,
+                "a centre or radius without an arc",
+                "I, J, K and R with G2 and G3",
+            ));
+        }
+        let end = self.target(block, metres)?;
+        if end.angles != [0.0; 3] && !self.modes.is_controlled && self.settings.pivot.is_none() {
+            return self.turn_without_control(block, motion, end);
+        }
+        if !self.state.is_known() || !end.is_known() {
+            if motion != Motion::Rapid && self.state.position.iter().any(Option::is_some) && end.is_known() {
+                self.program.note("moves from where the tool was not known in all axes, taken as rapid ones");
+            } else if is_arc {
+                return Err(self.fail(
+                    block.line,
+                    first,
+                    "an arc from where the tool is not known",
+                    "a position before",
+                ));
+            }
+            self.state = end;
+            return if end.is_known() { self.push_end(block.line, end, None, true, false) } else { Ok(()) };
+        }
+        if motion == Motion::Rapid {
+            self.state = end;
+            return self.push_end(block.line, end, None, true, false);
+        }
+        let states = if is_arc { arc_of(self, block, motion, &end, metres)? } else { self.state.line_to(&end) };
+        let first_move = self.program.moves.len();
+        for state in states {
+            self.push_end(block.line, state, None, false, is_arc)?;
+        }
+        let feed = self.feed_of(block, first, first_move, metres)?;
+        self.program.moves[first_move..].iter_mut().for_each(|one| one.feed = feed);
+        self.state = end;
+        Ok(())
+    }
+
+    /// Where a block leads to.
+    fn target(&mut self, block: &Block<'_>, metres: f64) -> Result<State, InputError> {
+        let mut end = self.state;
+        for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
+            let Some(value) = block.get(letter) else { continue };
+            if value.abs() * metres > LARGEST {
+                return Err(self.fail(block.line, (letter, value), "not a position of a usual size", "up to 100 m"));
+            }
+            end.position[axis] = match (self.modes.is_incremental, self.state.position[axis]) {
+                (false, _) => Some(value * metres),
+                (true, Some(before)) => Some(before + value * metres),
+                (true, None) => {
+                    let allowed = "a position with G90 before";
+                    return Err(self.fail(
+                        block.line,
+                        (letter, value),
+                        "G91 from where the tool is not known",
+                        allowed,
+                    ));
+                }
+            };
+        }
+        for (axis, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
+            let Some(value) = block.get(letter) else { continue };
+            let word = (letter, value);
+            if value.abs() > LARGEST_ANGLE {
+                return Err(self.fail(block.line, word, "not an angle of a usual size", "up to 36000 deg"));
+            }
+            let before = if self.modes.is_incremental { self.state.angles[axis] } else { 0.0 };
+            end.angles[axis] = before + value.to_radians();
+            match self.settings.machine {
+                Some(machine) if machine.has(axis) => {}
+                Some(machine) => {
+                    let problem = format!("not a rotary axis of {}", machine.word());
+                    return Err(self.fail(block.line, word, &problem, "another --machine"));
+                }
+                None if end.angles[axis] == 0.0 => continue,
+                None => {
+                    let allowed = "--machine table-ac, table-bc, head-ac or head-bc";
+                    return Err(self.fail(block.line, word, "a rotary axis of a machine that is not named", allowed));
+                }
+            }
+        }
+        Ok(end)
+    }
+
+    /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
+    fn turn_without_control(&mut self, block: &Block<'_>, motion: Motion, end: State) -> Result<(), InputError> {
+        if motion != Motion::Rapid {
+            let word = block.words.iter().find(|(letter, _)| "ABC".contains(*letter));
+            let word = word.or_else(|| block.words.iter().find(|(letter, _)| "XYZ".contains(*letter)));
+            let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
+            let problem = "a rotary axis without tool centre point control";
+            return Err(self.fail(block.line, word.copied().unwrap_or(('G', 1.0)), problem, allowed));
+        }
+        self.program
+            .note("rapid moves of a turned tool without tool centre point control: where it is then is not known here");
+        self.state = State { position: [None; 3], ..end };
+        Ok(())
+    }
+
+    /// Adds the move to a state.
+    fn push_end(
+        &mut self,
+        line: usize,
+        state: State,
+        feed: Option<f64>,
+        is_rapid: bool,
+        is_arc: bool,
+    ) -> Result<(), InputError> {
+        let programmed = state.programmed();
+        self.has_turned[usize::from(self.modes.is_controlled)] |= state.angles != [0.0; 3];
+        let (rotation, position) = match self.settings.machine {
+            None => (Matrix3::identity(), programmed),
+            Some(machine) => {
+                let rotation = machine.workpiece_from_tool(state.angles);
+                let position = match self.settings.pivot {
+                    Some(pivot) if !self.modes.is_controlled => machine.tip(programmed, state.angles, pivot),
+                    _ => programmed,
+                };
+                (rotation, position)
+            }
+        };
+        if !position.iter().all(|value| value.abs() <= 2.0 * LARGEST) {
+            return Err(self.fail(line, ('X', programmed.x), "not a position of a usual size", "up to 100 m"));
+        }
+        let axis = rotation.column(2).into_owned();
+        self.program.moves.push(Move { position, axis, feed, is_rapid, is_arc, line });
+        Ok(())
+    }
+
+    /// The feed of the moves of a block, which are there from a place on; nothing where they have no length. m/s
+    fn feed_of(&self, block: &Block<'_>, word: Word, from: usize, metres: f64) -> Result<Option<f64>, InputError> {
+        if !self.modes.is_inverse_time {
+            return match self.feed {
+                Some(feed) => Ok(Some(feed * metres / 60.0)),
+                None => Err(self.fail(block.line, word, "a cutting move before the first feed", "F before or with it")),
+            };
+        }
+        let Some(per_minute) = block.get('F') else {
+            return Err(self.fail(block.line, word, "G93 without a feed in the block", "F with each move under G93"));
+        };
+        let length: f64 =
+            self.program.moves[from - 1..].windows(2).map(|pair| (pair[1].position - pair[0].position).norm()).sum();
+        let before = self.program.moves[from - 1].feed.unwrap_or(1e-3);
+        Ok(Some(if length > 1e-6 { length * per_minute / 60.0 } else { before }))
+    }
+
+    fn unit(&self, line: usize, word: Word) -> Result<LengthUnit, InputError> {
+        self.modes.unit.ok_or_else(|| {
+            self.fail(
+                line,
+                word,
+                "a position before its unit of length is stated",
+                "G20 or G21 before, or --units mm or inch",
+            )
+        })
+    }
+
+    pub fn fail(&self, line: usize, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
+        InputError::new(self.file, problem)
+            .at_line(line)
+            .in_field(letter.to_string())
+            .found(format!("'{letter}{value}'"))
+            .allowed(allowed)
+    }
+}
+
+/// What a code does beside setting a mode.
+enum Code {
+    Motion(Motion),
+    Home,
+    Dwell,
+    Mode,
+}

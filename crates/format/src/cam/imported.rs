@@ -1,0 +1,196 @@
+//! An imported tool path: its points as a task file, and what was found and changed.
+
+use super::segments::{Counts, Point, Resampling, expected_points, segments};
+use super::{Program, counted};
+use crate::input::InputError;
+use crate::new_file::write_new;
+use crate::task::parse_csv;
+use nalgebra::Vector3;
+use std::fmt::{self, Write};
+use std::path::Path;
+
+/// The points of a program, ready to be written as a task file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportedPath {
+    segments: Vec<Vec<Point>>,
+    counts: Counts,
+    resampling: Resampling,
+    has_feeds: bool,
+    tools: Vec<String>,
+    notes: Vec<String>,
+}
+
+/// More points than this are a step that is meant for another unit.
+const LARGEST_COUNT: f64 = 2e7;
+
+/// Feeds of cutting moves. m/s
+const FEEDS: std::ops::RangeInclusive<f64> = 1e-7..=1e2;
+/// What can be scored of a program, where nothing is.
+const SCORED: &str = "at least one cutting move at 5.05 deg or more from the tool axis";
+
+impl ImportedPath {
+    /// Resamples a program.
+    ///
+    /// # Errors
+    /// [`InputError`] where it has no cutting move that can be scored, or feeds for some cutting moves alone.
+    pub(super) fn new(file: &Path, program: Program, resampling: Resampling) -> Result<Self, InputError> {
+        let cutting = || program.moves.iter().filter(|one| !one.is_rapid);
+        let has_feeds = cutting().any(|one| one.feed.is_some());
+        if let (true, Some(without)) = (has_feeds, cutting().find(|one| one.feed.is_none())) {
+            return Err(InputError::new(file, "a cutting move before the first feed")
+                .at_line(without.line)
+                .allowed("a feed before the first cutting move, or none in the whole program"));
+        }
+        if let Some((line, feed)) =
+            cutting().find_map(|one| one.feed.filter(|feed| !FEEDS.contains(feed)).map(|feed| (one.line, feed)))
+        {
+            return Err(InputError::new(file, "a cutting move with no usual feed")
+                .at_line(line)
+                .found(format!("{:e} mm/s", feed * 1e3))
+                .allowed("a feed from 0.0001 to 100000 mm/s"));
+        }
+        let expected = expected_points(&program, resampling);
+        if expected > LARGEST_COUNT {
+            let problem = format!("{expected:.0} points within --step-mm");
+            return Err(InputError::new(file, problem)
+                .allowed(format!("{LARGEST_COUNT:.0} points at most: a larger --step-mm")));
+        }
+        let (segments, counts) = segments(&program, resampling);
+        if !segments.iter().flatten().any(|point| point.is_scored) {
+            let problem = format!("{} cutting moves, none of which can be scored", counts.cutting);
+            return Err(InputError::new(file, problem).allowed(SCORED));
+        }
+        let mut notes = Vec::new();
+        let mut note = |count: usize, text: &str| {
+            if count > 0 {
+                notes.push(format!("{count} {text}"));
+            }
+        };
+        note(counts.doubled, "moves end where they start: left out");
+        note(counts.left_out, "points left out, for which straight lines stand within the chord error");
+        note(counts.added, "points added, on lines longer than the step or turns of the tool axis by more than 5 deg");
+        note(counts.plunging, "points of plunges along the tool axis, where there is no wall: followed, not scored");
+        note(counts.turning, "points of turns of the tool in place, where there is no wall: followed, not scored");
+        notes.extend(program.notes.iter().map(|(text, count)| match count {
+            1 => text.clone(),
+            count => format!("{text} ({count} times)"),
+        }));
+        if !program.passed_over.is_empty() {
+            notes.push(format!("words passed over: {}", counted(&program.passed_over)));
+        }
+        if !has_feeds {
+            notes.push("no feed in the program: no column feed_mm_per_s".to_owned());
+        }
+        Ok(Self { segments, counts, resampling, has_feeds, tools: program.tools, notes })
+    }
+
+    /// The task file, checked as it will be read; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// [`InputError`] where a task breaks a rule that the import has not seen to.
+    pub fn csv(&self, file: &Path) -> Result<String, InputError> {
+        let mut text = String::from("segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z");
+        text.push_str(if self.has_feeds { ",feed_mm_per_s,scored\n" } else { ",scored\n" });
+        for (number, segment) in self.segments.iter().enumerate() {
+            for point in segment {
+                // Writing to a string cannot fail.
+                let _ = write!(text, "{}", number + 1);
+                for (vector, factor, digits) in
+                    [(&point.position, 1e3, 6), (&point.direction, 1.0, 9), (&point.axis, 1.0, 9)]
+                {
+                    vector.iter().for_each(|value| push_number(&mut text, value * factor, digits));
+                }
+                if let Some(feed) = point.feed {
+                    push_number(&mut text, feed * 1e3, 6);
+                }
+                text.push_str(if point.is_scored { ",1\n" } else { ",0\n" });
+            }
+        }
+        parse_csv(file, text.as_bytes())?;
+        Ok(text)
+    }
+
+    /// Writes the task file, which must not be there yet; its folder is made where there is none.
+    ///
+    /// # Errors
+    /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already or cannot be written: nothing is left behind
+    /// then.
+    pub fn write(&self, out: &Path) -> Result<(), InputError> {
+        write_new(out, &self.csv(out)?)
+    }
+
+    /// Number of segments.
+    pub fn segment_count(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// Number of points, and of those that are scored.
+    pub fn point_counts(&self) -> [usize; 2] {
+        let points = || self.segments.iter().flatten();
+        [points().count(), points().filter(|point| point.is_scored).count()]
+    }
+
+    /// What was changed and why, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn length(&self) -> f64 {
+        let steps = self.segments.iter().flat_map(|segment| segment.windows(2));
+        steps.map(|pair| (pair[1].position - pair[0].position).norm()).sum()
+    }
+
+    fn range(&self, of: impl Fn(&Point) -> Option<f64>) -> Option<[f64; 2]> {
+        let values = self.segments.iter().flatten().filter_map(of);
+        values.map(|value| [value; 2]).reduce(|[low, high], [value, _]| [low.min(value), high.max(value)])
+    }
+}
+
+/// Adds a number behind a comma, without zeros that say nothing.
+fn push_number(text: &mut String, value: f64, digits: usize) {
+    text.push(',');
+    let start = text.len();
+    // Writing to a string cannot fail.
+    let _ = write!(text, "{value:.digits$}");
+    let end = text.trim_end_matches('0').trim_end_matches('.').len();
+    text.truncate(end);
+    if &text[start..] == "-0" {
+        text.replace_range(start.., "0");
+    }
+}
+
+impl fmt::Display for ImportedPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [points, scored] = self.point_counts();
+        let Counts { cutting, rapid, .. } = self.counts;
+        let range = |of: &dyn Fn(&Point) -> Option<f64>, unit: &str| match self.range(of) {
+            Some([low, high]) if high - low < 5e-4 => format!("{low:.3} {unit}"),
+            Some([low, high]) => format!("{low:.3} to {high:.3} {unit}"),
+            None => "none".to_owned(),
+        };
+        writeln!(f, "read      {cutting} cutting and {rapid} rapid moves")?;
+        writeln!(f, "segments  {}", self.segments.len())?;
+        writeln!(f, "points    {points}, of which {scored} are scored")?;
+        writeln!(f, "length    {:.3} mm", self.length() * 1e3)?;
+        for (name, k) in [("x", 0), ("y", 1), ("z", 2)] {
+            writeln!(f, "{name:<9} {}", range(&|point| Some(point.position[k] * 1e3), "mm"))?;
+        }
+        let tilt = |point: &Point| {
+            let axis = point.axis;
+            Some(libm::atan2(axis.cross(&Vector3::z()).norm(), axis.z).to_degrees())
+        };
+        writeln!(f, "tilt      {}", range(&tilt, "deg from the z axis of the workpiece"))?;
+        writeln!(f, "feed      {}", range(&|point| point.feed.map(|feed| feed * 1e3), "mm/s"))?;
+        let Resampling { chord, step } = self.resampling;
+        writeln!(f, "chord     {} mm, step {} mm", rounded(chord * 1e3), rounded(step * 1e3))?;
+        if !self.tools.is_empty() {
+            writeln!(f, "tools     {}", self.tools.join("; "))?;
+        }
+        self.notes.iter().try_for_each(|note| writeln!(f, "- {note}"))
+    }
+}
+
+/// A setting without the digits that its unit has brought in.
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}

@@ -1,0 +1,256 @@
+//! From the moves of a program to the points of a task: runs of cutting moves between rapids, resampled.
+//!
+//! Points that a straight line stands for within the chord error are left out, and long lines are divided. Corners, changes of the feed,
+//! points of arcs and the ends of plunges and of turns in place stay where they are.
+
+use super::{Move, Program};
+use nalgebra::{Rotation3, Vector3};
+use stead_model::task::MIN_FEED_TO_AXIS_DEG;
+
+/// How densely points are taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resampling {
+    /// How far a left-out point may be from the line that stands for it. m
+    pub chord: f64,
+    /// The largest distance between points. m
+    pub step: f64,
+}
+
+impl Default for Resampling {
+    fn default() -> Self {
+        Self { chord: 1e-5, step: 1e-2 }
+    }
+}
+
+/// Ends nearer than this are the same place. m
+const SAME_PLACE: f64 = 1e-6;
+/// Tool axes nearer than this are the same. rad
+const SAME_AXIS: f64 = 1e-6;
+/// A turn of the path by more than this is a corner. rad
+const CORNER: f64 = 20.0 * std::f64::consts::PI / 180.0;
+/// How far the tool axis of a left-out point may be from that on the line. rad
+const AXIS_ERROR: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// The largest turn of the tool axis between points. rad
+const AXIS_STEP: f64 = 5.0 * std::f64::consts::PI / 180.0;
+/// A line stands for no more points than this, so that the work grows with their number alone.
+const MAX_RUN: usize = 256;
+/// A feed nearer to the tool axis than this gives no wall normal: what a task accepts, and room for rounding. rad
+const NO_WALL: f64 = (MIN_FEED_TO_AXIS_DEG + 0.05) * std::f64::consts::PI / 180.0;
+
+/// A point of a task.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Point {
+    /// m
+    pub position: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    /// Feed direction; where the point is not scored the direction from which beta counts.
+    pub direction: Vector3<f64>,
+    /// Feed of the move to it. m/s
+    pub feed: Option<f64>,
+    pub is_scored: bool,
+}
+
+/// What became of the moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Counts {
+    /// Cutting moves of the program.
+    pub cutting: usize,
+    /// Rapid moves of the program.
+    pub rapid: usize,
+    /// Moves that end where they start.
+    pub doubled: usize,
+    /// Points that a line stands for.
+    pub left_out: usize,
+    /// Points on long lines.
+    pub added: usize,
+    /// Points of plunges along the tool axis.
+    pub plunging: usize,
+    /// Points of turns of the tool in place.
+    pub turning: usize,
+}
+
+/// The end of a move.
+#[derive(Clone, Copy)]
+struct Knot {
+    position: Vector3<f64>,
+    axis: Vector3<f64>,
+    feed: Option<f64>,
+    is_fixed: bool,
+}
+
+impl Knot {
+    /// Direction from the knot before, nothing where the tool only turns.
+    fn direction(&self, before: &Self) -> Option<Vector3<f64>> {
+        (self.position - before.position).try_normalize(SAME_PLACE)
+    }
+}
+
+/// About how many points a program has at most.
+pub(super) fn expected_points(program: &Program, resampling: Resampling) -> f64 {
+    let steps = |pair: &[Move]| match pair[1].is_rapid {
+        true => 0.0,
+        false => 1.0 + (pair[1].position - pair[0].position).norm() / resampling.step,
+    };
+    program.moves.windows(2).map(steps).sum()
+}
+
+/// The segments of a program.
+pub(super) fn segments(program: &Program, resampling: Resampling) -> (Vec<Vec<Point>>, Counts) {
+    let mut counts = Counts::default();
+    let mut segments = Vec::new();
+    let mut knots: Vec<Knot> = Vec::new();
+    let mut start: Option<&Move> = None;
+    let mut close = |knots: &mut Vec<Knot>, counts: &mut Counts| {
+        if knots.len() > 1 {
+            let kept = kept(knots, resampling, counts);
+            segments.push(points(&divided(&kept, resampling, counts), counts));
+        }
+        knots.clear();
+    };
+    for (place, one) in program.moves.iter().enumerate() {
+        if one.is_rapid {
+            counts.rapid += usize::from(place > 0);
+            close(&mut knots, &mut counts);
+        } else {
+            counts.cutting += 1;
+            if let (true, Some(start)) = (knots.is_empty(), start) {
+                knots.push(Knot { position: start.position, axis: start.axis, feed: one.feed, is_fixed: true });
+            }
+            push(&mut knots, one, &mut counts);
+        }
+        start = Some(one);
+    }
+    close(&mut knots, &mut counts);
+    (segments, counts)
+}
+
+/// Adds the end of a move, unless the tool is there already.
+fn push(knots: &mut Vec<Knot>, one: &Move, counts: &mut Counts) {
+    let mut knot = Knot { position: one.position, axis: one.axis, feed: one.feed, is_fixed: one.is_arc };
+    if let Some(last) = knots.last_mut()
+        && (last.position - knot.position).norm() < SAME_PLACE
+    {
+        if angle(&last.axis, &knot.axis) < SAME_AXIS {
+            counts.doubled += 1;
+            return;
+        }
+        last.is_fixed = true;
+        (knot.position, knot.is_fixed) = (last.position, true);
+    }
+    knots.push(knot);
+}
+
+/// The knots that are left when lines stand for what is within the chord error.
+fn kept(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<Knot> {
+    let mut kept = vec![knots[0]];
+    let mut anchor = 0;
+    while anchor + 1 < knots.len() {
+        let mut end = anchor + 1;
+        while end + 1 < knots.len()
+            && end - anchor < MAX_RUN
+            && !is_fixed(knots, end)
+            && stands_for(knots, anchor, end + 1, resampling)
+        {
+            end += 1;
+        }
+        counts.left_out += end - anchor - 1;
+        kept.push(knots[end]);
+        anchor = end;
+    }
+    kept
+}
+
+/// Whether an inner knot stays whatever the chord error.
+fn is_fixed(knots: &[Knot], at: usize) -> bool {
+    let [before, here, after] = [at - 1, at, at + 1].map(|k| &knots[k]);
+    let (Some(to), Some(from)) = (here.direction(before), after.direction(here)) else { return true };
+    here.is_fixed
+        || here.feed != after.feed
+        || angle(&to, &from) > CORNER
+        || has_wall(&to, here) != has_wall(&from, here)
+}
+
+/// Whether the line between two knots is within the errors of all between them, and no longer than the step.
+fn stands_for(knots: &[Knot], from: usize, to: usize, resampling: Resampling) -> bool {
+    let (start, end) = (&knots[from], &knots[to]);
+    let way = end.position - start.position;
+    let length = way.norm();
+    if length > resampling.step || length < SAME_PLACE || angle(&start.axis, &end.axis) > AXIS_STEP {
+        return false;
+    }
+    knots[from + 1..to].iter().all(|knot| {
+        let share = ((knot.position - start.position).dot(&way) / (length * length)).clamp(0.0, 1.0);
+        let axis = start.axis * (1.0 - share) + end.axis * share;
+        (knot.position - start.position - way * share).norm() <= resampling.chord
+            && angle(&axis, &knot.axis) <= AXIS_ERROR
+    })
+}
+
+/// The knots with points between those that are too far apart.
+fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<Knot> {
+    let mut all = vec![knots[0]];
+    for pair in knots.windows(2) {
+        let (from, to) = (&pair[0], &pair[1]);
+        let turn = angle(&from.axis, &to.axis);
+        let by_length = ((to.position - from.position).norm() / resampling.step - 1e-6).ceil();
+        let parts = by_length.max((turn / AXIS_STEP - 1e-6).ceil()).max(1.0) as u32;
+        let about = nalgebra::Unit::try_new(from.axis.cross(&to.axis), 1e-12);
+        all.extend((1..parts).map(|part| {
+            let share = f64::from(part) / f64::from(parts);
+            let axis = about.map_or(from.axis, |about| Rotation3::from_axis_angle(&about, turn * share) * from.axis);
+            Knot { position: from.position + (to.position - from.position) * share, axis, ..*to }
+        }));
+        counts.added += parts as usize - 1;
+        all.push(*to);
+    }
+    all
+}
+
+/// The points with their directions: to the next point, or from the one before where there is no wall on the way to the next.
+fn points(knots: &[Knot], counts: &mut Counts) -> Vec<Point> {
+    let walled = |direction: Option<Vector3<f64>>, knot: &Knot| direction.filter(|direction| has_wall(direction, knot));
+    let directions: Vec<Option<Vector3<f64>>> = (0..knots.len())
+        .map(|k| {
+            let here = &knots[k];
+            let before = k.checked_sub(1).map(|before| &knots[before]);
+            let to = before.and_then(|before| here.direction(before));
+            let from = knots.get(k + 1).and_then(|next| next.direction(here));
+            let turned = before.is_some() && to.is_none();
+            let direction = if turned { None } else { walled(from, here).or_else(|| walled(to, here)) };
+            counts.turning += usize::from(turned);
+            counts.plunging += usize::from(!turned && direction.is_none());
+            direction
+        })
+        .collect();
+    let mut reference = directions.iter().flatten().next().copied().unwrap_or_else(Vector3::x);
+    let mut points = Vec::with_capacity(knots.len());
+    for (knot, direction) in knots.iter().zip(&directions) {
+        reference = direction.unwrap_or_else(|| across(&reference, &knot.axis));
+        points.push(Point {
+            position: knot.position,
+            axis: knot.axis,
+            direction: reference,
+            feed: knot.feed,
+            is_scored: direction.is_some(),
+        });
+    }
+    points
+}
+
+/// The direction normal to an axis that is nearest to another, or any where that is along the axis.
+fn across(direction: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+    let normal = |direction: &Vector3<f64>| (direction - axis * direction.dot(axis)).try_normalize(0.1);
+    let others = [Vector3::x(), Vector3::y()];
+    normal(direction).or_else(|| others.iter().find_map(normal)).unwrap_or_else(Vector3::x)
+}
+
+/// Whether a direction of the feed is far enough from the tool axis to tell the normal of the wall.
+fn has_wall(direction: &Vector3<f64>, knot: &Knot) -> bool {
+    let off = angle(direction, &knot.axis);
+    off > NO_WALL && std::f64::consts::PI - off > NO_WALL
+}
+
+/// The angle between two directions of any length. rad
+fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(b).norm(), a.dot(b))
+}

@@ -1,0 +1,124 @@
+//! The import against what programs say, fixture by fixture, and against programs that are broken.
+
+use super::*;
+use crate::task::{Imported, parse_csv};
+
+mod cldata_words;
+mod gcode_words;
+
+const FINE: Resampling = Resampling { chord: 1e-5, step: 1e-2 };
+
+fn settings() -> ReadSettings {
+    ReadSettings { units: None, resampling: FINE, ..ReadSettings::default() }
+}
+
+/// The moves of a program.
+fn program(text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
+    match format_of(text) {
+        Some(ProgramFormat::Gcode) => gcode::read(Path::new("f"), text, settings),
+        _ => cldata::read(Path::new("f"), text, settings),
+    }
+}
+
+/// The task of a program, as it is read back, with what is said of it.
+fn task(text: &str, settings: &ReadSettings) -> (Imported, ImportedPath) {
+    let path = import_bytes(Path::new("f"), text.as_bytes(), settings).unwrap_or_else(|e| panic!("{e}"));
+    let csv = path.csv(Path::new("out.csv")).unwrap();
+    (parse_csv(Path::new("out.csv"), csv.as_bytes()).unwrap(), path)
+}
+
+/// Asserts that a program is refused at a line and word, with all these parts in the message.
+#[track_caller]
+fn refused(text: &str, settings: &ReadSettings, place: &str, parts: &[&str]) {
+    let message = import_bytes(Path::new("f"), text.as_bytes(), settings).map(drop).unwrap_err().to_string();
+    assert!(message.starts_with(&format!("f{place}: ")), "{place} at the start of {message}");
+    for part in parts.iter().chain(&["; allowed: "]) {
+        assert!(message.contains(part), "{part} in {message}");
+    }
+}
+
+const POCKET: &str = include_str!("fixtures/pocket.cls");
+
+#[test]
+fn a_pocket_becomes_a_segment_with_its_plunge_and_its_retract_unscored() {
+    let (read, path) = task(POCKET, &settings());
+    let points = read.path.points();
+    assert_eq!(read.path.segments().len(), 1);
+    // The plunge starts 8 mm above: its start and the end of the retract are not scored, its end is.
+    assert!(!read.path.is_scored(0) && read.path.is_scored(1) && !read.path.is_scored(points.len() - 1));
+    assert_eq!(path.point_counts(), [points.len(), points.len() - 2]);
+    assert_eq!(points[1].feed, Vector3::x());
+    assert_eq!([0, 1, 2].map(|k| (read.path.feed(k).unwrap() * 1e6).round()), [5e3, 5e3, 2e4]);
+    // The corner stays, and on the arc points are as near as the chord error asks for.
+    assert!(points.iter().any(|point| (point.position - Vector3::new(0.035, 0.0, -0.005)).norm() < 1e-12));
+    let centre = Vector3::new(0.03, 0.02, -0.005);
+    let on_arc = points.iter().filter(|p| p.position.x > 0.03 && p.position.y > 0.02);
+    assert!(on_arc.clone().count() > 5 && on_arc.clone().all(|p| ((p.position - centre).norm() - 0.005).abs() < 1e-8));
+    let steps = points.windows(2).map(|pair| (pair[1].position - pair[0].position).norm());
+    assert!(steps.fold(0.0, f64::max) <= 0.01 + 1e-12);
+    let said = format!("{path}");
+    for part in ["1 moves end where they start", "2 points of plunges", "PAINT 1", "5.000 to 20.000 mm/s"] {
+        assert!(said.contains(part), "{part} in {said}");
+    }
+}
+
+#[test]
+fn turns_in_place_are_followed_and_not_scored() {
+    let text = "UNITS/MM\nFEDRAT/600\nGOTO/0,0,0,0,0,1\nGOTO/20,0,0\nGOTO/20,0,0,0,0.5,0.8660254\nGOTO/20,20,0\nFINI\n";
+    let (read, path) = task(text, &settings());
+    let turned: Vec<usize> = (1..read.path.points().len()).filter(|point| read.path.turns_in_place(*point)).collect();
+    assert_eq!(turned.len(), 6, "30 deg in steps of 5");
+    assert!(turned.iter().all(|point| !read.path.is_scored(*point)));
+    assert!(read.path.is_scored(turned[0] - 1) && read.path.is_scored(turned[5] + 1));
+    assert!(read.path.step_time(turned[0], 1.0).is_infinite());
+    assert!(path.notes().iter().any(|note| note.starts_with("6 points of turns of the tool in place")), "{path}");
+}
+
+#[test]
+fn dense_points_are_thinned_within_the_chord_error() {
+    let mut text = "UNITS/MM\nFEDRAT/MMPM,600\nRAPID\nGOTO/0,0,0\n".to_owned();
+    let wave = |x: f64| 3.0 * libm::sin(x / 15.0);
+    (1..=4000).for_each(|k| text += &format!("GOTO/{:.5},{:.5},0\n", 0.025 * f64::from(k), wave(0.025 * f64::from(k))));
+    let (read, path) = task(&(text + "FINI\n"), &settings());
+    let points = read.path.points();
+    assert!((15..300).contains(&points.len()), "{}", points.len());
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0].position * 1e3, pair[1].position * 1e3];
+        for k in 0..20 {
+            let share = f64::from(k) / 20.0;
+            let x = a.x + (b.x - a.x) * share;
+            assert!((a.y + (b.y - a.y) * share - wave(x)).abs() < 0.0105 * 1.1, "at {x}");
+        }
+    }
+    assert!(path.notes()[0].ends_with("stand within the chord error"), "{path}");
+}
+
+#[test]
+fn a_program_without_a_wall_a_format_or_a_whole_set_of_feeds_is_refused() {
+    refused("UNITS/MM\nFEDRAT/1\nGOTO/0,0,0\nGOTO/0,0,-5\nFINI\n", &settings(), "", &["1 cutting moves, none"]);
+    refused("hello world\n", &settings(), ": --format", &["neither CLDATA nor G-code", "--format cldata"]);
+    refused("", &settings(), ": --format", &["neither"]);
+    refused(
+        "UNITS/MM\nGOTO/0,0,0\nGOTO/5,0,0\nFEDRAT/9\nGOTO/9,0,0\nFINI\n",
+        &settings(),
+        ":3",
+        &["before the first feed"],
+    );
+    let (read, path) = task("UNITS/MM\nGOTO/0,0,0\nGOTO/5,0,0\nFINI\n", &settings());
+    assert_eq!(read.path.feed(1), None);
+    assert!(path.to_string().contains("no feed in the program"));
+}
+
+#[test]
+fn more_points_than_memory_holds_are_refused() {
+    let fine = ReadSettings { resampling: Resampling { chord: 1e-5, step: 1e-6 }, ..settings() };
+    refused("UNITS/MM\nGOTO/0,0,0\nGOTO/90000,0,0\nFINI\n", &fine, "", &["90000001 points", "a larger --step-mm"]);
+}
+
+#[test]
+fn feeds_that_no_machine_has_are_refused() {
+    let program = |feed: &str| format!("UNITS/MM\nGOTO/0,0,0\nFEDRAT/{feed}\nGOTO/9,0,0\nFINI\n");
+    refused(&program("1e-9"), &settings(), ":4", &["no usual feed", "e-11 mm/s", "0.0001 to 100000 mm/s"]);
+    refused(&program("1e300"), &settings(), ":3: FEDRAT", &["usual size"]);
+    refused(&program("-5"), &settings(), ":3: FEDRAT", &["not a feed", "above 0"]);
+}

@@ -1,0 +1,108 @@
+//! Every word of CLDATA, and every way to get it wrong.
+
+use super::*;
+
+/// Every word that the reader knows, in inches, turned upside down, in both orders where there are two.
+pub const EVERY_WORD: &str = include_str!("../fixtures/every_word.cls");
+
+fn line(text: &str) -> String {
+    format!("UNITS/MM\nFEDRAT/600\nGOTO/0,0,0\n{text}\nGOTO/9,9,0\nFINI\n")
+}
+
+#[test]
+fn every_word_is_understood() {
+    let read = program(EVERY_WORD, &settings()).unwrap();
+    let inch = 25.4e-3;
+    let near = |a: Vector3<f64>, b: [f64; 3]| assert!((a / inch - Vector3::from(b)).norm() < 1e-9, "{a} {b:?}");
+    // MSYS: origin at x = 1, y and z against those of the part.
+    near(read.moves[0].position, [1.0, 0.0, -2.0]);
+    assert_eq!(read.moves[0].axis, -Vector3::z());
+    assert!(read.moves[1].is_rapid && !read.moves[2].is_rapid);
+    near(read.moves[2].position, [2.0, 0.0, 0.0]);
+    let feeds: Vec<f64> = read.moves.iter().filter_map(|one| one.feed).collect();
+    for feed in [30.0 * inch / 60.0, 0.1e-3 * 100.0, 0.005 * inch * 100.0] {
+        assert!(feeds.iter().any(|own| (own - feed).abs() < 1e-12), "{feed} in {feeds:?}");
+    }
+    let arc: Vec<&Move> = read.moves.iter().filter(|one| one.is_arc).collect();
+    near(arc[arc.len() - 1].position, [3.0, -1.0, 0.0]);
+    assert!(arc.iter().all(|one| ((one.position / inch - Vector3::new(2.0, -1.0, 0.0)).norm() - 1.0).abs() < 1e-9));
+    // Counter-clockwise in the frame of the file is by way of its lower right.
+    assert!(arc.iter().any(|one| one.position.x > 2.6 * inch && one.position.y > -0.4 * inch));
+    let tilted = read.moves.iter().find(|one| one.axis.y < -0.5).unwrap();
+    assert!((tilted.axis - Vector3::new(0.0, -0.6, -0.8)).norm() < 1e-9);
+    near(read.moves.last().unwrap().position, [0.0, 0.0, 9.0]);
+    assert_eq!(read.tools, ["TLDATA/MILL,.5,0.,3.,0.,0.", "LOADTL/1"]);
+    assert_eq!(read.passed_over.keys().collect::<Vec<_>>(), ["COOLNT", "MACHIN", "PARTNO"]);
+    for note in ["CUTCOM", "MSYS", "CSYS"] {
+        assert!(read.notes.keys().any(|own| own.starts_with(note)), "{note} in {:?}", read.notes);
+    }
+}
+
+#[test]
+fn units_are_stated_once_by_file_or_option() {
+    let bare = "GOTO/0,0,0\nGOTO/9,0,0\nFINI\n";
+    refused(bare, &settings(), ": --units", &["does not state its unit", "--units mm"]);
+    let inch = ReadSettings { units: Some(LengthUnit::Inch), ..settings() };
+    assert!((program(bare, &inch).unwrap().moves[1].position.x - 9.0 * 25.4e-3).abs() < 1e-12);
+    refused(&line(""), &inch, ":1: UNITS", &["'MM'", "--units says: inch"]);
+    refused("UNIT/CM\nGOTO/0,0,0\n", &settings(), ":1: UNIT", &["names no unit", "'CM'"]);
+    refused("UNITS/MM\nUNITS/INCHES\nGOTO/0,0,0\n", &settings(), ":2: UNITS", &["one unit"]);
+}
+
+#[test]
+fn each_broken_statement_names_line_word_value_and_what_is_allowed() {
+    for (text, word, parts) in [
+        ("GOTO/1,2,nan", "GOTO", ["not finite", "'1,2,nan'"]),
+        ("GOTO/1,2,inf", "GOTO", ["not finite", "3 or 6"]),
+        ("GOTO/1,2,1e9", "GOTO", ["usual size", "3 or 6"]),
+        ("GOTO/1,2,3,0,0", "GOTO", ["5 numbers", "3 or 6"]),
+        ("GOTO/1,2", "GOTO", ["2 numbers", "3 or 6"]),
+        ("GOTO/1,2,P3", "GOTO", ["2 numbers", "'1,2,P3'"]),
+        ("GOTO/1,2,3,P4", "GOTO", ["3 numbers", "'1,2,3,P4'"]),
+        ("GOTO", "GOTO", ["0 numbers", "'GOTO'"]),
+        ("GOTO/1,2,3,0,0,0", "GOTO", ["no length", "a direction"]),
+        ("FEDRAT/0", "FEDRAT", ["not a feed", "above 0"]),
+        ("FEDRAT/MMPM", "FEDRAT", ["0 numbers", "one feed"]),
+        ("FEDRAT/MMPM,nan", "FEDRAT", ["not finite", "one feed"]),
+        ("FEDRAT/5,FURLONGS", "FEDRAT", ["not a unit of feed", "MMPM"]),
+        ("FEDRAT/.1,MMPR", "FEDRAT", ["without a spindle speed", "SPINDL"]),
+        ("MSYS/0,0,0,1,0,0,0,1", "MSYS", ["8 numbers", "9 numbers"]),
+        ("MSYS/0,0,0,0,0,0,0,1,0", "MSYS", ["no rotation", "right angles"]),
+        ("MSYS/0,0,0,1,0,0,1,0,0", "MSYS", ["no rotation", "right angles"]),
+        ("CSYS/1,0,0,0,0,1,0,0,0,0,-1,0", "CSYS", ["no rotation", "right-handed"]),
+        ("CIRCLE/0,0,0,0,0,1,5", "CIRCLE", ["7 numbers", "6 or 11"]),
+        ("CIRCLE/0,0,0,0,0,1,5,0,0,0,0,TIMES,2", "CIRCLE", ["with words", "6 or 11"]),
+        ("CIRCLE/0,0,0,0,0,1\nRAPID", "CIRCLE", ["not followed by its end", "a GOTO behind"]),
+        ("TLDATA/MILL,nan", "TLDATA", ["not finite", "'MILL,nan'"]),
+        ("NURBS/1,2", "NURBS", ["moves the tool", "GOTO, RAPID, CIRCLE and FROM"]),
+        ("CYCLE/DRILL,5", "CYCLE", ["moves the tool", "'DRILL,5'"]),
+        ("GODLTA/0,0,5", "GODLTA", ["moves the tool", "straight moves"]),
+        ("P1=POINT/0,0,0", "P1=POINT", ["moves the tool", "straight moves"]),
+    ] {
+        refused(&line(text), &settings(), &format!(":4: {word}"), &parts);
+    }
+}
+
+#[test]
+fn arcs_that_miss_are_refused_at_their_end() {
+    let arc = |circle: &str, goto: &str| line(&format!("{circle}\nGOTO/{goto}"));
+    for (circle, goto, part) in [
+        ("CIRCLE/5,0,0,0,0,1", "5,6,0", "misses its end: radius 5.0000 mm at its start, 6.0000 mm there"),
+        ("CIRCLE/5,0,0,0,0,1", "5,5,1", "1.0000 mm out of its plane"),
+        ("CIRCLE/5,0,0,0,0,0", "5,5,0", "axis of the arc has no length"),
+        ("CIRCLE/0,0,0,0,0,1", "5,5,0", "radius 0.0000 mm at its start"),
+        ("CIRCLE/5,0,0,0,0,1,4,0,0,0,0", "5,5,0", "misses its start: radius 5.0000 mm, stated 4.0000 mm"),
+    ] {
+        refused(&arc(circle, goto), &settings(), ":5: GOTO", &[part]);
+    }
+    let rapid = "UNITS/MM\nFEDRAT/600\nGOTO/0,0,0\nRAPID\nCIRCLE/5,0,0,0,0,1\nGOTO/5,5,0\n";
+    refused(rapid, &settings(), ":6: GOTO", &["RAPID and CIRCLE for the same move"]);
+    refused("UNITS/MM\nCIRCLE/5,0,0,0,0,1\nGOTO/5,5,0\n", &settings(), ":3: GOTO", &["an arc without a start"]);
+    refused("UNITS/MM\nGOTO/0,0,0\nCIRCLE/5,0,0,0,0,1", &settings(), ":3: CIRCLE", &["before the end of the arc"]);
+}
+
+#[test]
+fn a_file_that_is_cut_short_is_read_and_said_to_be() {
+    let read = program("UNITS/MM\nGOTO/0,0,0\nGOTO/9,0,0\n", &settings()).unwrap();
+    assert!(read.notes.keys().any(|note| note.contains("cut short")));
+}

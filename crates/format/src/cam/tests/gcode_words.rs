@@ -1,0 +1,138 @@
+//! Every code of G-code, and every way to get it wrong.
+
+use super::*;
+use std::f64::consts::FRAC_PI_2;
+
+/// Three axes: both ways to state arcs, three planes, incremental and absolute.
+pub const THREE_AXES: &str = include_str!("../fixtures/three_axes.nc");
+
+/// Five axes with tool centre point control and inverse time.
+pub const FIVE_AXES: &str = include_str!("../fixtures/five_axes.nc");
+
+fn line(text: &str) -> String {
+    format!("G21 G90\nG0 X0 Y0 Z0\nG1 X1 F600\n{text}\nG1 X50\nM30\n")
+}
+
+#[test]
+fn three_axes() {
+    let read = program(THREE_AXES, &settings()).unwrap();
+    let ends = |line: usize| read.moves.iter().rfind(|one| one.line == line).unwrap();
+    let near = |line: usize, mm: [f64; 3]| {
+        assert!((ends(line).position * 1e3 - Vector3::from(mm)).norm() < 1e-9, "{line}: {}", ends(line).position);
+    };
+    near(16, [30.0, 10.0, -1.0]);
+    near(17, [40.0, 20.0, -1.0]);
+    near(18, [45.0, 20.0, -1.0]);
+    near(20, [55.0, 20.0, -1.0]);
+    // G3 about (20, 10), G2 about (40, 10), and in the plane of x and z the lower half about (50, 20, -1).
+    let on = |line: usize, centre: [f64; 3], radius: f64| {
+        let own: Vec<&Move> = read.moves.iter().filter(|one| one.line == line).collect();
+        assert!(own.len() > 3);
+        own.iter().all(|one| ((one.position * 1e3 - Vector3::from(centre)).norm() - radius).abs() < 1e-9)
+    };
+    assert!(on(16, [20.0, 10.0, -1.0], 10.0) && on(17, [40.0, 10.0, -1.0], 10.0) && on(20, [50.0, 20.0, -1.0], 5.0));
+    assert!(read.moves.iter().any(|one| one.line == 20 && one.position.z < -5.9e-3));
+    assert_eq!(ends(14).feed, Some(5e-3));
+    assert_eq!(ends(15).feed, Some(0.02));
+    assert!(ends(13).is_rapid && ends(23).is_rapid);
+    assert_eq!(read.tools, ["T1"]);
+}
+
+#[test]
+fn five_axes_with_and_without_tool_centre_point_control() {
+    let machine = |machine| ReadSettings { machine: Some(machine), ..settings() };
+    let read = program(FIVE_AXES, &machine(Machine::TableAc)).unwrap();
+    let turned: Vec<&Move> = read.moves.iter().filter(|one| one.line == 7).collect();
+    assert_eq!(turned.len(), 15, "30 deg in steps of 2");
+    let [a, c] = [20.0_f64, 30.0].map(f64::to_radians);
+    let axis = Vector3::new(libm::sin(c) * libm::sin(a), -libm::cos(c) * libm::sin(a), libm::cos(a));
+    assert!((turned[14].axis - axis).norm() < 1e-12 && (turned[14].position.x - 0.04).abs() < 1e-12);
+    // Inverse time: 20 mm, 30 times a minute.
+    let inverse = read.moves.iter().rfind(|one| one.line == 8).unwrap();
+    assert!((inverse.feed.unwrap() - 0.02 * 30.0 / 60.0).abs() < 1e-12);
+    let text = "G21 G90\nG0 X2 Y0 Z5 B0 C0\nG1 C90 F600\nX3\nM30\n";
+    let pivot = Some(Vector3::new(1e-3, 0.0, 0.0));
+    let read = program(text, &ReadSettings { pivot, ..machine(Machine::TableBc) }).unwrap();
+    let end = read.moves.iter().rfind(|one| one.line == 3).unwrap();
+    assert!((end.position * 1e3 - Vector3::new(1.0, 1.0, 5.0)).norm() < 1e-9);
+    let head = text.replace("C90", "B90");
+    let read = program(&head, &ReadSettings { pivot: Some(Vector3::z() * 0.3), ..machine(Machine::HeadBc) }).unwrap();
+    let end = read.moves.iter().rfind(|one| one.line == 3).unwrap();
+    assert!((end.axis - Vector3::x()).norm() < 1e-12);
+    assert!((end.position - Vector3::new(2e-3 - 0.3, 0.0, 5e-3 + 0.3)).norm() < 1e-12);
+    let controlled = ReadSettings { tool_centre_point: true, ..machine(Machine::HeadBc) };
+    let read = program(&head, &controlled).unwrap();
+    assert!((read.moves.iter().rfind(|one| one.line == 3).unwrap().position.x - 2e-3).abs() < 1e-12);
+    let quarter = Machine::TableAc.workpiece_from_tool([FRAC_PI_2, 0.0, 0.0]);
+    assert!((quarter.column(2) + Vector3::y()).norm() < 1e-12);
+}
+
+#[test]
+fn rotary_axes_may_be_set_by_rapids_before_tool_centre_point_control() {
+    let machine = ReadSettings { machine: Some(Machine::TableAc), ..settings() };
+    let text = "G21 G90\nG0 X0 Y0 Z0 A-20 C90\nG43.4 H1\nG0 X5 Y0 Z9\nG1 Z0 F600\nX20\nG49\nG0 Z90\nG0 A0 C0\nG0 X1 Y1 Z1\nG1 X9\nM30\n";
+    let read = program(text, &machine).unwrap();
+    let lines: Vec<(usize, bool)> = read.moves.iter().map(|one| (one.line, one.is_rapid)).collect();
+    assert_eq!(lines, [(4, true), (5, false), (6, false), (10, true), (11, false)]);
+    assert!(
+        (read.moves[0].axis - Vector3::new(libm::sin((-20.0_f64).to_radians()), 0.0, read.moves[0].axis.z)).norm()
+            < 1e-9
+    );
+    assert!(read.notes.keys().any(|note| note.contains("where it is then is not known")), "{:?}", read.notes);
+    assert!(read.notes.contains_key("angles of table-ac, with tool centre point control"), "{:?}", read.notes);
+    // A cut with the tool turned and the control off is refused, with or without the angle in the block.
+    refused(&text.replace("G0 Z90\n", "G1 Z90\n"), &machine, ":8: Z", &["without tool centre point control"]);
+    refused(&text.replace("G43.4", "G43"), &machine, ":5: Z", &["without tool centre point control", "--pivot-mm"]);
+}
+
+#[test]
+fn each_broken_block_names_line_word_value_and_what_is_allowed() {
+    for (text, word, parts) in [
+        ("G2 X10 Y10 I5 J1", "I", ["misses its end", "same radius"]),
+        ("G2 X11 R1", "R", ["less than half the way", "a larger radius"]),
+        ("G2 X1 R1", "R", ["full circle by its radius", "I, J, K"]),
+        ("G2 X10", "X", ["without a centre or radius", "I, J, K or R"]),
+        ("G2 X11 I5 R5", "R", ["a radius and a centre", "R, or I"]),
+        ("G2 X11 I5 K2", "I", ["out of the plane", "G17"]),
+        ("G3 X11 I5 P3", "P", ["several turns", "one turn"]),
+        ("G1 X11 I5", "I", ["without an arc", "G2 and G3"]),
+        ("G0 G1 X11", "G", ["two ways to move", "one of G0"]),
+        ("G1 X11 X12", "X", ["twice in a block", "'X12'"]),
+        ("G20", "G", ["contradicts the unit", "'G20'"]),
+        ("G54 G1 X5\nG55", "G", ["second work offset", "one of G54 to G59"]),
+        ("G1 X1e", "", ["not a letter with a number", "X-1.5"]),
+        ("G1 Xnan", "", ["not a letter with a number", "'Xnan'"]),
+        ("G1 X1e9", "E", ["a letter that is not known", "'E9'"]),
+        ("G1 X99999999", "X", ["usual size", "100 m"]),
+        ("G1 F0 X5", "F", ["not a feed", "above 0"]),
+        ("G93 G1 X5", "X", ["G93 without a feed", "F with each"]),
+        ("G83 X5 R2 Z-9", "G", ["not known here", "G0-G4"]),
+        ("G41 D1", "G", ["not known here", "'G41'"]),
+        ("G1 X5 A3", "A", ["machine that is not named", "--machine table-ac"]),
+        ("G1 X5 (open", "", ["not a letter", "( )"]),
+    ] {
+        let at = if text.contains('\n') { 5 } else { 4 };
+        let place = if word.is_empty() { format!(":{at}") } else { format!(":{at}: {word}") };
+        refused(&line(text), &settings(), &place, &parts);
+    }
+    refused("G90 G0 X1 Y1 Z1\n", &settings(), ":1: X", &["before its unit of length", "--units mm"]);
+    refused("G21\nX1 Y1\n", &settings(), ":2: X", &["before any of G0 to G3"]);
+    refused("G21 G0 X0 Y0 Z0\nG1 X5\n", &settings(), ":2: X", &["before the first feed"]);
+    refused("G21 G91\nG0 X5\n", &settings(), ":2: X", &["G91 from where the tool is not known"]);
+    let machine = ReadSettings { machine: Some(Machine::TableAc), ..settings() };
+    refused(&line("G1 A5"), &machine, ":4: A", &["without tool centre point control", "--tcp", "--pivot-mm"]);
+    refused(&line("G1 B5"), &machine, ":4: B", &["not a rotary axis of table-ac"]);
+}
+
+#[test]
+fn other_languages_are_refused_by_name() {
+    for (text, name) in [
+        ("0 BEGIN PGM PART MM\n1 L X+5 R0 FMAX\n", "Heidenhain conversational"),
+        ("%\nO1\n#100=5\n", "a macro program (variables)"),
+        ("G21\nWHILE [#1 LT 5] DO1\n", "a macro program"),
+        ("G21\no<part> sub\n", "a macro program (O-words)"),
+    ] {
+        let message = import_bytes(Path::new("f"), text.as_bytes(), &settings()).map(drop).unwrap_err().to_string();
+        assert!(message.contains(name) && message.contains("is not read"), "{message}");
+    }
+}

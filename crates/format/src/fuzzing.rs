@@ -1,0 +1,151 @@
+//! The readers of files from elsewhere as the fuzzers (`fuzz/`) and the tests run them: whatever bytes come, an answer, no panic, and what
+//! an answer promises.
+
+use crate::cam::gcode::Machine;
+use crate::cam::{LengthUnit, ProgramFormat, ReadSettings, Resampling, import_bytes};
+use crate::input::InputError;
+use crate::task::parse_csv;
+use crate::urdf::{ImportOptions, import_robot_text};
+use std::path::Path;
+
+/// A reader of files that others write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reader {
+    /// Robots.
+    Urdf,
+    /// Tool paths as cutter location data.
+    Cldata,
+    /// Tool paths as G-code.
+    Gcode,
+    /// Tool paths as CSV.
+    Task,
+}
+
+impl Reader {
+    /// Reads a file; whether it was taken.
+    ///
+    /// # Errors
+    /// A sentence where an answer does not hold what it promises: an error in one line that names the file and what is allowed, an imported
+    /// path that is read back as a task with as many points.
+    pub fn check(self, bytes: &[u8]) -> Result<bool, String> {
+        let file = Path::new("file");
+        let taken = match self {
+            Self::Urdf => {
+                import_robot_text(file, &String::from_utf8_lossy(bytes), &ImportOptions::default()).map(|robot| {
+                    let _ = robot.to_string();
+                })
+            }
+            Self::Task => parse_csv(file, bytes).map(drop),
+            Self::Cldata | Self::Gcode => match import_bytes(file, bytes, &self.settings(bytes)) {
+                Ok(path) => {
+                    let _ = path.to_string();
+                    let text = path.csv(file).map_err(|error| format!("an imported path is no task: {error}"))?;
+                    let read = parse_csv(file, text.as_bytes()).map_err(|error| error.to_string())?;
+                    let [points, scored] = path.point_counts();
+                    if [read.path.points().len(), read.path.scored_count()] != [points, scored] {
+                        return Err(format!("{points} points, {scored} scored, come back as others"));
+                    }
+                    Ok(())
+                }
+                Err(error) => Err(error),
+            },
+        };
+        match taken {
+            Ok(()) => Ok(true),
+            Err(error) => promised(&error).map(|()| false),
+        }
+    }
+
+    /// Settings of many kinds; long lines are not divided, so that there are few points.
+    fn settings(self, bytes: &[u8]) -> ReadSettings {
+        let kind = bytes.len();
+        let format = if self == Self::Gcode { ProgramFormat::Gcode } else { ProgramFormat::Cldata };
+        let gcode = self == Self::Gcode;
+        ReadSettings {
+            format: Some(format),
+            units: (gcode && kind.is_multiple_of(3)).then_some(LengthUnit::Millimetre),
+            machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),
+            pivot: (gcode && kind % 7 < 2).then(|| nalgebra::Vector3::z() * 0.3),
+            tool_centre_point: kind % 7 == 6,
+            resampling: Resampling { chord: 1e-3, step: 1.0 },
+        }
+    }
+}
+
+/// What every error of a reader promises.
+fn promised(error: &InputError) -> Result<(), String> {
+    let message = error.to_string();
+    let is_kept = message.starts_with("file") && message.contains("; allowed: ") && message.lines().count() == 1;
+    if is_kept {
+        Ok(())
+    } else {
+        Err(format!("an error without file, what is allowed, or over several lines: {message}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Reader;
+    use rand::{Rng, RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const URDF: [&str; 2] = [include_str!("urdf/fixtures/kuka.urdf"), include_str!("urdf/fixtures/abb.urdf")];
+    const CLDATA: [&str; 2] = [include_str!("cam/fixtures/pocket.cls"), include_str!("cam/fixtures/every_word.cls")];
+    const GCODE: [&str; 2] = [include_str!("cam/fixtures/three_axes.nc"), include_str!("cam/fixtures/five_axes.nc")];
+    const TASK: [&str; 2] =
+        [include_str!("../../../tasks/five-segments.csv"), include_str!("cam/fixtures/followed.csv")];
+
+    /// Runs so many fixtures with mutations; how many were taken.
+    fn run(reader: Reader, fixtures: &[&str], runs: usize) -> usize {
+        let mut random = ChaCha8Rng::seed_from_u64(16);
+        let taken = |run: usize| {
+            let mut bytes = fixtures[run % fixtures.len()].as_bytes().to_vec();
+            (0..random.random_range(1..4)).for_each(|_| mutate(&mut bytes, &mut random));
+            reader.check(&bytes).unwrap_or_else(|broken| panic!("{broken}: {:?}", String::from_utf8_lossy(&bytes)))
+        };
+        (0..runs).map(taken).filter(|taken| *taken).count()
+    }
+
+    /// One change of a text: a byte, a piece left out, doubled or cut off, a number put in.
+    fn mutate(bytes: &mut Vec<u8>, random: &mut impl Rng) {
+        const PUT_IN: [&str; 10] = ["nan", "-inf", "1e308", "1e-308", "-0", "0", "1e9", "$", "/", ",,"];
+        if bytes.is_empty() {
+            return;
+        }
+        let at = random.random_range(0..bytes.len());
+        let end = (at + random.random_range(1..30)).min(bytes.len());
+        match random.random_range(0..6) {
+            0 => bytes[at] = random.random(),
+            1 => drop(bytes.drain(at..end)),
+            2 => {
+                let piece = bytes[at..end].to_vec();
+                let to = random.random_range(0..bytes.len());
+                drop(bytes.splice(to..to, piece));
+            }
+            3 if random.random_range(0..8) == 0 => bytes.truncate(at),
+            4 => drop(bytes.splice(at..end.min(at + 3), PUT_IN[random.random_range(0..PUT_IN.len())].bytes())),
+            _ => bytes[at] = b"0123456789.-,/$\n GXYZFIJKR"[random.random_range(0..26)],
+        }
+    }
+
+    /// All readers on so many fixtures with mutations each.
+    fn run_all(runs: usize) {
+        for (reader, fixtures) in
+            [(Reader::Urdf, URDF), (Reader::Cldata, CLDATA), (Reader::Gcode, GCODE), (Reader::Task, TASK)]
+        {
+            let share = run(reader, &fixtures, runs) as f64 / runs as f64;
+            assert!((0.025..0.975).contains(&share), "{reader:?}: {share} of {runs} are taken");
+        }
+    }
+
+    #[test]
+    fn every_reader_keeps_its_promises_on_fixtures_with_mutations() {
+        run_all(20_000);
+    }
+
+    #[test]
+    #[ignore = "a longer look at the same"]
+    fn a_million_times() {
+        run_all(1_000_000);
+    }
+}

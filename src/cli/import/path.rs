@@ -1,0 +1,99 @@
+//! `stead import path`: a task file from a tool path of a CAM system.
+
+use super::super::values::{finite, positive};
+use super::super::{Failure, print, say_notes};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::path::PathBuf;
+use stead::{LengthUnit, Machine, PathSettings, ProgramFormat, Resampling, import_path};
+
+#[derive(Debug, Args)]
+pub(in super::super) struct PathOptions {
+    /// Tool path (CLDATA or G-code)
+    pub program: PathBuf,
+    /// Task file (CSV) to write; it must not be there yet
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Largest distance between path points in mm
+    #[arg(long, value_name = "S", default_value = "10", value_parser = step, allow_hyphen_values = true)]
+    pub step_mm: f64,
+    /// How far a point that is left out may be from the line that stands for it, in mm
+    #[arg(long, value_name = "C", default_value = "0.01", value_parser = chord, allow_hyphen_values = true)]
+    pub chord_mm: f64,
+    /// Unit of length, where the file does not state it
+    #[arg(long, value_parser = PossibleValuesParser::new(["mm", "inch"]).map(|word| unit(&word)))]
+    pub units: Option<LengthUnit>,
+    /// What the file is written in [default: told from the file]
+    #[arg(long, value_parser = PossibleValuesParser::new(["cldata", "gcode"]).map(|word| format(&word)))]
+    pub format: Option<ProgramFormat>,
+    /// Machine that G-code with rotary axes is for
+    #[arg(long, value_parser = PossibleValuesParser::new(Machine::ALL.map(|(word, _)| word)).try_map(|word| machine(&word)))]
+    pub machine: Option<Machine>,
+    /// Take tool centre point control as on though the G-code has no G43.4
+    #[arg(long)]
+    pub tcp: bool,
+    /// Where the rotary axes meet, for G-code without it: in the workpiece frame, or for a head from the tool tip upright
+    #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true, conflicts_with = "tcp")]
+    pub pivot_mm: Option<[f64; 3]>,
+    /// Print segments, points, length, extents, tilt, feeds, and what was changed and why
+    #[arg(long)]
+    pub report: bool,
+}
+
+pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
+    let settings = PathSettings {
+        format: options.format,
+        units: options.units,
+        machine: options.machine,
+        pivot: options.pivot_mm.map(|mm| mm.map(|mm| mm / 1e3).into()),
+        tool_centre_point: options.tcp,
+        resampling: Resampling { chord: options.chord_mm / 1e3, step: options.step_mm / 1e3 },
+    };
+    let path = import_path(&options.program, &settings).map_err(stead::Error::from)?;
+    path.write(&options.out).map_err(stead::Error::from)?;
+    let report = if options.report {
+        format!("{path}\n")
+    } else {
+        say_notes(path.notes());
+        String::new()
+    };
+    let [points, scored] = path.point_counts();
+    let segments = path.segment_count();
+    let out = options.out.display();
+    print(format!("{report}written: {out}: {segments} segments, {points} points, {scored} of them scored\n").as_bytes())
+}
+
+fn unit(word: &str) -> LengthUnit {
+    if word == "inch" { LengthUnit::Inch } else { LengthUnit::Millimetre }
+}
+
+fn format(word: &str) -> ProgramFormat {
+    if word == "gcode" { ProgramFormat::Gcode } else { ProgramFormat::Cldata }
+}
+
+fn machine(word: &str) -> Result<Machine, String> {
+    let found = Machine::ALL.into_iter().find(|(own, _)| *own == word);
+    found.map(|(_, machine)| machine).ok_or_else(|| "not a machine".to_owned())
+}
+
+/// A length from 0.01 to 1000 mm.
+fn step(text: &str) -> Result<f64, String> {
+    let allowed = || "allowed: a number from 0.01 to 1000".to_owned();
+    positive(text).ok().filter(|step| (0.01..=1000.0).contains(step)).ok_or_else(allowed)
+}
+
+/// A length from 0.0001 to 10 mm.
+fn chord(text: &str) -> Result<f64, String> {
+    let allowed = || "allowed: a number from 0.0001 to 10".to_owned();
+    positive(text).ok().filter(|chord| (1e-4..=10.0).contains(chord)).ok_or_else(allowed)
+}
+
+fn place(text: &str) -> Result<[f64; 3], String> {
+    let allowed = || "allowed: three numbers up to 10000, as in 0,0,150".to_owned();
+    let number = |text: &str| finite(text.trim()).ok().filter(|value| value.abs() <= 1e4);
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Some([x, y, z]) => Ok([*x, *y, *z]),
+        _ => Err(allowed()),
+    }
+}

@@ -1,0 +1,154 @@
+//! `stead import path` from outside: what it writes, says and refuses, and that what it writes can be placed.
+
+use crate::common::Bench;
+
+/// A plunge, a cut, a turn of the tool in place, a cut at another feed, a retract; then a second cut.
+const PROGRAM: &str = "\
+TOOL PATH/SLOT,TOOL,MILL_16
+UNITS/MM
+SPINDL/RPM,9000,CLW
+RAPID
+GOTO/0.,0.,60.,0.,0.,1.
+RAPID
+GOTO/0.,0.,12.
+FEDRAT/MMPM,300.
+GOTO/0.,0.,0.
+FEDRAT/MMPM,1800.
+GOTO/60.,0.,0.
+GOTO/60.,0.,0.,0.,.1736482,.9848078
+FEDRAT/MMPM,1200.
+GOTO/60.,40.,0.
+GOTO/60.,42.083778,11.817694
+RAPID
+GOTO/0.,0.,60.,0.,0.,1.
+RAPID
+GOTO/0.,40.,0.
+GOTO/60.,40.,0.
+COOLNT/OFF
+END-OF-PATH
+FINI
+";
+
+const IMPORT: [&str; 7] = ["import", "path", "slot.cls", "--out", "new/task.csv", "--step-mm", "20"];
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.write("slot.cls", PROGRAM);
+    bench
+}
+
+#[test]
+fn writes_a_task_and_says_what_was_changed() {
+    let bench = bench();
+    let ended = bench.stead(&[&IMPORT[..], &["--report"]].concat());
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    for part in [
+        "read      6 cutting and 3 rapid moves",
+        "segments  2",
+        "points    14, of which 10 are scored",
+        "tilt      0.000 to 10.000 deg",
+        "feed      5.000 to 30.000 mm/s",
+        "- 2 points of plunges",
+        "- 2 points of turns of the tool in place",
+        "- words passed over: COOLNT 1",
+        "written: new/task.csv: 2 segments, 14 points, 10 of them scored",
+    ] {
+        assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
+    }
+    let task = bench.read("new/task.csv");
+    assert_eq!(task.lines().next().unwrap().split(',').skip(10).collect::<Vec<_>>(), ["feed_mm_per_s", "scored"]);
+    assert_eq!(task.lines().count(), 15);
+    let again = bench.stead(&IMPORT);
+    assert_eq!((again.code, again.stdout.as_str()), (Some(2), ""));
+    again.assert_says(&["error: new/task.csv: is there already", "; allowed: "]);
+    assert_eq!(bench.read("new/task.csv"), task);
+}
+
+#[test]
+fn nothing_is_written_on_an_error() {
+    let bench = bench();
+    bench.replace("slot.cls", "GOTO/60.,40.,0.", "GOTO/60.,40.,nan");
+    let before = bench.tree("");
+    let ended = bench.stead(&IMPORT);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+    ended.assert_says(&["error: slot.cls:14: GOTO: ", "found '60.,40.,nan'", "; allowed: 3 or 6 finite numbers"]);
+    for (option, value) in [("--step-mm", "0"), ("--chord-mm", "nan"), ("--machine", "table-ab"), ("--pivot-mm", "1,2")]
+    {
+        let ended = bench.stead(&["import", "path", "slot.cls", "--out", "new/task.csv", option, value]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{option}");
+        ended.assert_says(&[option, value]);
+    }
+    let missing = bench.stead(&["import", "path", "none.cls", "--out", "new/task.csv"]);
+    assert_eq!(missing.code, Some(2));
+    missing.assert_says(&["none.cls: cannot be read"]);
+    assert_eq!(bench.tree(""), before);
+}
+
+/// Bad programs, each with where it is refused, the word, what was found, and what is allowed.
+#[test]
+fn each_bad_program_is_refused_in_one_line_and_nothing_is_written() {
+    const CUT: &str = "UNITS/MM\nFEDRAT/MMPM,600\nGOTO/0,0,0,0,0,1\n";
+    const CODES: &str = "G21 G90\nG0 X0 Y0 Z0\nG1 X1 F600\n";
+    for (start, text, said) in [
+        (CUT, "GOTO/1,nan,3", [":4: GOTO: ", "found '1,nan,3'", "3 or 6 finite numbers"]),
+        (CUT, "GOTO/1,2,3,0,1", [":4: GOTO: ", "found '1,2,3,0,1'", "3 or 6 finite numbers"]),
+        (CUT, "CIRCLE/5,0,0,0,0,1\nGOTO/5,6,0", [":5: GOTO: the arc misses its end", "found '5,6,0'", "0.05 mm"]),
+        (CUT, "CIRCLE/5,0,0,0,0,0\nGOTO/5,5,0", [":5: GOTO: the axis of the arc", "found '5,5,0'", "a direction"]),
+        (CUT, "GOTO/1,2,3,0,0,0", [":4: GOTO: the tool axis has no length", "found '1,2,3,0,0,0'", "a direction"]),
+        (CUT, "GODLTA/0,0,5", [":4: GODLTA: moves the tool", "found '0,0,5'", "GOTO, RAPID, CIRCLE and FROM"]),
+        (CUT, "UNITS/INCHES", [":4: UNITS: is not what the file before says", "found 'INCHES'", "one unit"]),
+        (CUT, "MSYS/0,0,0,1,0,0,1,0,0", [":4: MSYS: ", "found '0,0,0,1,0,0,1,0,0'", "right angles"]),
+        (
+            "",
+            "GOTO/0,0,0\nGOTO/9,0,0",
+            [": --units: does not state its unit", "UNITS/MM", "--units mm or --units inch"],
+        ),
+        (CODES, "G0 G1 X11", [":4: G: two ways to move", "found 'G1'", "one of G0, G1, G2, G3"]),
+        (CODES, "G20 X2", [":4: G: contradicts the unit", "found 'G20'", "one unit of length"]),
+        (CODES, "G2 X11 I5 R5", [":4: R: a radius and a centre", "found 'R5'", "R, or I, J and K"]),
+        (CODES, "G3 X11 I4", [":4: I: the arc misses its end", "found 'I4'", "the same radius"]),
+        (CODES, "G1 X5 A3", [":4: A: a rotary axis of a machine", "found 'A3'", "--machine table-ac"]),
+        ("", "0 BEGIN PGM PART MM", [":1: Heidenhain conversational is not read", "'0 BEGIN PGM PART MM'", "CLDATA"]),
+        (CODES, "#100 = 3", [":4: a macro program (variables) is not read", "found '#100 = 3'", "numbers alone"]),
+    ] {
+        let bench = Bench::new();
+        bench.write("bad", &format!("{start}{text}\nGOTO/9,9,0\n"));
+        let before = bench.tree("");
+        let ended = bench.stead(&["import", "path", "bad", "--out", "new/task.csv", "--report"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{text}");
+        assert_eq!(ended.stderr.trim_end().lines().count(), 1, "{}", ended.stderr);
+        let [place, found, allowed] = said;
+        ended.assert_says(&[&format!("error: bad{place}"), found, "; allowed: ", allowed]);
+        assert_eq!(bench.tree(""), before, "{text}");
+    }
+}
+
+#[test]
+fn an_imported_path_is_placed_with_stated_forces() {
+    let bench = bench();
+    assert_eq!(bench.stead(&["init", "place", "new"]).code, Some(0));
+    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    assert_eq!(bench.stead(&IMPORT).code, Some(0));
+    let refused = bench.stead(&["place", "new/run.toml"]);
+    assert_eq!(refused.code, Some(2));
+    refused.assert_says(&["task: has no force columns", "[tool] and [cut]", "[forces] with feed_n"]);
+    let forces = "[forces]\nfeed_n = -90.0\nnormal_n = -25.0\naxis_n = 10.0\n";
+    let run = bench.read("new/run.toml").replace("max_beta_rate_deg_per_mm = 0.9", "max_beta_rate_deg_per_mm = 9.0");
+    let run =
+        run.replace("population = 32\ngenerations = 8\nbasins = 2", "population = 12\ngenerations = 2\nbasins = 1");
+    bench.write("new/run.toml", &format!("{run}\n{forces}"));
+    let ended = bench.stead(&["place", "new/run.toml", "--out", "out", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let best = bench.read("out/best.csv");
+    let header: Vec<&str> = best.lines().next().unwrap().split(',').collect();
+    let column =
+        |name: &str| header.iter().position(|own| *own == name).unwrap_or_else(|| panic!("{name} in {header:?}"));
+    let score = column("score_mm");
+    let scores: Vec<f64> =
+        best.lines().skip(1).map(|row| row.split(',').nth(score).unwrap().parse().unwrap()).collect();
+    assert_eq!((scores.len(), scores.iter().filter(|score| **score == 0.0).count()), (14, 4));
+    let document = ended.json();
+    let case = &document["cases"][0];
+    let mean = case["mean_mm"].as_f64().unwrap();
+    assert!((mean / (scores.iter().sum::<f64>() / 10.0) - 1.0).abs() < 1e-4, "{mean} {scores:?}");
+}
