@@ -30,6 +30,7 @@ pub mod manifest;
 mod new_file;
 pub mod place;
 mod placed;
+mod plan;
 mod points;
 pub mod published_tables;
 pub mod quantity;
