@@ -28,6 +28,7 @@ pub mod init;
 pub mod input;
 pub mod manifest;
 mod new_file;
+pub mod orientation;
 pub mod place;
 mod placed;
 mod plan;

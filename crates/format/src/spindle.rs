@@ -2,12 +2,13 @@
 
 use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
 use crate::input::InputError;
+use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
-use crate::units::{Kg, Mm, Positive};
+use crate::units::{Deg, Kg, Mm, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_model::robot::Spindle;
+use stead_model::robot::{Pose, Spindle};
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
 /// point and its z axis along the tool, out of the spindle to the work.
@@ -15,8 +16,17 @@ use stead_model::robot::Spindle;
 pub struct SpindleTable {
     /// Tool centre point in the flange frame.
     pub xyz_mm: Vector<Mm>,
-    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame.
-    pub rotation: Matrix,
+    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame;
+    /// exactly one of this and the four keys below.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
     /// Mass of all that the flange carries: spindle, holder and tool. Needed where motion or stability is computed.
     pub mass_kg: Option<Kg<Positive>>,
     /// Centre of mass of all that the flange carries, in the flange frame.
@@ -31,11 +41,9 @@ impl SpindleTable {
     /// # Errors
     /// [`InputError`] with file, line and field: a matrix that is no rotation, a body that cannot be.
     pub(crate) fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
-        let mut spindle = Spindle::new(self.rotation.matrix(), self.xyz_mm.vector()).map_err(|problem| {
-            let tolerance = Spindle::ROTATION_TOLERANCE;
-            let rule = format!("a right-handed rotation matrix [row, row, row] within {tolerance}");
-            at.key("rotation").error(problem, rule)
-        })?;
+        let flange_from_tool =
+            Pose { rotation: orientation_keys!(self).rotation(at)?, translation: self.xyz_mm.vector() };
+        let mut spindle = Spindle { flange_from_tool, payload: None };
         if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() || self.inertia_kg_m2.is_some() {
             spindle.payload = Some(inertial_from(self.mass_kg, self.centre_of_mass_mm, self.inertia_kg_m2, at)?);
         }

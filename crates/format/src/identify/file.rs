@@ -1,6 +1,7 @@
 //! What an identification file declares.
 
 use super::plan::PlanTable;
+use crate::orientation::Quaternion;
 use crate::scalars::Whole;
 use crate::shapes::{List, Matrix, Vector};
 use crate::units::*;
@@ -56,8 +57,16 @@ pub struct CompensatorGeometryTable {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BaseTable {
     /// Rotation from the base frame of the robot to the tracker's frame, by rows, to start the search from; without it all
-    /// orientations are tried.
-    pub rotation: Matrix,
+    /// orientations are tried. Exactly one of this and the four keys below.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
 }
 
 /// What is identified.

@@ -14,6 +14,7 @@ use super::robot::robot_from;
 use super::sheet::sheet_from;
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile, input_file};
+use crate::orientation::orientation_keys;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, joint_set};
@@ -24,7 +25,7 @@ use stead_calibration::identification::Problem;
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::spring::Geometry;
 use stead_model::plausibility;
-use stead_model::robot::{Compliance, Robot, Spindle};
+use stead_model::robot::{Compliance, Robot};
 
 /// An identification file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,7 +109,7 @@ impl Shared {
         let robot = robot_from(&robot_source)?;
         let given =
             file.compensator.map(|table| compensator_from(&table, &at.key("compensator"), &robot)).transpose()?;
-        let start = file.base.map(|table| base_from(&table, &at.key("base"))).transpose()?;
+        let start = file.base.map(|table| orientation_keys!(table).rotation(&at.key("base"))).transpose()?;
         let fit = file.fit.clone().unwrap_or_default();
         let hold = fit.hold.map(|joints| held_from(&joints, &at.key("fit").key("hold"))).transpose()?;
         let (varying, note) = varying_from(&robot, given, fit.distinct_q2.unwrap_or_default());
@@ -181,13 +182,4 @@ fn varying_from(
         )
     });
     (varying, note)
-}
-
-fn base_from(table: &BaseTable, at: &Place<'_>) -> Result<Matrix3<f64>, InputError> {
-    let placed = Spindle::new(table.rotation.matrix(), Vector3::zeros()).map_err(|problem| {
-        let tolerance = Spindle::ROTATION_TOLERANCE;
-        let rule = format!("a right-handed rotation matrix [row, row, row] within {tolerance}");
-        at.key("rotation").error(problem, rule)
-    })?;
-    Ok(placed.flange_from_tool.rotation)
 }

@@ -2,10 +2,13 @@
 
 use super::one_or_range::OneOrRange;
 use crate::inertial::InertiaTable;
-use crate::shapes::{List, Vector};
+use crate::orientation::Quaternion;
+use crate::scalars::Word;
+use crate::shapes::{Array, List, Matrix, Vector};
 use crate::units::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use stead_model::robot::ControllerKind;
 
 /// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm and
 /// angles in deg, as the keys say; every number needs a source.
@@ -21,10 +24,45 @@ pub struct RobotFile {
     pub working_radius_mm: Option<Mm<Positive>>,
     /// Price.
     pub price_eur: Option<Eur<Positive>>,
+    /// How the controller counts joint angles; needed for programs.
+    pub controller: Option<ControllerTable>,
+    /// Where the base frame of the rows is in the controller's robot root; needed for programs.
+    pub root: Option<RootTable>,
     /// The six joints, base first.
     pub joints: Vec<JointRow>,
     /// How well the compliances are known: what `stead identify fit` writes.
     pub covariance: Option<CovarianceTable>,
+}
+
+/// The controller's joint angles A_i against those of the rows: theta_i = sign_i A_i + offset_i.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ControllerTable {
+    /// Whose controller it is: it decides which programs can be written.
+    pub kind: Word<ControllerKind>,
+    /// 1 for each axis that the controller counts in the direction of the row, else -1.
+    pub sign: Array<Number, 6>,
+    /// Angle of each row where the controller's angle is zero.
+    pub offset_deg: Array<Deg, 6>,
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, so that A_2 + A_3 stands in the
+    /// place of A_3; where left out, true for "fanuc" and false for the others.
+    pub is_j3_level: Option<bool>,
+}
+
+/// The base frame of the rows in the controller's robot root (`$ROBROOT` of a KUKA).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RootTable {
+    /// Origin of the base frame in the root frame.
+    pub xyz_mm: Vector<Mm>,
+    /// Rotation from base to root coordinates, by rows; exactly one of this and the four keys below.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
 }
 
 /// One joint, with the link behind it. The frame of a row is that of modified Denavit-Hartenberg parameters: its z axis is

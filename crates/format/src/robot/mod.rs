@@ -1,12 +1,13 @@
 //! Robot files.
 
 mod compliance;
+mod controller;
 pub mod covariance;
 mod dynamics;
 mod file;
 mod one_or_range;
 
-pub use file::{CompensatorTable, CovarianceTable, JointRow, RobotFile};
+pub use file::{CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
 pub use one_or_range::OneOrRange;
 
 use crate::input::InputError;
@@ -14,6 +15,7 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::toml_file::TomlFile;
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
+use controller::with_controller;
 use covariance::{COVARIANCE, with_covariance};
 use dynamics::dynamics_from;
 pub(super) use dynamics::moving_robot_from;
@@ -56,6 +58,7 @@ pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     }
     let robot = Robot::new(&file.name, arm.try_into().map_err(|_| not_six())?);
     let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)).map_err(|error| locate(&at, &error))?;
+    let robot = with_controller(robot, &file, &at)?;
     let robot = match dynamics_from(joints, &rows)? {
         Some(dynamics) => robot.with_dynamics(dynamics),
         None => robot,

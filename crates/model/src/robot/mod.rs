@@ -27,6 +27,7 @@ pub mod angles;
 pub mod chain;
 mod compliance;
 pub mod conditioning;
+mod controller;
 mod data_sheet;
 mod dynamics;
 mod forward;
@@ -41,6 +42,7 @@ pub mod turns;
 mod uncertainty;
 
 pub use compliance::{Compensator, Compliance};
+pub use controller::{Controller, ControllerKind};
 pub use data_sheet::DataSheet;
 pub use dynamics::{JointDynamics, Orthogonal};
 pub use forward::Frames;
@@ -87,6 +89,7 @@ pub struct Robot {
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
+    controller: Option<Box<Controller>>,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -192,6 +195,7 @@ impl Robot {
             data_sheet: DataSheet::default(),
             uncertainty: None,
             dynamics: None,
+            controller: None,
         })
     }
 
