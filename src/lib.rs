@@ -20,6 +20,8 @@
 //! | [`Run`] | [`place`](Run::place) | [`Placements`] | `stead place` |
 //! | [`Run`] | [`score`](Run::score) | [`PlacementScore`] | `stead score` |
 //! | [`Run`] | [`explain`](Run::explain) | [`Explanations`] | `stead explain` |
+//! | [`Run`] | [`export`](Run::export) | [`ExportedProgram`] | `stead export` |
+//! | [`Run`] | [`check_program`](Run::check_program) | [`CheckedProgram`] | `stead export --check` |
 //! | [`Study`] | [`run`](Study::run) | [`Finished`] | `stead study run` |
 //! | [`AssessmentRun`] | [`assess`](AssessmentRun::assess) | [`RobotAssessment`] | `stead assess` |
 //! | [`FitRun`] | [`fit`](FitRun::fit) | [`IdentifiedRobot`] | `stead identify fit` |
@@ -45,6 +47,7 @@ mod assessment;
 mod circularity;
 mod compensation;
 mod error;
+mod export;
 pub mod guide;
 mod identification;
 mod result;
@@ -57,6 +60,7 @@ pub use assessment::{AssessmentRun, RobotAssessment};
 pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
+pub use export::{CheckedProgram, ExportedProgram};
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
 pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};
@@ -66,6 +70,10 @@ pub use stead_format::Overrides;
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init};
 pub use stead_format::input::InputError;
+pub use stead_format::program::check::{Largest, MovePlace, ProgramCheck};
+pub use stead_format::program::{
+    CorrectedPath, ExportOptions, OperatorFrame, Program, ProgramFile, ProgramFormat, Rotation,
+};
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
 pub use stead_format::urdf::{Deviation, ImportOptions, ImportedRobot, ImportedRow, import_robot};

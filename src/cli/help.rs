@@ -2,11 +2,12 @@
 //! the question that they answer.
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
+    ("What the robot is to run", &["export"]),
     ("How round a measured profile is", &["circularity"]),
     ("Input files, shell and manual", &[]),
 ];
@@ -95,6 +96,26 @@ Files written: none.
 Exit codes:
   0  done, whether or not any posture is feasible
   2  wrong usage or bad input";
+
+pub(super) const EXPORT: &str = "\
+Examples:
+  stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
+  stead export my/run.toml results/run/best.csv --check my/program/PART.src
+
+Files written, none of which may be there yet:
+  NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
+  NAME.mod, NAME_01.mod, ..          rapid, likewise
+  NAME.ls, NAME_01.ls, ..            fanuc, likewise
+  NAME.csv                           csv: one row for each move
+The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
+--check writes nothing. Collisions are not checked: run a program slowly and without a cut first.
+
+Exit codes:
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg
+  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan
+  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 pub(super) const STUDY_RUN: &str = "\
 Examples:

@@ -33,6 +33,7 @@ pub mod place;
 mod placed;
 mod plan;
 mod points;
+pub mod program;
 pub mod published_tables;
 pub mod quantity;
 pub mod robot;

@@ -15,6 +15,7 @@ pub mod names;
 pub mod output;
 pub mod picture;
 pub mod placement;
+pub mod program;
 pub mod simulation;
 pub mod stability;
 pub mod study;
