@@ -34,7 +34,13 @@ fn long_help(bench: &Bench, command: &[String]) -> String {
 fn the_overview_groups_every_command_by_its_question() {
     let bench = Bench::new();
     let overview = bench.stead(&["--help"]).stdout;
-    for heading in ["Where to put the workpiece:", "How good a robot is", "What the loaded tool does:", "Exit codes:"] {
+    for heading in [
+        "Where to put the workpiece:",
+        "How good a robot is",
+        "What the loaded tool does:",
+        "What the robot is to run:",
+        "Exit codes:",
+    ] {
         assert!(overview.contains(heading), "{heading} in {overview}");
     }
     // The parser's own list, which no group can leave a command out of.
@@ -42,7 +48,7 @@ fn the_overview_groups_every_command_by_its_question() {
     assert!(listed.contains("unrecognized subcommand"), "{listed}");
     let names = commands(&bench);
     let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
-    for name in expected.into_iter().chain(["circularity", "robot", "init", "schema", "completions", "man"]) {
+    for name in expected.into_iter().chain(["circularity", "export", "robot", "init", "schema", "completions", "man"]) {
         assert_eq!(names.iter().filter(|command| command.last().is_some_and(|last| last == name)).count(), 1, "{name}");
     }
 }

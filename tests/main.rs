@@ -11,6 +11,7 @@ mod compensate;
 mod criterion;
 mod discretisation;
 mod documents;
+mod export;
 mod facade;
 mod feed;
 mod help;

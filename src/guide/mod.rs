@@ -11,6 +11,7 @@
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
 //! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
+//! | How do I get the plan onto the robot? | [`export`] |
 //! | Will the cut chatter? | [`stability`] |
 //! | What do forces and surface look like over time? | [`simulate`] |
 //! | How round is a measured profile? | [`circularity`] |
@@ -38,6 +39,8 @@ pub mod compensation_file {}
 pub mod conventions {}
 #[doc = include_str!("explain.md")]
 pub mod explain {}
+#[doc = include_str!("export.md")]
+pub mod export {}
 #[doc = include_str!("files.md")]
 pub mod files {}
 #[doc = include_str!("glossary.md")]

@@ -107,7 +107,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
                 statements.push(format_args!("L P[{position}] {}mm/sec {stop}", speed(step.feed)));
             }
         }
-        position_of(&mut positions, position, step);
+        position_of(&mut positions, position, step, layout.sign_3);
     }
     program(&layout.part_name(index).to_ascii_uppercase(), &statements, &positions.0)
 }
@@ -117,7 +117,7 @@ pub(super) fn speed(feed: f64) -> u32 {
     (feed * 1e3).round().max(1.0) as u32
 }
 
-fn position_of(lines: &mut Lines, number_of: usize, step: &Move) {
+fn position_of(lines: &mut Lines, number_of: usize, step: &Move, sign_3: f64) {
     let angles = step.angles.unwrap_or(step.joints);
     lines.line(format_args!("P[{number_of}]{{"));
     lines.line("   GP1:");
@@ -134,7 +134,7 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move) {
             lines.line(axes[3..].join(","));
         }
         MoveKind::Linear => {
-            lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(step.posture, &angles)));
+            lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(step.posture, sign_3, &angles)));
             let numbers = xyzwpr(&step.workpiece_from_tool);
             let entry = |(key, value): (&str, f64), decimals, unit: &str| {
                 format!("\t{key} = {:>10} {unit}", number(value, decimals))

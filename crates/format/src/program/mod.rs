@@ -18,7 +18,7 @@ mod split;
 mod status;
 mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use error::{ExportError, ProgramError};
 pub use frames::{OperatorFrame, Rotation};
@@ -238,7 +238,7 @@ fn files(
         blend: options.blend,
         spindle_on: on.as_deref(),
         spindle_off: off.as_deref(),
-        sign_3: status::sign_3(&problem.robot).unwrap_or(1.0),
+        sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
     };
     Ok(match format {
