@@ -29,6 +29,8 @@
 //! | [`CompensationRun`] | [`compensate`](CompensationRun::compensate) | [`CompensatedPath`] | `stead compensate` |
 //! | [`SimulationRun`] | [`simulate`](SimulationRun::simulate) | [`SimulatedPass`] | `stead simulate` |
 //! | [`StabilityRun`] | [`analyse`](StabilityRun::analyse) | [`StabilityAnalysis`] | `stead stability` |
+//! | | [`Checked::read`] | [`Checked`] | `stead check` |
+//! | [`Arm`] | [`pose_of`](Arm::pose_of) | [`PoseOfArm`] | `stead pose` |
 //! | [`Profile`] | [`circularity`](Profile::circularity) | [`Circularity`] | `stead circularity` |
 //!
 //! The [`guide`] has a page per command, the files with all their keys, the conventions, the method and its validation.
@@ -44,6 +46,7 @@
 //! fixed order, and transcendental functions do not come from the C library of the machine.
 
 mod assessment;
+mod check;
 mod circularity;
 mod compensation;
 mod error;
@@ -51,24 +54,28 @@ mod export;
 pub mod guide;
 mod identification;
 mod result;
+mod robot;
 mod run;
 mod score;
 mod simulation;
 mod study;
 
 pub use assessment::{AssessmentRun, RobotAssessment};
+pub use check::Checked;
 pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
 pub use export::{CheckedProgram, ExportedProgram};
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
+pub use robot::{Arm, PoseOfArm, ShippedArms};
 pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
+pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
-pub use stead_format::init::{StarterSet, init};
+pub use stead_format::init::{StarterSet, init, init_run};
 pub use stead_format::input::InputError;
 pub use stead_format::program::check::{Largest, MovePlace, ProgramCheck};
 pub use stead_format::program::{
@@ -76,7 +83,7 @@ pub use stead_format::program::{
 };
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
-pub use stead_format::urdf::{Deviation, ImportOptions, ImportedRobot, ImportedRow, import_robot};
+pub use stead_format::urdf::{Deviation, HomePose, ImportOptions, ImportedRobot, ImportedRow, import_robot};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;

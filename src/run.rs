@@ -112,6 +112,11 @@ impl Run {
         &self.run.problem
     }
 
+    /// The files that were read.
+    pub(crate) fn inputs(&self) -> &[stead_format::input::InputFile] {
+        &self.run.inputs
+    }
+
     /// What the user should know about the input though it is not wrong, in sentences.
     pub fn notes(&self) -> &[String] {
         &self.run.notes

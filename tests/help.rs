@@ -48,7 +48,18 @@ fn the_overview_groups_every_command_by_its_question() {
     assert!(listed.contains("unrecognized subcommand"), "{listed}");
     let names = commands(&bench);
     let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
-    for name in expected.into_iter().chain(["circularity", "export", "robot", "init", "schema", "completions", "man"]) {
+    for name in expected.into_iter().chain([
+        "circularity",
+        "export",
+        "robot",
+        "robots",
+        "pose",
+        "check",
+        "init",
+        "schema",
+        "completions",
+        "man",
+    ]) {
         assert_eq!(names.iter().filter(|command| command.last().is_some_and(|last| last == name)).count(), 1, "{name}");
     }
 }

@@ -81,3 +81,50 @@ fn what_is_refused_leaves_nothing_behind() {
     refused(&["kuka.urdf", "--stiffness-like", "kr270"], &["--stiffness-like: is no shipped arm", "kuka-kr270-2"]);
     refused(&["kuka.urdf", "--tip-link", "tool9"], &["--tip-link: names no link", "nearest one is \"tool0\""]);
 }
+
+/// A pose read at the controller fills in how it counts; a wrong one leaves nothing behind.
+#[test]
+fn a_pose_of_the_controller_settles_how_it_counts() {
+    let bench = bench();
+    bench.stead(&["import", "robot", "kuka.urdf", "--out", "first.toml"]);
+    // What a controller that counts as this URDF shows: angles of the rows by its own, and the flange.
+    let text = bench.read("first.toml");
+    let own = text.replace("# [controller]", "[controller]").replace("# [root]", "[root]");
+    let own = ["kind", "sign", "offset_deg", "xyz_mm", "abc_deg"]
+        .iter()
+        .fold(own, |text, key| text.replace(&format!("# {key} = "), &format!("{key} = ")));
+    bench.write("own.toml", &own);
+    let angles = "-31.2,-71.4,63.7,17.9,52.6,-117.3";
+    let pose = bench.stead(&["pose", "own.toml", &format!("--controller-deg={angles}"), "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&pose.stdout).unwrap();
+    let frame = &document["frames"][1];
+    let numbers = |key: &str| {
+        frame[key].as_array().unwrap().iter().map(|v| format!("{:.2}", v.as_f64().unwrap())).collect::<Vec<_>>()
+    };
+    let flange = [numbers("xyz_mm"), numbers("abc_deg")].concat().join(",");
+    let import = |home: &str, out: &str| {
+        bench.stead(&[
+            "import",
+            "robot",
+            "kuka.urdf",
+            "--controller",
+            "kuka",
+            &format!("--home-deg={home}"),
+            "--out",
+            out,
+        ])
+    };
+    let taken = import(&format!("{angles}={flange}"), "settled.toml");
+    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+    assert!(bench.read("settled.toml").contains("\n[controller]\nkind = \"kuka\"\nsign = [-1, 1, 1, 1, 1, -1]\n"));
+    for (home, words) in [
+        (format!("{angles}=1500,900,1700,10,20,30"), "--home-deg: agrees with no way of counting"),
+        (format!("0,{angles}={flange}"), "allowed: A1,..,A6=X,Y,Z,A,B,C"),
+        (format!("{}={flange}", angles.replace("52.6", "12.6")), "leaves axes 4 and 6 open"),
+    ] {
+        let ended = import(&home, "wrong.toml");
+        assert_eq!(ended.code, Some(2));
+        ended.assert_says(&[words]);
+        assert!(!bench.path("wrong.toml").exists());
+    }
+}

@@ -22,6 +22,7 @@ mod looks_wrong;
 mod opw_oracle;
 mod place;
 mod results_folder;
+mod robots;
 mod score_explain;
 mod simulate;
 mod stability;

@@ -1,12 +1,16 @@
 //! The arguments of the command line: subcommands and options.
 
+use super::check::CheckOptions;
 use super::export::ExportCommand;
 use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
 use super::help;
 use super::import::ImportCommand;
+use super::init::InitOptions;
+use super::pose::PoseOptions;
+use super::robots::RobotsOptions;
 use super::values::{field, finite, gap, noise, point, positive, sector, seed, shard, shards, threads};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use std::path::PathBuf;
 use stead_assessment::roundness::Sector;
@@ -42,7 +46,7 @@ pub(super) enum Command {
     #[command(after_long_help = help::COMPENSATE)]
     Compensate(CompensateOptions),
     /// Write a robot program from a plan: KRL, RAPID, Fanuc or CSV; or read one back and compare it
-    #[command(after_long_help = help::EXPORT)]
+    #[command(after_long_help = super::export::HELP)]
     Export(ExportCommand),
     /// Identify joint compliances from measured deflections: plan the measurements, fit the parameters
     #[command(subcommand)]
@@ -56,6 +60,15 @@ pub(super) enum Command {
     /// Predict chatter: modes of the arm, frequency response of the tool tip, stability lobes
     #[command(after_long_help = help::STABILITY)]
     Stability(StabilityOptions),
+    /// Say what was understood of a run or robot file, and what looks wrong
+    #[command(after_long_help = help::CHECK)]
+    Check(CheckOptions),
+    /// Show where joint angles bring flange and tool, to compare with a teach pendant
+    #[command(after_long_help = help::POSE)]
+    Pose(PoseOptions),
+    /// List the arms that stead ships with
+    #[command(after_long_help = help::ROBOTS)]
+    Robots(RobotsOptions),
     /// Turn what other programs write into files of stead: a robot from a URDF
     #[command(subcommand)]
     Import(ImportCommand),
@@ -71,24 +84,6 @@ pub(super) enum Command {
     /// Write the manual pages
     #[command(after_long_help = help::MAN)]
     Man(ManOptions),
-}
-
-#[derive(Debug, Args)]
-pub(super) struct InitOptions {
-    /// Command that the files are for
-    pub kind: Starter,
-    /// Folder for the files; it is created where it is missing
-    #[arg(value_name = "DIR")]
-    pub folder: PathBuf,
-}
-
-/// The commands that there is a starter set for.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum Starter {
-    Place,
-    Assess,
-    Identify,
-    Simulate,
 }
 
 #[derive(Debug, Args)]

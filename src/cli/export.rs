@@ -48,6 +48,27 @@ pub(super) struct ExportCommand {
     pub json: bool,
 }
 
+/// Examples, files and exit codes, for the long help.
+pub(super) const HELP: &str = "\
+Examples:
+  stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
+  stead export my/run.toml results/run/best.csv --check my/program/PART.src
+
+Files written, none of which may be there yet:
+  NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
+  NAME.mod, NAME_01.mod, ..          rapid, likewise
+  NAME.ls, NAME_01.ls, ..            fanuc, likewise
+  NAME.csv                           csv: one row for each move
+The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
+--check writes nothing. Collisions are not checked: run a program slowly and without a cut first.
+
+Exit codes:
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg
+  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan
+  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
+
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
     PossibleValuesParser::new(ProgramFormat::ALL.map(ProgramFormat::word)).try_map(|word| {
         let found = ProgramFormat::ALL.into_iter().find(|format| format.word() == word);

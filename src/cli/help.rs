@@ -9,6 +9,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
     ("What the robot is to run", &["export"]),
     ("How round a measured profile is", &["circularity"]),
+    ("What was understood of robots and runs", &["check", "pose", "robots"]),
     ("Input files, shell and manual", &[]),
 ];
 
@@ -96,26 +97,6 @@ Files written: none.
 Exit codes:
   0  done, whether or not any posture is feasible
   2  wrong usage or bad input";
-
-pub(super) const EXPORT: &str = "\
-Examples:
-  stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
-  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
-  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
-  stead export my/run.toml results/run/best.csv --check my/program/PART.src
-
-Files written, none of which may be there yet:
-  NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
-  NAME.mod, NAME_01.mod, ..          rapid, likewise
-  NAME.ls, NAME_01.ls, ..            fanuc, likewise
-  NAME.csv                           csv: one row for each move
-The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
---check writes nothing. Collisions are not checked: run a program slowly and without a cut first.
-
-Exit codes:
-  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg
-  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan
-  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 pub(super) const STUDY_RUN: &str = "\
 Examples:
@@ -292,15 +273,56 @@ Exit codes:
   1  the small motions of the arm cannot be computed there, or a file could not be written
   2  wrong usage, bad input, or a results folder that cannot be written to";
 
+pub(super) const CHECK: &str = "\
+Examples:
+  stead check my/run.toml
+  stead check my/run.toml --out results/check
+  stead check my/kr210.toml --json
+
+Files written with --out:
+  check.svg                          the arm from its rows, from the side and from above, with cell and tool path
+
+Exit codes:
+  0  done; what looks wrong is noted
+  1  the picture could not be written
+  2  wrong usage, bad input, or a folder that cannot be written to";
+
+pub(super) const POSE: &str = "\
+Examples:
+  stead pose name:kuka-kr210-r2700 --controller-deg 0,-90,90,0,30,0
+  stead pose my/kr210.toml --joints-deg 10,80,-160,5,30,-20 --tool-of my/run.toml --json
+
+Frames are printed in the base frame of the rows, and in the controller's robot root where the robot file has the tables
+[controller] and [root]. A robot file without stiffness will do.
+
+Files written: none.
+
+Exit codes:
+  0  done; also where an angle is beyond its limits, which is noted
+  2  wrong usage or bad input";
+
+pub(super) const ROBOTS: &str = "\
+Examples:
+  stead robots
+  stead robots --json
+
+A shipped arm takes the place of a robot file by its name: robot = \"name:kuka-kr270-2\".
+
+Files written: none.
+
+Exit codes:
+  0  done";
+
 pub(super) const IMPORT_ROBOT: &str = "\
 Examples:
   stead import robot kr120.urdf --out my/kr120.toml
   stead import robot cell.urdf --base-link base_link --tip-link tool0 --out my/arm.toml
   stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --out my/kr210.toml
+  stead import robot kr210.urdf --controller kuka --out my/kr210.toml \
+      --home-deg=-31.2,-71.4,63.7,17.9,52.6,-117.3=1496.93,917.08,1731.55,-63.24,45.92,-19.9
 
 Files written: the robot file. Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like
-taken from a shipped arm, which ranks placements and does not predict millimetres. Shipped arms: kuka-kr100-ha,
-kuka-kr120-r3900, kuka-kr270-2, kuka-kr270-r2700, kuka-kr360-l240, kuka-kr500, staubli-tx200.
+taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict millimetres.
 
 Exit codes:
   0  done
@@ -310,12 +332,14 @@ pub(super) const INIT: &str = "\
 Examples:
   stead init place my-cell
   stead init simulate my-arm
+  stead init place --robot my/kr210.toml --task my/part.csv --out my/run.toml
 
 Files written to the folder:
   place     run.toml, robot.toml, task.csv
   assess    assess.toml, robot.toml
   identify  identify.toml, robot.toml, sheet.csv
   simulate  simulate.toml, robot.toml (for stead stability too)
+With --robot, --task and --out: one run file for files that are there; what they do not say is a guess, marked as one.
 
 Exit codes:
   0  done

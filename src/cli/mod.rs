@@ -6,6 +6,7 @@
 
 mod arguments;
 mod assess;
+mod check;
 mod circularity;
 mod compensate;
 mod completions;
@@ -18,7 +19,9 @@ mod import;
 mod init;
 mod man;
 mod place;
+mod pose;
 mod progress;
+mod robots;
 mod schema;
 mod score;
 mod simulate;
@@ -104,6 +107,9 @@ pub fn main() -> ExitCode {
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
         Command::Stability(options) => stability::run(&options),
+        Command::Check(options) => check::run(&options),
+        Command::Pose(options) => pose::run(&options),
+        Command::Robots(options) => robots::run(&options),
         Command::Import(command) => import::run(&command),
         Command::Init(options) => init::run(&options),
         Command::Schema(options) => schema::run(&options),

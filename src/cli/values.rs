@@ -3,6 +3,7 @@
 use stead_assessment::roundness::Sector;
 use stead_format::field::FieldOverride;
 use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
+use stead_model::robot::ControllerKind;
 use stead_placement::settings::CertificateSettings;
 use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;
@@ -36,6 +37,25 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
+}
+
+/// Six numbers with commas between them.
+pub(super) fn six(text: &str) -> Result<[f64; 6], String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(|part| finite(part.trim())).collect();
+    let allowed = || "allowed: six finite decimal numbers with commas between them".to_owned();
+    numbers.ok().and_then(|numbers| numbers.try_into().ok()).ok_or_else(allowed)
+}
+
+/// Joint angles and the flange pose there, with `=` between them.
+pub(super) fn home(text: &str) -> Result<([f64; 6], [f64; 6]), String> {
+    let allowed = || "allowed: A1,..,A6=X,Y,Z,A,B,C, six angles in deg, then mm and deg".to_owned();
+    let (angles, flange) = text.split_once('=').ok_or_else(allowed)?;
+    Ok((six(angles).map_err(|_| allowed())?, six(flange).map_err(|_| allowed())?))
+}
+
+pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {
+    let found = ControllerKind::ALL.into_iter().find(|kind| kind.word() == text);
+    found.ok_or_else(|| format!("allowed: {}", ControllerKind::ALL.map(ControllerKind::word).join(", ")))
 }
 
 /// Per cent in, a share out.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | How do I begin with my own cell? | [`starting`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
+//! | Which arms are there, and does my file agree with the controller? | [`robots`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -63,6 +64,8 @@ pub mod place {}
 pub mod python {}
 #[doc = include_str!("robot_file.md")]
 pub mod robot_file {}
+#[doc = include_str!("robots.md")]
+pub mod robots {}
 #[doc = include_str!("run_file.md")]
 pub mod run_file {}
 #[doc = include_str!("score.md")]

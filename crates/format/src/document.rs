@@ -25,6 +25,7 @@
 //! # }
 //! ```
 
+use crate::catalogue;
 use crate::deserialize::Node;
 use crate::field::{FieldOverride, FieldOverrides, put, shifted};
 use crate::input::{InputError, InputFile, input_file};
@@ -33,7 +34,7 @@ use crate::place::Place;
 use crate::sources::Sources;
 use crate::toml_file::{TomlFile, shorten};
 use serde::de::DeserializeOwned;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -140,26 +141,33 @@ impl Place<'_> {
         Ok((source, input))
     }
 
-    /// The file named here, by a path relative to the folder of this one, read.
+    /// The file named here, by a path relative to the folder of this one, or `name:` and the name of a shipped arm, read.
     ///
     /// # Errors
     /// [`InputError`] here when there is no name, or the file cannot be read; there when it is a result that its manifest does not vouch
     /// for.
     pub fn named_file(&self) -> Result<NamedFile, InputError> {
         let name: String = self.read()?;
+        let sources = self.file.sources.clone();
+        let overrides =
+            || FieldOverrides(self.file.overrides().iter().filter_map(|(field, _)| field.within(&self.path)).collect());
+        if let Some(shipped) = catalogue::text(Path::new(&name)) {
+            let text =
+                shipped.map_err(|error| self.error("names no shipped arm", error.allowed.unwrap_or_default()))?;
+            let (file, bytes) = (PathBuf::from(&name), Arc::from(text.as_bytes()));
+            return Ok(NamedFile { name, file, bytes, overrides: overrides(), sources });
+        }
         let set = self.value.and_then(|value| self.file.override_at(value.span().start));
         let file = match set.and_then(FieldOverride::folder).or(self.file.file().parent()) {
             Some(folder) => folder.join(&name),
             None => PathBuf::from(&name),
         };
-        let sources = self.file.sources.clone();
         let bytes = sources.read(&file).map_err(|e| {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
             self.error(problem, "a readable file, its path relative to the folder of the file that names it")
         })?;
         manifest::check(&file, &bytes, Unlisted::Accepted)?;
-        let overrides = self.file.overrides().iter().filter_map(|(field, _)| field.within(&self.path)).collect();
-        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes, overrides: FieldOverrides(overrides), sources })
+        Ok(NamedFile { name: name.replace('\\', "/"), file, bytes, overrides: overrides(), sources })
     }
 }
 

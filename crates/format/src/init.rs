@@ -1,5 +1,9 @@
 //! Starter sets: small commented files of each kind that run as they are.
 
+mod run_for;
+
+pub use run_for::init_run;
+
 use crate::input::InputError;
 use crate::toml_file::without_schema;
 use std::fs::{File, OpenOptions};

@@ -18,6 +18,7 @@
 //! ```
 
 pub mod assess;
+pub mod catalogue;
 pub mod compensate;
 mod deserialize;
 pub mod document;
@@ -59,7 +60,7 @@ pub use compensate::{CompensateRun, read_compensation};
 pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
 pub use placed::read_placement_of;
 pub use points::{PointFile, read_points};
-pub use robot::{covariance, read_robot};
+pub use robot::{covariance, read_geometry, read_robot};
 pub use run::{GAPS_ALLOWED, Run, read_run, read_run_to_certify, read_run_with};
 pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
 pub use study::read_study;

@@ -5,9 +5,11 @@ use crate::input::InputError;
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
+use crate::toml_file::TomlFile;
 use crate::units::{Deg, Kg, Mm, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use stead_model::robot::{Pose, Spindle};
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
@@ -33,6 +35,21 @@ pub struct SpindleTable {
     pub centre_of_mass_mm: Option<Vector<Mm>>,
     /// Inertia tensor of all that the flange carries about its centre of mass, in the directions of the flange frame.
     pub inertia_kg_m2: Option<InertiaTable>,
+}
+
+/// Reads the table `[spindle]` of a file, as of a run file, whatever else is in it; with the bytes of the file.
+///
+/// # Errors
+/// [`InputError`] with file, line and field.
+pub fn read_spindle(file: &Path) -> Result<(Spindle, Vec<u8>), InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let at = document.root().key("spindle");
+    if !at.is_given() {
+        return Err(at.missing("a table [spindle] with xyz_mm and an orientation, as in a run file"));
+    }
+    let table: SpindleTable = at.read()?;
+    Ok((table.spindle(&at)?, source.bytes().to_vec()))
 }
 
 impl SpindleTable {

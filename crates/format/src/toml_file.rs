@@ -1,5 +1,6 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
+use crate::catalogue;
 use crate::field::{FieldOverride, FieldOverrides};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
@@ -24,11 +25,14 @@ pub struct TomlFile {
 const QUOTE: usize = 80;
 
 impl TomlFile {
-    /// Reads a file.
+    /// Reads a file, or the file of a shipped arm for `name:` and its name.
     ///
     /// # Errors
     /// [`InputError`] when the file cannot be read or is not UTF-8 text, or is a result that its manifest does not vouch for.
     pub fn read(file: &Path) -> Result<Self, InputError> {
+        if let Some(shipped) = catalogue::text(file) {
+            return Self::new(file, shipped?.as_bytes().to_vec());
+        }
         let bytes = std::fs::read(file).map_err(|e| {
             InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable TOML file")
         })?;

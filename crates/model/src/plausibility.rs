@@ -17,8 +17,14 @@ const LARGEST_FORCE: f64 = 1e5;
 /// A larger deflection looks wrong. m
 const LARGEST_DEFLECTION: f64 = 10e-3;
 
+/// What is to be said of an arm: joints of an odd stiffness, numbers that nobody has verified.
+pub fn arm(robot: &Robot) -> Vec<String> {
+    let unverified = robot.unverified().iter().map(|what| format!("{}: not verified: {what}", robot.name()));
+    odd_stiffness(robot).into_iter().chain(unverified).collect()
+}
+
 /// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
-pub fn arm(robot: &Robot) -> Option<String> {
+fn odd_stiffness(robot: &Robot) -> Option<String> {
     let [softest, stiffest] = [KNOWN_STIFFNESSES[0] / BEYOND, KNOWN_STIFFNESSES[1] * BEYOND];
     let stiffness = |joint: usize| 1.0 / robot.compliances_at(&middle(robot))[joint];
     let odd: Vec<String> = (0..6)
@@ -94,7 +100,7 @@ mod tests {
     #[test]
     fn what_is_usual_is_not_noted() {
         let task = five_segments();
-        assert_eq!((arm(&kr270()), spindle(&mounted())), (None, None));
+        assert_eq!((arm(&kr270()), spindle(&mounted())), (Vec::new(), None));
         assert_eq!((path(task.path()), force(2700.0), deflection(2.8e-3)), (None, None, None));
     }
 
@@ -103,16 +109,22 @@ mod tests {
         let mut compliances = kr270().constant_compliances().unwrap();
         // N m/rad written as MN m/rad.
         compliances[0] *= 1e-6;
-        let note = arm(&kr270().with_compliances(compliances).unwrap()).unwrap();
+        let note = arm(&kr270().with_compliances(compliances).unwrap()).concat();
         assert!(note.contains("joint 1 with 237000 MN m/rad is a hundred times"), "{note}");
         compliances[4] = 1.0;
-        let note = arm(&kr270().with_compliances(compliances).unwrap()).unwrap();
+        let note = arm(&kr270().with_compliances(compliances).unwrap()).concat();
         assert!(note.contains("joint 1 with 237000 MN m/rad, joint 5 with 1.00e-6 MN m/rad are"), "{note}");
         for (stiffness, is_noted) in [(9.09e8, false), (9.2e8, true), (291.0, false), (289.0, true)] {
             compliances = kr270().constant_compliances().unwrap();
             compliances[2] = 1.0 / stiffness;
-            assert_eq!(arm(&kr270().with_compliances(compliances).unwrap()).is_some(), is_noted, "{stiffness}");
+            assert_eq!(arm(&kr270().with_compliances(compliances).unwrap()).len() == 1, is_noted, "{stiffness}");
         }
+    }
+
+    #[test]
+    fn unverified_numbers_are_named() {
+        let robot = kr270().with_unverified(vec!["joint limits: from memory".to_owned()]);
+        assert_eq!(arm(&robot), ["test: not verified: joint limits: from memory"]);
     }
 
     #[test]

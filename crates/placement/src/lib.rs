@@ -33,6 +33,7 @@ pub mod limit;
 pub mod lookup;
 pub mod objective;
 pub mod outcome;
+pub mod overview;
 pub mod path_comparison;
 pub mod path_subset;
 pub mod place;

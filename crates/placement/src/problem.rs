@@ -197,13 +197,12 @@ impl Problem {
     /// What looks like a wrong unit or sign though it is possible, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let parts = [
-            plausibility::arm(&self.robot),
             plausibility::spindle(&self.spindle),
             plausibility::path(self.task.path()),
             plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
             self.cell.note(),
         ];
-        parts.into_iter().flatten().collect()
+        plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).collect()
     }
 
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement

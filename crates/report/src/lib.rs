@@ -4,6 +4,7 @@
 
 pub mod assessment;
 pub mod certificate;
+pub mod check;
 pub mod circularity;
 mod columns;
 pub mod compensation;
@@ -16,6 +17,7 @@ pub mod output;
 pub mod picture;
 pub mod placement;
 pub mod program;
+pub mod robot;
 pub mod simulation;
 pub mod stability;
 pub mod study;

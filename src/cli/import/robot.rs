@@ -1,9 +1,11 @@
 //! `stead import robot`: a robot file from a URDF.
 
+use super::super::values::{controller, home};
 use super::super::{Failure, print, say_notes};
 use clap::Args;
 use std::path::PathBuf;
-use stead::{ImportOptions, import_robot};
+use stead::{HomePose, ImportOptions, import_robot};
+use stead_model::robot::ControllerKind;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct RobotOptions {
@@ -21,6 +23,12 @@ pub(in super::super) struct RobotOptions {
     /// Take the joint stiffness of a shipped arm, as kuka-kr270-2
     #[arg(long, value_name = "NAME")]
     pub stiffness_like: Option<String>,
+    /// Whose controller the arm has
+    #[arg(long, value_name = "KIND", value_parser = controller, requires = "home_deg")]
+    pub controller: Option<ControllerKind>,
+    /// A pose of the flange read at the controller, to check or find how it counts its angles: fills in [controller] and [root]
+    #[arg(long, value_name = "A1,..,A6=X,Y,Z,A,B,C", value_parser = home, allow_hyphen_values = true, requires = "controller")]
+    pub home_deg: Option<([f64; 6], [f64; 6])>,
     /// Look for the mesh files that the URDF names, and note those that are missing
     #[arg(long)]
     pub check_meshes: bool,
@@ -31,6 +39,11 @@ pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
         base_link: options.base_link.as_deref(),
         tip_link: options.tip_link.as_deref(),
         stiffness_like: options.stiffness_like.as_deref(),
+        home: options.controller.zip(options.home_deg).map(|(kind, (angles_deg, flange))| HomePose {
+            kind,
+            angles_deg,
+            flange,
+        }),
         check_meshes: options.check_meshes,
     };
     let robot = import_robot(&options.urdf, &asked).map_err(stead::Error::from)?;

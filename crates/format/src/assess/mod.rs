@@ -89,7 +89,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let asked = !selection.forces.is_empty();
     // A benchmark of the arm alone has its tool at the flange.
     let spindle_note = spindle.filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
-    let odd = robots.iter().filter_map(plausibility::arm).chain(spindle_note.as_ref().and_then(plausibility::spindle));
+    let odd = robots.iter().flat_map(plausibility::arm).chain(spindle_note.as_ref().and_then(plausibility::spindle));
     let known = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten());
     let notes = known.chain(odd).collect();
     let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };

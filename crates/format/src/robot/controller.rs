@@ -4,10 +4,14 @@ use super::file::{ControllerTable, RobotFile, RootTable};
 use crate::input::InputError;
 use crate::orientation::orientation_keys;
 use crate::place::Place;
-use crate::scalars::words;
+use crate::scalars::Words;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
 
-words!(ControllerKind: "kuka" => Self::Kuka, "abb" => Self::Abb, "fanuc" => Self::Fanuc, "staubli" => Self::Staubli);
+impl Words for ControllerKind {
+    fn words() -> Vec<(&'static str, Self)> {
+        Self::ALL.map(|kind| (kind.word(), kind)).to_vec()
+    }
+}
 
 /// The robot with the controller that its file states.
 ///

@@ -18,6 +18,8 @@ pub struct RobotFile {
     pub name: String,
     /// Where the numbers come from.
     pub source: String,
+    /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every run.
+    pub unverified: Option<List<String>>,
     /// Largest payload by the data sheet.
     pub payload_kg: Option<Kg<Positive>>,
     /// Radius of the working range by the data sheet.

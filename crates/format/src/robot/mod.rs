@@ -20,7 +20,7 @@ use covariance::{COVARIANCE, with_covariance};
 use dynamics::dynamics_from;
 pub(super) use dynamics::moving_robot_from;
 use std::path::Path;
-use stead_model::robot::{DataSheet, Joint, Robot, RobotError};
+use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError};
 
 /// Reads a robot file: the keys of [`RobotFile`].
 ///
@@ -32,11 +32,71 @@ pub fn read_robot(file: &Path) -> Result<Robot, InputError> {
     robot_from(&TomlFile::read(file)?)
 }
 
+/// Reads a robot file for its geometry, limits and controller alone: rows may lack a stiffness, and those that do get
+/// [`NOMINAL_STIFFNESS`].
+///
+/// # Errors
+/// As [`read_robot`].
+pub fn read_geometry(file: &Path) -> Result<Robot, InputError> {
+    geometry_file(file).map(|(robot, _)| robot)
+}
+
+/// As [`read_geometry`], with the bytes of the file.
+///
+/// # Errors
+/// As [`read_robot`].
+pub fn geometry_file(file: &Path) -> Result<(Robot, Vec<u8>), InputError> {
+    let source = TomlFile::read(file)?;
+    Ok((geometry_from(&source)?, source.bytes().to_vec()))
+}
+
+/// Of a joint whose stiffness is unknown and does not matter. N m/rad
+pub const NOMINAL_STIFFNESS: f64 = 1e6;
+
+/// As [`read_geometry`], from a file already read.
+pub(crate) fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
+    let document = source.parse()?;
+    let mut file: RobotFile = document.read()?;
+    // What is said of compliances belongs to the rows that state them.
+    file.covariance = None;
+    made(&file, &document.root(), |row, at| match has_stiffness(row) {
+        true => compliance_from(row, at),
+        false => Ok((1.0 / NOMINAL_STIFFNESS).into()),
+    })
+}
+
+/// Of a robot file, whether it states the stiffness of every joint; nothing of a file of another kind, known by its having no
+/// `[[joints]]`.
+///
+/// # Errors
+/// [`InputError`]: a file that cannot be read or is no TOML, and what is wrong in a robot file.
+pub fn says_stiffness(file: &Path) -> Result<Option<bool>, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    if !document.root().key("joints").is_given() {
+        return Ok(None);
+    }
+    let file: RobotFile = document.read()?;
+    Ok(Some(file.joints.iter().all(has_stiffness)))
+}
+
+/// Whether a row states its stiffness.
+pub(crate) fn has_stiffness(row: &JointRow) -> bool {
+    row.stiffness_mnm_per_rad.is_some() || row.compliance_urad_per_nm.is_some()
+}
+
 /// As [`read_robot`], from a file already read.
 pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     let document = source.parse()?;
-    let file: RobotFile = document.read()?;
-    let at = document.root();
+    made(&document.read()?, &document.root(), compliance_from)
+}
+
+/// The robot of a file, with a compliance of each row by a function.
+fn made(
+    file: &RobotFile,
+    at: &Place<'_>,
+    compliance: impl Fn(&JointRow, &Place<'_>) -> Result<Compliance, InputError>,
+) -> Result<Robot, InputError> {
     if file.name.chars().any(char::is_control) {
         let rule = "a text in quotes on one line";
         return Err(at.key("name").error("has a line break or another control in it", rule));
@@ -54,11 +114,13 @@ pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     let joints: &[JointRow; 6] = file.joints.as_slice().try_into().map_err(|_| not_six())?;
     let mut arm = Vec::with_capacity(6);
     for (row, number) in joints.iter().zip(1..) {
-        arm.push(joint_from(row, &rows.element(number))?);
+        let at = rows.element(number);
+        arm.push(joint_from(row, compliance(row, &at)?));
     }
     let robot = Robot::new(&file.name, arm.try_into().map_err(|_| not_six())?);
-    let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)).map_err(|error| locate(&at, &error))?;
-    let robot = with_controller(robot, &file, &at)?;
+    let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)).map_err(|error| locate(at, &error))?;
+    let robot = robot.with_unverified(file.unverified.as_ref().map_or_else(Vec::new, |list| list.0.clone()));
+    let robot = with_controller(robot, file, at)?;
     let robot = match dynamics_from(joints, &rows)? {
         Some(dynamics) => robot.with_dynamics(dynamics),
         None => robot,
@@ -69,8 +131,8 @@ pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     }
 }
 
-fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<Joint, InputError> {
-    Ok(Joint {
+fn joint_from(row: &JointRow, compliance: Compliance) -> Joint {
+    Joint {
         alpha: row.alpha_deg.si(),
         a: row.a_mm.si(),
         d: row.d_mm.si(),
@@ -79,8 +141,8 @@ fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<Joint, InputError> {
         max_speed: row.max_speed_deg_per_s.map(Quantity::si),
         max_acceleration: row.max_acceleration_deg_per_s2.map(Quantity::si),
         max_jerk: row.max_jerk_deg_per_s3.map(Quantity::si),
-        compliance: compliance_from(row, at)?,
-    })
+        compliance,
+    }
 }
 
 /// A broken rule of the arm, at its line of the file.

@@ -16,6 +16,7 @@
 mod bodies;
 mod deviation;
 mod forward;
+mod home;
 mod meshes;
 mod notes;
 mod read;
@@ -27,15 +28,17 @@ mod tree;
 mod xml;
 
 pub use deviation::{Deviation, POSTURES};
+pub use home::HomePose;
 pub use rows::ImportedRow;
 
 use crate::input::{InputError, sha256};
 use crate::new_file::write_new;
 use deviation::deviation;
+use home::controller_at;
 use read::{Kind, Limit, Urdf};
 use rows::Rows;
 use std::path::Path;
-use stead_model::robot::{Inertial, Joint, Pose, Robot, RobotError};
+use stead_model::robot::{Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
 use stiffness::Borrowed;
 use tree::{Chain, Tree};
 use xml::{one_line, quoted};
@@ -49,6 +52,8 @@ pub struct ImportOptions<'a> {
     pub tip_link: Option<&'a str>,
     /// A shipped arm whose joint stiffness is taken.
     pub stiffness_like: Option<&'a str>,
+    /// A pose read at the controller, by which `[controller]` and `[root]` are filled in.
+    pub home: Option<HomePose>,
     /// Whether to look for the files of the shapes.
     pub check_meshes: bool,
 }
@@ -76,6 +81,8 @@ pub struct ImportedRobot {
     pub flange_from_tip: Pose<f64>,
     /// How far the rows are from the URDF.
     pub deviation: Deviation,
+    /// How the controller counts, where a pose read at it tells.
+    pub controller: Option<Controller>,
     /// The bodies behind the joints in the frames of the rows, where the URDF states all.
     pub bodies: Option<[Inertial; 6]>,
     /// What the user should know.
@@ -132,6 +139,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         flange_from_tip: rows.flange_from_tip,
         deviation,
         notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref()),
+        controller: None,
         bodies: bodies.as_ref().ok().copied(),
         text: String::new(),
     };
@@ -141,6 +149,12 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
             .filter(|_| urdf.links.iter().any(|link| link.inertial.is_some()))
             .map(|reason| format!("masses and inertias are not taken: {reason}")),
     );
+    if let Some(home) = &options.home {
+        let (controller, is_own) = controller_at(&robot, &imported.controller_of_urdf(home.kind), home)?;
+        let found = "the controller counts its angles otherwise than the URDF: signs, offsets and root are those that agree with --home-deg";
+        imported.notes.extend((!is_own).then(|| found.to_owned()));
+        imported.controller = Some(controller);
+    }
     if options.check_meshes {
         imported.notes.extend(meshes::missing(urdf).iter().map(|name| format!("mesh {} is not found", quoted(name))));
     }
@@ -149,6 +163,12 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
 }
 
 impl ImportedRobot {
+    /// A controller that counts as the URDF does, its root at the base link.
+    fn controller_of_urdf(&self, kind: ControllerKind) -> Controller {
+        let (sign, offset) = (self.rows.map(|row| row.sign), self.rows.map(|row| row.offset_deg.to_radians()));
+        Controller { kind, sign, offset, is_j3_level: false, root_from_base: Some(self.link_from_base) }
+    }
+
     /// Writes the robot file, which must not exist yet; folders to it are made.
     ///
     /// # Errors

@@ -1,20 +1,10 @@
 //! Joint stiffness for an arm whose URDF has none: the values of a shipped arm, with their source.
 
+use crate::catalogue::{PREFIX, by_name, names_near};
 use crate::input::InputError;
-use crate::robot::{JointRow, OneOrRange, RobotFile};
+use crate::robot::{JointRow, OneOrRange, RobotFile, has_stiffness};
 use crate::toml_file::TomlFile;
 use std::path::Path;
-
-/// The arms whose values may be taken, with their files.
-const ARMS: [(&str, &str); 7] = [
-    ("kuka-kr100-ha", include_str!("../../../../configs/robots/kuka-kr100-ha.toml")),
-    ("kuka-kr120-r3900", include_str!("../../../../configs/robots/kuka-kr120-r3900.toml")),
-    ("kuka-kr270-2", include_str!("../../../../configs/robots/kuka-kr270-2.toml")),
-    ("kuka-kr270-r2700", include_str!("../../../../configs/robots/kuka-kr270-r2700.toml")),
-    ("kuka-kr360-l240", include_str!("../../../../configs/robots/kuka-kr360-l240.toml")),
-    ("kuka-kr500", include_str!("../../../../configs/robots/kuka-kr500.toml")),
-    ("staubli-tx200", include_str!("../../../../configs/robots/staubli-tx200.toml")),
-];
 
 /// The stiffness of another arm.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,14 +23,17 @@ impl Borrowed {
     /// # Errors
     /// [`InputError`] where there is no arm of this name.
     pub fn of(name: &str) -> Result<Self, InputError> {
-        let Some((_, text)) = ARMS.iter().find(|(known, _)| *known == name) else {
-            let names = ARMS.map(|(known, _)| known);
-            let error = InputError::new(Path::new("--stiffness-like"), "is no shipped arm");
-            return Err(error.found(super::xml::quoted(name)).allowed(names.join(", ")));
+        let wrong = |problem: &str, allowed: String| {
+            InputError::new(Path::new("--stiffness-like"), problem).found(super::xml::quoted(name)).allowed(allowed)
         };
+        let bare = name.strip_prefix(PREFIX).unwrap_or(name);
+        let text = by_name(bare).ok_or_else(|| wrong("is no shipped arm", names_near(bare)))?;
         let source = TomlFile::new(Path::new(name), text.as_bytes().to_vec())?;
         let document = source.parse()?;
         let file: RobotFile = document.read()?;
+        if !file.joints.iter().all(has_stiffness) {
+            return Err(wrong("is an arm without stiffness", "an arm with a stiffness in `stead robots`".to_owned()));
+        }
         let lines = std::array::from_fn(|k| file.joints.get(k).map(line).unwrap_or_default());
         Ok(Self { arm: file.name, source: file.source, lines })
     }
@@ -63,21 +56,26 @@ fn line(row: &JointRow) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::catalogue::shipped_arms;
 
     #[test]
-    fn every_shipped_arm_has_six_lines_and_a_source() {
-        for (name, _) in ARMS {
-            let borrowed = Borrowed::of(name).unwrap();
+    fn every_shipped_arm_with_stiffness_has_six_lines_and_a_source() {
+        for arm in shipped_arms().unwrap() {
+            let borrowed = Borrowed::of(arm.name);
+            assert_eq!(borrowed.is_ok(), arm.has_stiffness, "{}", arm.name);
+            let Ok(borrowed) = borrowed else { continue };
             assert!(borrowed.lines.iter().all(|line| line.contains(" = ")), "{borrowed:?}");
             assert!(!borrowed.source.is_empty());
         }
         assert_eq!(Borrowed::of("kuka-kr270-2").unwrap().lines[1], "stiffness_mnm_per_rad = 3.32");
-        assert!(Borrowed::of("kuka-kr270-r2700").unwrap().lines[1].starts_with("compliance_urad_per_nm = 0.29 "));
+        assert!(Borrowed::of("name:kuka-kr270-r2700").unwrap().lines[1].starts_with("compliance_urad_per_nm = 0.29 "));
     }
 
     #[test]
-    fn an_unknown_arm_is_refused_with_the_known_ones() {
+    fn an_arm_that_is_not_shipped_or_has_no_stiffness_is_refused() {
         let message = Borrowed::of("kr270").unwrap_err().to_string();
-        assert!(message.starts_with("--stiffness-like: is no shipped arm, found \"kr270\"; allowed: kuka-kr100-ha, "));
+        assert!(message.starts_with("--stiffness-like: is no shipped arm, found \"kr270\"; allowed: "), "{message}");
+        let message = Borrowed::of("abb-irb120").unwrap_err().to_string();
+        assert!(message.contains("is an arm without stiffness, found \"abb-irb120\""), "{message}");
     }
 }

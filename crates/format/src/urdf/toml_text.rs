@@ -7,7 +7,7 @@ use super::xml::{one_line, quoted};
 use super::{ImportedRobot, POSTURES};
 use nalgebra::{Matrix3, Vector3};
 use std::fmt::Write;
-use stead_model::robot::Inertial;
+use stead_model::robot::{ControllerKind, Inertial, Pose};
 use toml::Value;
 
 /// Lines of a text; writing to it cannot fail.
@@ -137,18 +137,36 @@ fn body(lines: &mut Lines, body: &Inertial) {
 }
 
 fn controller(lines: &mut Lines, robot: &ImportedRobot) {
-    let sign = robot.rows.map(|row| format!("{}", row.sign)).join(", ");
-    let offset = robot.rows.map(|row| format!("{:?}", row.offset_deg)).join(", ");
-    lines.line("\n# How the controller counts its angles, theta_i = sign_i A_i + offset_i, and where its robot root is. The numbers are right if");
-    lines.line("# the zero of the URDF is that of the controller and its root is the base link, which a URDF does not say: compare a pose");
-    lines.line("# with the teach pendant before use.");
-    lines.line("# [controller]");
-    lines.line("# kind = \"kuka\"                        # or \"abb\", \"fanuc\", \"staubli\"");
-    lines.line(format_args!("# sign = [{sign}]"));
-    lines.line(format_args!("# offset_deg = [{offset}]"));
-    lines.line("# [root]");
-    lines.line(format_args!("# xyz_mm = {}", millimetres(&robot.link_from_base.translation)));
-    lines.line("# abc_deg = [0.0, 0.0, 0.0]");
+    let kind = robot.controller.map_or(ControllerKind::Kuka, |controller| controller.kind);
+    let shown = robot.controller.unwrap_or_else(|| robot.controller_of_urdf(kind));
+    lines.line(
+        "\n# How the controller counts its angles, theta_i = sign_i A_i + offset_i, and where its robot root is.",
+    );
+    let key = match robot.controller {
+        Some(_) => {
+            lines.line("# They agree with the pose of --home-deg, which was read at the controller.");
+            ""
+        }
+        None => {
+            lines.line("# The numbers are right if the zero of the URDF is that of the controller and its root is the base link, which a URDF");
+            lines.line("# does not say: give a pose read at the teach pendant (--home-deg), or compare one (stead pose) before use.");
+            "# "
+        }
+    };
+    let kinds =
+        if robot.controller.is_some() { "" } else { "                        # or \"abb\", \"fanuc\", \"staubli\"" };
+    lines.line(format_args!("{key}[controller]"));
+    lines.line(format_args!("{key}kind = \"{}\"{kinds}", kind.word()));
+    lines.line(format_args!("{key}sign = [{}]", shown.sign.map(|sign| format!("{sign}")).join(", ")));
+    let offset = shown.offset.map(|offset| format!("{:?}", rounded(offset.to_degrees(), 1e9)));
+    lines.line(format_args!("{key}offset_deg = [{}]", offset.join(", ")));
+    if kind == ControllerKind::Fanuc {
+        lines.line(format_args!("{key}is_j3_level = {}", shown.is_j3_level));
+    }
+    let root = shown.root_from_base.unwrap_or_else(Pose::identity).translation;
+    lines.line(format_args!("{key}[root]"));
+    lines.line(format_args!("{key}xyz_mm = {}", millimetres(&root)));
+    lines.line(format_args!("{key}abc_deg = [0.0, 0.0, 0.0]"));
 }
 
 fn millimetres(point: &Vector3<f64>) -> String {

@@ -15,6 +15,21 @@ pub enum ControllerKind {
     Staubli,
 }
 
+impl ControllerKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Kuka, Self::Abb, Self::Fanuc, Self::Staubli];
+
+    /// The word for it in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Kuka => "kuka",
+            Self::Abb => "abb",
+            Self::Fanuc => "fanuc",
+            Self::Staubli => "staubli",
+        }
+    }
+}
+
 /// The angles and the root frame of a controller against those of the rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Controller {

@@ -22,10 +22,13 @@ impl Robot {
             };
             Joint { min: joint.min + margin, max: joint.max - margin, compliance, ..joint }
         });
-        let robot = Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())?;
-        let robot = match self.dynamics() {
-            Some(dynamics) => robot.with_dynamics(*dynamics),
-            None => robot,
+        let narrowed = Self::new(self.name(), joints)?;
+        let robot = Self {
+            joints: narrowed.joints,
+            geometry: narrowed.geometry,
+            rows: narrowed.rows,
+            uncertainty: None,
+            ..self.clone()
         };
         // Covariances stay positive semidefinite, and parameters those of the laws: nothing to refuse.
         match self.uncertainty().and_then(|known| moved(known, self.joints(), margin)) {
@@ -86,7 +89,9 @@ mod tests {
         let parameters = vec![Parameter::Compliance(0), Parameter::ComplianceAtMax(1)];
         let covariance = DMatrix::from_row_slice(2, 2, &[1e-14, 2e-15, 2e-15, 4e-15]);
         let robot = robot.with_uncertainty(Uncertainty::new(parameters, covariance).unwrap()).unwrap();
+        let robot = robot.with_unverified(vec!["limits".to_owned()]);
         let narrow = robot.with_joint_margin(margin).unwrap();
+        assert_eq!(narrow.unverified(), robot.unverified());
         for (wide, narrow) in robot.joints().iter().zip(narrow.joints()) {
             assert!((narrow.min - wide.min - margin).abs() < 1e-15 && (wide.max - narrow.max - margin).abs() < 1e-15);
         }

@@ -90,6 +90,7 @@ pub struct Robot {
     uncertainty: Option<Uncertainty>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
     controller: Option<Box<Controller>>,
+    unverified: Vec<String>,
 }
 
 /// Why six rows do not make an arm that this crate can work with.
@@ -196,12 +197,24 @@ impl Robot {
             uncertainty: None,
             dynamics: None,
             controller: None,
+            unverified: Vec::new(),
         })
     }
 
     /// The name given by the robot file.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Which of its numbers nobody has checked against their source, each with what is known of them.
+    pub fn unverified(&self) -> &[String] {
+        &self.unverified
+    }
+
+    /// The same arm, with numbers that nobody has checked against their source.
+    pub fn with_unverified(mut self, unverified: Vec<String>) -> Self {
+        self.unverified = unverified;
+        self
     }
 
     /// The six rows, base first.

@@ -1,5 +1,6 @@
 //! Pictures: SVG, with coordinates in quarters of a pixel, so that the same result gives the same bytes.
 
+mod arm_view;
 mod axes;
 mod canvas;
 mod cell;
@@ -29,6 +30,7 @@ mod polar;
 mod simulation;
 mod study;
 
+pub use arm_view::{arm_alone, arm_of_run};
 pub use cell::{cell, cell_with};
 pub use circularity_map::circularity_map;
 pub use compensation::compensation;

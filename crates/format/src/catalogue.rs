@@ -1,0 +1,242 @@
+//! The arms that stead ships with: robot files that are part of the program, named `name:kuka-kr270-2` where a file is asked for.
+
+use crate::input::InputError;
+use crate::robot::{RobotFile, geometry_from, has_stiffness};
+use crate::toml_file::TomlFile;
+use std::path::Path;
+use stead_model::robot::Robot;
+
+/// What the name of a shipped arm begins with where a file is asked for.
+pub const PREFIX: &str = "name:";
+
+/// A shipped arm by its name: the file of that name in `configs/robots`.
+macro_rules! arm {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../../configs/robots/", $name, ".toml")))
+    };
+}
+
+/// The arms with their files, in the order of their names.
+const ARMS: &[(&str, &str)] = &[
+    arm!("abb-irb120"),
+    arm!("abb-irb140"),
+    arm!("abb-irb1600-10"),
+    arm!("abb-irb4400-60"),
+    arm!("abb-irb4600-40"),
+    arm!("abb-irb6600-225"),
+    arm!("abb-irb6620"),
+    arm!("abb-irb6640-185"),
+    arm!("abb-irb6640-235"),
+    arm!("abb-irb6700-235"),
+    arm!("abb-irb7600-150"),
+    arm!("fanuc-m10ia"),
+    arm!("fanuc-m20ia"),
+    arm!("fanuc-m710ic-50"),
+    arm!("fanuc-m900ia-260l"),
+    arm!("fanuc-m900ib-700"),
+    arm!("kuka-kr10-r1100"),
+    arm!("kuka-kr100-ha"),
+    arm!("kuka-kr120-r2700-2"),
+    arm!("kuka-kr120-r3900"),
+    arm!("kuka-kr210-2"),
+    arm!("kuka-kr210-r2700"),
+    arm!("kuka-kr210-r2700-2"),
+    arm!("kuka-kr210-r3100"),
+    arm!("kuka-kr210-r3100-2"),
+    arm!("kuka-kr240-2"),
+    arm!("kuka-kr240-r2900-2"),
+    arm!("kuka-kr270-2"),
+    arm!("kuka-kr270-2-k1-0.265"),
+    arm!("kuka-kr270-2-k1-0.8"),
+    arm!("kuka-kr270-2-k1-1.41"),
+    arm!("kuka-kr270-2-k1-5.6"),
+    arm!("kuka-kr270-r2700"),
+    arm!("kuka-kr300-r2700-2"),
+    arm!("kuka-kr300-r2800-2-mt"),
+    arm!("kuka-kr360-l240"),
+    arm!("kuka-kr360-r2830"),
+    arm!("kuka-kr500"),
+    arm!("kuka-kr500-r2800-2"),
+    arm!("kuka-kr6-r900"),
+    arm!("kuka-kr60-ha"),
+    arm!("motoman-ms210"),
+    arm!("staubli-rx160l"),
+    arm!("staubli-tx200"),
+    arm!("staubli-tx200l"),
+    arm!("staubli-tx90"),
+];
+
+/// A shipped arm.
+#[derive(Debug, Clone)]
+pub struct ShippedArm {
+    /// The name to ask for it by.
+    pub name: &'static str,
+    /// Its geometry, limits and controller.
+    pub robot: Robot,
+    /// Where its numbers come from.
+    pub source: String,
+    /// Whether the stiffness of every joint is known.
+    pub has_stiffness: bool,
+    /// Whether masses and damping of the links are known, for motion and stability.
+    pub has_dynamics: bool,
+}
+
+/// All shipped arms, in the order of their names.
+///
+/// # Errors
+/// [`InputError`] where a shipped file is wrong, which the tests exclude.
+pub fn shipped_arms() -> Result<Vec<ShippedArm>, InputError> {
+    ARMS.iter().map(|(name, _)| shipped_arm(name)).collect()
+}
+
+/// A shipped arm by its name.
+fn shipped_arm(name: &'static str) -> Result<ShippedArm, InputError> {
+    let path = format!("{PREFIX}{name}");
+    let text = text(Path::new(&path)).transpose()?.unwrap_or_default();
+    let source = TomlFile::new(Path::new(&path), text.as_bytes().to_vec())?;
+    let file: RobotFile = source.parse()?.read()?;
+    Ok(ShippedArm {
+        name,
+        robot: geometry_from(&source)?,
+        has_stiffness: file.joints.iter().all(has_stiffness),
+        has_dynamics: file.joints.iter().all(|row| row.mass_kg.is_some()),
+        source: file.source,
+    })
+}
+
+/// The file of the shipped arm that a path names by `name:`; nothing for another path.
+///
+/// # Errors
+/// [`InputError`] where there is no arm of this name.
+pub(crate) fn text(file: &Path) -> Option<Result<&'static str, InputError>> {
+    let name = file.to_str()?.strip_prefix(PREFIX)?;
+    Some(by_name(name).ok_or_else(|| unknown(file)))
+}
+
+/// The file of the shipped arm of a name.
+pub(crate) fn by_name(name: &str) -> Option<&'static str> {
+    ARMS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// That a name is that of no shipped arm.
+fn unknown(file: &Path) -> InputError {
+    let name = file.to_str().and_then(|path| path.strip_prefix(PREFIX)).unwrap_or_default();
+    InputError::new(file, "is no shipped arm").allowed(names_near(name))
+}
+
+/// What may be asked for in the place of a name.
+pub(crate) fn names_near(name: &str) -> String {
+    let near = |(known, _): &&(&str, &str)| strsim::jaro(known, name);
+    let near =
+        ARMS.iter().max_by(|a, b| near(a).total_cmp(&near(b))).map(|(known, _)| format!("{known}, or another of "));
+    let near = near.unwrap_or_default();
+    format!("{near}the names that `stead robots` prints")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+    use std::collections::BTreeSet;
+    use stead_model::robot::{ControllerKind, Pose};
+    use stead_numerics::rotation::rotation_from_vector;
+
+    #[test]
+    fn every_shipped_file_is_there_by_its_name() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/robots");
+        let files: BTreeSet<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap().replace(".toml", ""))
+            .collect();
+        let names: Vec<&str> = ARMS.iter().map(|(name, _)| *name).collect();
+        assert!(names.is_sorted());
+        assert_eq!(names.into_iter().map(str::to_owned).collect::<BTreeSet<_>>(), files);
+    }
+
+    #[test]
+    fn arms_say_what_is_known_of_them() {
+        let arms = shipped_arms().unwrap();
+        let arm = |name: &str| arms.iter().find(|arm| arm.name == name).unwrap();
+        assert!(arms.iter().filter(|arm| arm.has_stiffness).count() >= 12);
+        assert!(arm("staubli-tx200").has_dynamics && !arm("abb-irb6640-235").has_stiffness);
+        assert!(arm("kuka-kr240-2").robot.unverified().len() == 3);
+        // All but the one of a maker whose controllers nothing is written for say how they count.
+        let silent: Vec<&str> =
+            arms.iter().filter(|arm| arm.robot.controller().is_none()).map(|arm| arm.name).collect();
+        assert_eq!(silent, ["motoman-ms210"]);
+    }
+
+    /// The axes of an arm at controller angles zero as its maker defines them: a point on each in mm, its direction; then the
+    /// flange. Written from the makers' drawings, without the rows.
+    fn zero_pose(robot: &Robot) -> ([([f64; 3], [f64; 3]); 6], Pose<f64>) {
+        let [first, second, third, fourth, _, sixth] = robot.joints();
+        let (low, shoulder, upper) = (first.d, second.a, third.a);
+        let (rise, forearm, hand, aside) = (-fourth.a, fourth.d, sixth.d, -third.d);
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let back = |v: [f64; 3]| v.map(|v| -v);
+        let turned = |columns: [[f64; 3]; 3]| Matrix3::from_columns(&columns.map(Vector3::from));
+        let kind = robot.controller().unwrap().kind;
+        let elbow = match kind {
+            // The arm stretched out level.
+            ControllerKind::Kuka => [shoulder + upper, 0.0, low],
+            _ => [shoulder, aside, low + upper],
+        };
+        let [ex, ey, ez] = elbow;
+        let (wrist, flange) = match kind {
+            ControllerKind::Staubli => ([ex, ey, ez + forearm], [ex, ey, ez + forearm + hand]),
+            _ => ([ex + forearm, ey, ez + rise], [ex + forearm + hand, ey, ez + rise]),
+        };
+        let (directions, rotation) = match kind {
+            ControllerKind::Kuka => ([back(z), y, y, back(x), y, back(x)], turned([back(z), y, x])),
+            ControllerKind::Abb => ([z, y, y, x, y, x], turned([back(z), y, x])),
+            ControllerKind::Fanuc => ([z, y, back(y), back(x), back(y), back(x)], turned([z, back(y), x])),
+            ControllerKind::Staubli => ([z, y, y, z, y, z], turned([x, y, z])),
+        };
+        let points = [[0.0; 3], [shoulder, 0.0, low], elbow, wrist, wrist, wrist];
+        let axes = std::array::from_fn(|joint| (points[joint], directions[joint]));
+        (axes, Pose { rotation, translation: flange.into() })
+    }
+
+    /// Rows and controller angles together give the flange where turning the maker's own axes one after the other brings it.
+    #[test]
+    fn controller_angles_turn_the_axes_as_the_maker_says() {
+        let mut seen = 0;
+        for arm in shipped_arms().unwrap() {
+            let Some(controller) = arm.robot.controller().copied() else { continue };
+            // This file is for other rows than the rest: those of its paper.
+            let is_same_rows = arm.robot.joints()[1].alpha > 0.0;
+            if !is_same_rows {
+                continue;
+            }
+            seen += 1;
+            let (axes, zero) = zero_pose(&arm.robot);
+            for trial in 0..20 {
+                let angles: [f64; 6] = std::array::from_fn(|joint| libm::sin((trial * 7 + joint * 3 + 1) as f64) * 2.0);
+                let mut turned = angles;
+                if controller.kind == ControllerKind::Fanuc {
+                    turned[2] += angles[1];
+                }
+                let expected = axes.iter().zip(turned).rev().fold(zero, |pose, ((point, axis), angle)| {
+                    let rotation = rotation_from_vector(&(Vector3::from(*axis) * angle));
+                    let point = Vector3::from(*point);
+                    Pose { rotation, translation: point - rotation * point }.then(&pose)
+                });
+                let found = arm.robot.forward(&controller.joints(&angles));
+                let off =
+                    (found.translation - expected.translation).norm() + (found.rotation - expected.rotation).norm();
+                assert!(off < 1e-12, "{}: {off}", arm.name);
+            }
+        }
+        assert!(seen > 40, "{seen}");
+    }
+
+    #[test]
+    fn an_unknown_name_is_refused_with_the_nearest() {
+        let message = text(Path::new("name:kuka-kr2702")).unwrap().unwrap_err().to_string();
+        assert!(
+            message.starts_with("name:kuka-kr2702: is no shipped arm; allowed: kuka-kr270-2, or another of "),
+            "{message}"
+        );
+        assert!(text(Path::new("robots/kuka-kr270-2.toml")).is_none());
+    }
+}

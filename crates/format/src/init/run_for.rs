@@ -1,0 +1,161 @@
+//! A run file for a robot and a task that are there.
+
+use crate::catalogue;
+use crate::input::InputError;
+use crate::new_file::write_new;
+use crate::robot::{read_geometry, says_stiffness};
+use crate::task::read_csv;
+use std::path::{Component, Path, PathBuf, absolute};
+use stead_model::robot::Robot;
+use stead_model::task::PathPoint;
+
+/// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What neither says is
+/// filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task without forces, the forces.
+///
+/// # Errors
+/// [`InputError`]: robot or task are wrong, or the run file is there already or cannot be written.
+pub fn init_run(robot: &Path, task: &Path, out: &Path) -> Result<(), InputError> {
+    let arm = read_geometry(robot)?;
+    let imported = read_csv(task)?;
+    let folder = out.parent().unwrap_or(Path::new(""));
+    let robot_name = match catalogue::text(robot) {
+        Some(_) => robot.display().to_string(),
+        None => relative(folder, robot),
+    };
+    let has_stiffness = says_stiffness(robot)?.unwrap_or(true);
+    let names = [robot_name, relative(folder, task)];
+    write_new(out, &text(&arm, imported.path.points(), imported.wrenches.is_some(), &names, has_stiffness))
+}
+
+/// The name of a file seen from a folder, with forward slashes; the whole name where there is no way between them.
+fn relative(folder: &Path, file: &Path) -> String {
+    let (Ok(folder), Ok(file)) = (absolute(folder.join(".")), absolute(file)) else { return shown(file) };
+    let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) =
+        (folder.components().collect(), file.components().collect());
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    // Another drive, or a way through a folder whose name is not known.
+    if common == 0 || from[common..].contains(&Component::ParentDir) {
+        return shown(&file);
+    }
+    let up = std::iter::repeat_n(Component::ParentDir, from.len() - common);
+    shown(&up.chain(to[common..].iter().copied()).collect::<PathBuf>())
+}
+
+fn shown(file: &Path) -> String {
+    file.to_string_lossy().replace('\\', "/")
+}
+
+/// A length to the next 10 mm. mm
+fn rounded(metres: f64) -> f64 {
+    (metres * 100.0).round() * 10.0
+}
+
+fn text(
+    robot: &Robot,
+    points: &[PathPoint],
+    has_forces: bool,
+    [robot_name, task]: &[String; 2],
+    has_stiffness: bool,
+) -> String {
+    let reach = robot.geometry().reach();
+    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
+    let root = robot.controller().and_then(|controller| controller.root_from_base);
+    let floor = root.map_or(0.0, |root| -root.translation.z.max(0.0));
+    let [x, y, z] = [0, 1, 2].map(|axis| middle(points, axis));
+    let range = |from: f64, to: f64| format!("[{:?}, {:?}]", rounded(from), rounded(to));
+    let quoted = |name: &str| toml::Value::from(name).to_string();
+    format!(
+        "\
+# A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. What says \"guess\"
+# is to be replaced by the figures of your cell; `stead check` shows what was understood.
+
+robot = {}{}
+task = {}
+
+[spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
+xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
+abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
+
+[cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in the base frame
+x_mm = {}                # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
+y_mm = {}
+z_mm = {}
+# q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
+
+[constraints]
+min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
+characteristic_length_mm = {:?}       # by which the translational part of the Jacobian is scaled: a quarter of the reach
+joint_margin_deg = 2.0                 # kept from every joint limit
+
+[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
+beta_step_deg = 5.0                    # grid of beta; a fraction of 360
+feed_mm_per_s = 50.0                   # guess, where the task has no feeds of its own
+max_beta_rate_deg_per_mm = 1.0
+{}",
+        quoted(robot_name),
+        if has_stiffness { "" } else { "   # states no joint stiffness yet, without which nothing can be placed" },
+        quoted(task),
+        range(0.45 * reach, 0.8 * reach),
+        range(-0.3 * reach, 0.3 * reach),
+        range(floor + 0.15 * reach, floor + 0.4 * reach),
+        rounded(reach / 4.0),
+        if has_forces { "" } else { FORCES },
+    )
+}
+
+/// Forces for a task that has none.
+const FORCES: &str = "
+[forces]                               # guess: the task has no forces. What the workpiece does to the tool, in the path's own frame
+feed_n = -60.0                         # along the feed
+normal_n = 120.0                       # to the left of the feed: towards or away from the wall
+axis_n = 40.0                          # along the tool axis, from the work into the spindle
+# In place of [forces]: the cutter and its cut, tables [tool] and [cut]
+";
+
+/// The middle of a path along an axis of the workpiece frame. mm
+fn middle(points: &[PathPoint], axis: usize) -> f64 {
+    let values = points.iter().map(|point| point.position[axis]);
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    rounded((low + high) / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::read_run;
+
+    #[test]
+    fn the_run_is_read_and_names_its_files_from_its_own_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        std::fs::create_dir(folder.join("tasks")).unwrap();
+        let task = folder.join("tasks/part.csv");
+        std::fs::write(&task, include_str!("task.csv")).unwrap();
+        let out = folder.join("runs/run.toml");
+        init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap();
+        let text = std::fs::read_to_string(&out).unwrap();
+        assert!(text.contains("robot = \"name:kuka-kr500\"\ntask = \"../tasks/part.csv\"\n"), "{text}");
+        assert!(!text.contains("[forces]"));
+        let run = read_run(&out).unwrap();
+        // The cell is in front of the arm, above the floor, within reach.
+        let [x, _, z] = run.problem.cell.position;
+        assert!(x.min > 1.0 && x.max < run.problem.robot.geometry().reach() && z.min > 0.0);
+        let message = init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap_err().to_string();
+        assert!(message.contains("run.toml: is there already"), "{message}");
+    }
+
+    #[test]
+    fn a_robot_without_stiffness_and_one_with_its_base_above_the_floor_are_minded() {
+        let folder = tempfile::tempdir().unwrap();
+        let task = folder.path().join("part.csv");
+        std::fs::write(&task, include_str!("task.csv")).unwrap();
+        let made = |robot: &str, name: &str| {
+            let out = folder.path().join(name);
+            init_run(Path::new(robot), &task, &out).unwrap();
+            std::fs::read_to_string(out).unwrap()
+        };
+        assert!(made("name:abb-irb6640-235", "a.toml").contains("states no joint stiffness yet"));
+        // The rows of this arm begin 750 mm above the floor.
+        assert!(made("name:kuka-kr270-2", "b.toml").contains("z_mm = [-340.0, 330.0]"));
+    }
+}

@@ -1,0 +1,139 @@
+//! What was understood of a run or a robot file, before anything is computed with it.
+
+use crate::columns::line;
+use crate::document::Document;
+use crate::units::{Unit, fixed};
+use serde_json::{Value, json};
+use stead_format::input::InputFile;
+use stead_model::robot::Robot;
+use stead_placement::overview::Overview;
+use stead_placement::problem::Problem;
+
+/// A run as it was understood.
+#[derive(Debug, Clone)]
+pub struct CheckedRun<'a> {
+    /// What is to be solved.
+    pub problem: &'a Problem,
+    /// Its figures.
+    pub overview: &'a Overview,
+    /// The files that were read.
+    pub inputs: &'a [InputFile],
+    /// What the user should know, in sentences.
+    pub notes: &'a [String],
+}
+
+const MM: Unit = Unit { factor: 1e3, decimals: 1 };
+const DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 1 };
+
+fn interval(unit: Unit, [min, max]: [f64; 2]) -> String {
+    format!("{} to {}", unit.text(min), unit.text(max))
+}
+
+/// What `stead check` prints of a run.
+pub fn run_text(run: &CheckedRun<'_>) -> String {
+    let CheckedRun { problem, overview, .. } = run;
+    let mut text = robot_lines(&problem.robot, None);
+    let mut say = |words: String| line(&mut text, &words);
+    let tool = &problem.spindle.flange_from_tool;
+    let [x, y, z] = [0, 1, 2].map(|axis| MM.text(tool.translation[axis]));
+    let [ax, ay, az] = [0, 1, 2].map(|axis| fixed(tool.rotation.column(2)[axis], 4));
+    say(format!("spindle   tool centre point in the flange frame: {x}, {y}, {z} mm"));
+    say(format!(
+        "          tool axis (z of the tool frame) there: {ax}, {ay}, {az}; {} deg from the flange axis",
+        DEG.text(overview.tool_tilt)
+    ));
+    let lengths = &overview.segment_lengths;
+    say(format!(
+        "path      {} points in {} segments, {} mm in all",
+        problem.task.points().len(),
+        lengths.len(),
+        MM.text(lengths.iter().sum())
+    ));
+    let [x, y, z] = overview.extents.map(|extent| interval(MM, extent));
+    say(format!("          in the workpiece frame x {x}, y {y}, z {z} mm"));
+    say(format!("          tool axis tilted {} deg against z of the workpiece", interval(DEG, overview.tilts)));
+    let newtons = |figure: f64| fixed(figure, 1);
+    say(format!("forces    mean {} N, largest {} N", newtons(overview.force.mean), newtons(overview.force.max)));
+    if overview.moment.max > 0.0 {
+        say(format!("          moment about the tool centre point up to {} N m", fixed(overview.moment.max, 2)));
+    }
+    say(format!("feed      {} mm/s", MM.text(problem.redundancy.feed)));
+    let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
+    let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
+    say(format!("cell      workpiece origin in the base frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
+    say(format!("          {} mm from axis 1", interval(MM, overview.cell_distances)));
+    let middle = &overview.middle;
+    say(format!(
+        "middle    {} of {} path points reached within the joint limits with the workpiece in the middle of the cell",
+        middle.reached, middle.tried
+    ));
+    text
+}
+
+/// What `stead check` prints of a robot file; `has_stiffness` is nothing where it goes without saying.
+pub fn robot_lines(robot: &Robot, has_stiffness: Option<bool>) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        &format!("robot     {}; wrist centre up to {} mm from axis 1", robot.name(), MM.text(robot.geometry().reach())),
+    );
+    let controller = robot.controller();
+    let words = match controller {
+        Some(controller) => {
+            let root = if controller.root_from_base.is_some() { "with its root frame" } else { "root frame not given" };
+            format!("{}, {root}", controller.kind.word())
+        }
+        None => "not given: no programs can be written ([controller], [root])".to_owned(),
+    };
+    line(&mut text, &format!("          controller: {words}"));
+    let limits: Vec<String> = robot.joints().iter().map(|joint| interval(DEG, [joint.min, joint.max])).collect();
+    line(&mut text, &format!("          joint limits, deg: {}", limits.join("; ")));
+    let stiffness = match has_stiffness {
+        Some(false) => "not given: measure the arm (stead identify plan), or take that of a shipped arm".to_owned(),
+        _ => {
+            let middle = std::array::from_fn(|joint| (robot.joints()[joint].min + robot.joints()[joint].max) / 2.0);
+            robot.compliances_at(&middle).map(|compliance| fixed(1e-6 / compliance, 3)).join("; ") + " MN m/rad"
+        }
+    };
+    line(&mut text, &format!("          joint stiffness: {stiffness}"));
+    text
+}
+
+/// What `stead check --json` prints of a run.
+pub fn run_json(run: &CheckedRun<'_>) -> Value {
+    let CheckedRun { problem, overview, inputs, notes } = run;
+    let mm = |values: [f64; 2]| values.map(|value| MM_EXACT.number(value));
+    let deg = |values: [f64; 2]| values.map(|value| Unit::ANGLE_DEG.number(value));
+    let middle = &overview.middle;
+    Document::new(inputs).notes(notes.iter()).with(json!({
+        "robot": robot_json(&problem.robot),
+        "tool_tilt_deg": Unit::ANGLE_DEG.number(overview.tool_tilt),
+        "points": problem.task.points().len(),
+        "segments": overview.segment_lengths.len(),
+        "segment_lengths_mm": overview.segment_lengths.iter().map(|length| MM_EXACT.number(*length)).collect::<Vec<_>>(),
+        "extents_mm": overview.extents.map(mm),
+        "tilts_deg": deg(overview.tilts),
+        "force_n": { "mean": overview.force.mean, "max": overview.force.max },
+        "moment_nm": { "mean": overview.moment.mean, "max": overview.moment.max },
+        "cell_distances_mm": mm(overview.cell_distances),
+        "middle": {
+            "placement": crate::document::placement(&middle.placement),
+            "points_tried": middle.tried,
+            "points_reached": middle.reached,
+        },
+    }))
+}
+
+/// A length in a document.
+const MM_EXACT: Unit = Unit { factor: 1e3, decimals: 4 };
+
+/// An arm in a document.
+pub fn robot_json(robot: &Robot) -> Value {
+    json!({
+        "name": robot.name(),
+        "wrist_reach_mm": MM_EXACT.number(robot.geometry().reach()),
+        "controller": robot.controller().map(|controller| controller.kind.word()),
+        "has_root": robot.controller().is_some_and(|controller| controller.root_from_base.is_some()),
+        "unverified": robot.unverified(),
+    })
+}

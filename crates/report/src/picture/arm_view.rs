@@ -1,0 +1,152 @@
+//! An arm drawn from its rows, from the side and from above, with the cell and the tool path in the middle of it.
+
+use super::axes::{Panel, Scale, around};
+use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
+use super::colour::{BLUE, GREEN, GREY, INK, RED};
+use crate::units::fixed;
+use nalgebra::Vector3;
+use stead_model::robot::{Frames, Robot, Spindle};
+use stead_placement::overview::Overview;
+use stead_placement::problem::{Cell, Problem};
+
+const SIZE: Pixel = (1110, 640);
+/// Left edges of the two panels.
+const COLUMNS: [i32; 2] = [85, 635];
+/// Upper edge of the panels.
+const TOP: i32 = 100;
+/// Width and height of a panel.
+const SIDE: i32 = 455;
+/// What the two panels show: the arm from the side, in the upright plane through axis 1 and the wrist, and from above.
+const VIEWS: [(&str, [&str; 2]); 2] =
+    [("From the side", ["from axis 1 towards the wrist (mm)", "z (mm)"]), ("From above", ["x (mm)", "y (mm)"])];
+
+/// What is drawn beside the arm.
+struct Surroundings<'a> {
+    cell: &'a Cell,
+    /// The tool path, a line for each segment. m
+    path: Vec<Vec<Vector3<f64>>>,
+}
+
+/// The arm of a run at the first path point that it reaches with the workpiece in the middle of its cell, or in the middle of its
+/// joint ranges where it reaches none.
+pub fn arm_of_run(problem: &Problem, overview: &Overview) -> String {
+    let base_from_workpiece = overview.middle.placement.base_from_workpiece();
+    let points = problem.task.points();
+    let of_segment = |segment: &std::ops::Range<usize>| {
+        points[segment.clone()].iter().map(|point| base_from_workpiece.point(&point.position)).collect()
+    };
+    let path = problem.task.segments().iter().map(of_segment).collect();
+    let surroundings = Surroundings { cell: &problem.cell, path };
+    let joints = overview.middle.joints.unwrap_or_else(|| middle(&problem.robot));
+    drawn(&problem.robot, &joints, Some(&problem.spindle), Some(&surroundings))
+}
+
+/// An arm alone, in the middle of its joint ranges.
+pub fn arm_alone(robot: &Robot) -> String {
+    drawn(robot, &middle(robot), None, None)
+}
+
+/// The middle of every joint range. rad
+fn middle(robot: &Robot) -> [f64; 6] {
+    std::array::from_fn(|joint| (robot.joints()[joint].min + robot.joints()[joint].max) / 2.0)
+}
+
+fn drawn(
+    robot: &Robot,
+    joints: &[f64; 6],
+    spindle: Option<&Spindle>,
+    surroundings: Option<&Surroundings<'_>>,
+) -> String {
+    let frames = Frames::new(robot, joints);
+    let to_wrist = Vector3::new(frames.wrist_centre().x, frames.wrist_centre().y, 0.0);
+    let ahead = to_wrist.try_normalize(1e-6).unwrap_or_else(Vector3::x);
+    let directions = [[ahead, Vector3::z()], [Vector3::x(), Vector3::y()]];
+    let flange = frames.base_from_flange.translation;
+    let tip = spindle.map(|on| frames.base_from_flange.then(&on.flange_from_tool));
+    let mut arm = vec![Vector3::zeros()];
+    arm.extend(frames.origins);
+    arm.push(flange);
+    let mut all = arm.clone();
+    all.extend(tip.map(|tip| tip.translation));
+    if let Some(Surroundings { cell, path }) = surroundings {
+        all.extend(path.iter().flatten());
+        all.extend((0..8).map(|corner| corner_of(cell, corner)));
+    }
+    picture(SIZE, |canvas| {
+        canvas.title(&format!("{}, drawn from its rows in the base frame", robot.name()), (COLUMNS[0], 24));
+        let angles = joints.map(|angle| fixed(angle.to_degrees(), 1)).join(", ");
+        canvas.text(&format!("joint angles {angles} deg"), (COLUMNS[0], 50), TextStyle::new(12.0).coloured(INK));
+        for (((title, labels), along), left) in VIEWS.into_iter().zip(directions).zip(COLUMNS) {
+            let shown = |point: &Vector3<f64>| along.map(|direction| point.dot(&direction) * 1e3);
+            let panel = panel(all.iter().map(shown), left, labels);
+            let place = |point: &Vector3<f64>| {
+                let [x, y] = shown(point);
+                panel.place(x, y)
+            };
+            canvas.text(title, (left, TOP - 18), TextStyle::new(13.0).bold().coloured(INK));
+            panel.draw_grid(canvas);
+            if let Some(surroundings) = surroundings {
+                draw_surroundings(canvas, surroundings, &place);
+            }
+            draw_arm(canvas, &arm, &place);
+            if let Some(tip) = tip {
+                // The tool axis, as far out of the spindle as the picture makes it visible.
+                let out = tip.translation + tip.rotation.column(2) * 0.15;
+                canvas.curve(&[place(&flange), place(&tip.translation)], RED, 3);
+                canvas.arrow(place(&tip.translation), place(&out), RED, 2);
+            }
+            panel.draw_frame(canvas);
+        }
+        let legend = "grey: links, with joints as dots; red: spindle and tool axis; green: tool path with the workpiece in the middle of the \
+                      cell (dashed)";
+        canvas.text(
+            if surroundings.is_some() { legend } else { "grey: links, with joints as dots" },
+            (COLUMNS[0], 615),
+            TextStyle::new(12.0),
+        );
+    })
+}
+
+fn draw_arm(canvas: &mut Canvas, arm: &[Vector3<f64>], place: &impl Fn(&Vector3<f64>) -> Place) {
+    let places: Vec<Place> = arm.iter().map(place).collect();
+    canvas.curve(&places, GREY, 6);
+    places.iter().for_each(|joint| canvas.dot(*joint, 5, INK));
+    canvas.dot(places[0], 7, BLUE);
+}
+
+fn draw_surroundings(
+    canvas: &mut Canvas,
+    Surroundings { cell, path }: &Surroundings<'_>,
+    place: &impl Fn(&Vector3<f64>) -> Place,
+) {
+    // The twelve edges of the cell: from every corner along each axis whose lower end it is at.
+    for corner in 0..8_usize {
+        for axis in (0..3).filter(|axis| corner >> axis & 1 == 0) {
+            let [from, to] = [corner, corner | 1 << axis].map(|corner| {
+                let (x, y) = place(&corner_of(cell, corner));
+                (x.round() as i32, y.round() as i32)
+            });
+            canvas.dashed(from, to, INK);
+        }
+    }
+    for segment in path {
+        canvas.edged_curve(&segment.iter().map(place).collect::<Vec<_>>(), GREEN, 3);
+    }
+}
+
+/// A corner of the cell: bit `k` of its number says whether it is at the upper end of axis `k`.
+fn corner_of(cell: &Cell, corner: usize) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| {
+        let bounds = cell.position[axis];
+        if corner >> axis & 1 == 1 { bounds.max } else { bounds.min }
+    })
+}
+
+/// A panel to one scale around points. mm
+fn panel(points: impl Iterator<Item = [f64; 2]>, left: i32, labels: [&'static str; 2]) -> Panel {
+    let [low, high] = around(points).unwrap_or_default();
+    let half = 0.55 * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
+    let [x, y] = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+    let (x, y) = (Scale::new(x - half, x + half, left, left + SIDE), Scale::new(y - half, y + half, TOP + SIDE, TOP));
+    Panel::new(x, y, [8, 8], labels)
+}

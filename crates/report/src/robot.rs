@@ -1,0 +1,201 @@
+//! Arms: the poses of given joint angles, and the list of shipped arms.
+
+use crate::columns::{aligned, line};
+use crate::document::Document;
+use crate::units::{Unit, fixed};
+use serde_json::{Value, json};
+use stead_format::catalogue::ShippedArm;
+use stead_format::input::InputFile;
+use stead_model::robot::{Controller, Pose, Posture, Robot, Spindle, turns::Range};
+use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
+
+/// An arm at given joint angles.
+#[derive(Debug, Clone)]
+pub struct ArmPose {
+    /// The arm.
+    pub robot: Robot,
+    /// The joint angles of the rows. rad
+    pub joints: [f64; 6],
+    /// The spindle on the flange, where one is given.
+    pub spindle: Option<Spindle>,
+    /// The files that were read.
+    pub inputs: Vec<InputFile>,
+}
+
+/// A frame with its name: `flange in base`.
+type NamedFrame = (&'static str, &'static str, Pose<f64>);
+
+impl ArmPose {
+    /// Flange and tool in the base frame of the rows, and in the controller's root frame where that is known.
+    fn frames(&self) -> Vec<NamedFrame> {
+        let flange = self.robot.forward(&self.joints);
+        let of_base = [("flange", Some(flange)), ("tool", self.spindle.map(|on| flange.then(&on.flange_from_tool)))];
+        let of_base = of_base.into_iter().filter_map(|(name, pose)| Some((name, pose?)));
+        let root = self.robot.controller().and_then(|controller| controller.root_from_base);
+        let in_root = |(name, pose): (&'static str, Pose<f64>)| root.map(|root| (name, "root", root.then(&pose)));
+        let base: Vec<NamedFrame> = of_base.map(|(name, pose)| (name, "base", pose)).collect();
+        let roots: Vec<NamedFrame> = base.iter().filter_map(|(name, _, pose)| in_root((name, *pose))).collect();
+        base.into_iter().chain(roots).collect()
+    }
+
+    /// The joint angles of every posture that has the flange here, inside the limits where they can be, and whether they are; none
+    /// where the posture does not reach the pose.
+    fn postures(&self) -> Vec<(Posture, Option<([f64; 6], bool)>)> {
+        let flange = self.robot.forward(&self.joints);
+        let of = |posture: Posture| {
+            let wrapped = self.robot.inverse(&flange, posture).ok()?;
+            let nearest = |joint: usize| Range::of(&self.robot.joints()[joint]).nearest(wrapped[joint]);
+            let angles = std::array::from_fn(|joint| nearest(joint).0);
+            Some((angles, (0..6).all(|joint| nearest(joint).1 == 0.0)))
+        };
+        Posture::ALL.into_iter().map(|posture| (posture, of(posture))).collect()
+    }
+
+    /// That given angles are beyond a limit, a sentence for each.
+    pub fn notes(&self) -> Vec<String> {
+        let beyond = |(joint, angle): (usize, f64)| {
+            let row = &self.robot.joints()[joint];
+            (angle < row.min - 1e-9 || angle > row.max + 1e-9).then(|| {
+                let [angle, min, max] = [angle, row.min, row.max].map(f64::to_degrees);
+                format!("joint {} at {angle:.3} deg is beyond its limits, {min:.3} to {max:.3} deg", joint + 1)
+            })
+        };
+        self.joints.into_iter().enumerate().filter_map(beyond).collect()
+    }
+}
+
+/// A position as controllers show it.
+const PLACE_MM: Unit = Unit { factor: 1e3, decimals: 3 };
+/// An angle as controllers show it, with a digit more.
+const ANGLE_DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 4 };
+
+/// What `stead pose` prints.
+pub fn pose_text(pose: &ArmPose) -> String {
+    let mut text = String::new();
+    line(&mut text, &format!("{}, posture {}", pose.robot.name(), Posture::of(&pose.robot, &pose.joints)));
+    text.push('\n');
+    let controller = pose.robot.controller();
+    let names: Vec<String> = (1..=6).map(|joint| format!("joint {joint}")).collect();
+    let row = |name: &str, angles: [f64; 6]| {
+        std::iter::once(name.to_owned()).chain(angles.map(|angle| ANGLE_DEG.text(angle))).collect::<Vec<_>>()
+    };
+    let mut rows = vec![std::iter::once(String::new()).chain(names.clone()).collect()];
+    rows.push(row("theta deg", pose.joints));
+    rows.extend(controller.map(|controller| row("controller deg", controller.angles(&pose.joints))));
+    text.push_str(&aligned(&rows, &[0]));
+    text.push('\n');
+    text.push_str(&frames_text(&pose.frames()));
+    text.push_str(&format!("\nAll postures of this flange pose, in {}\n\n", angles_of(controller)));
+    let header = std::iter::once("posture".to_owned()).chain(names).chain(std::iter::once("within limits".to_owned()));
+    let mut rows = vec![header.collect::<Vec<_>>()];
+    for (posture, found) in pose.postures() {
+        let angles = found.map(|(angles, _)| controller.map_or(angles, |controller| controller.angles(&angles)));
+        let cells = angles.map_or_else(|| vec!["-".to_owned(); 6], |of| of.map(|angle| ANGLE_DEG.text(angle)).into());
+        let verdict = match found {
+            Some((_, true)) => "yes",
+            Some((_, false)) => "no",
+            None => "out of reach",
+        };
+        rows.push(std::iter::once(posture.to_string()).chain(cells).chain([verdict.to_owned()]).collect());
+    }
+    text.push_str(&aligned(&rows, &[7]));
+    text
+}
+
+/// What the angles of the table of postures are.
+fn angles_of(controller: Option<&Controller>) -> &'static str {
+    if controller.is_some() { "controller angles, deg" } else { "angles of the rows, deg" }
+}
+
+fn frames_text(frames: &[NamedFrame]) -> String {
+    let header = ["frame", "x mm", "y mm", "z mm", "A deg", "B deg", "C deg", "qw", "qx", "qy", "qz"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (name, of, pose) in frames {
+        let place = pose.translation.iter().map(|v| PLACE_MM.text(*v));
+        let angles = zyx_from_rotation(&pose.rotation).map(|angle| ANGLE_DEG.text(angle));
+        let quaternion = quaternion_from_rotation(&pose.rotation).map(|v| fixed(v, 6));
+        rows.push(std::iter::once(format!("{name} in {of}")).chain(place).chain(angles).chain(quaternion).collect());
+    }
+    let mut text = aligned(&rows, &[0]);
+    text.push_str(
+        "\nRotation = Rz(A) Ry(B) Rx(C): KUKA's A, B, C; Fanuc's R, P, W; yaw, pitch, roll. As matrices, by rows:\n",
+    );
+    for (name, of, pose) in frames {
+        let row = |k: usize| pose.rotation.row(k).iter().map(|v| fixed(*v, 6)).collect::<Vec<_>>().join(", ");
+        text.push_str(&format!("{name} in {of}: [[{}], [{}], [{}]]\n", row(0), row(1), row(2)));
+    }
+    text
+}
+
+/// What `stead pose --json` prints.
+pub fn pose_json(pose: &ArmPose) -> Value {
+    let angles = |angles: &[f64; 6]| angles.map(|angle| ANGLE_DEG.number(angle));
+    let controller = pose.robot.controller();
+    let by_controller = |joints: &[f64; 6]| controller.map(|controller| angles(&controller.angles(joints)));
+    let frame = |(name, of, pose): &NamedFrame| {
+        let rotation = &pose.rotation;
+        json!({
+            "frame": name,
+            "in": of,
+            "xyz_mm": pose.translation.iter().map(|v| PLACE_MM.number(*v)).collect::<Vec<_>>(),
+            "abc_deg": zyx_from_rotation(rotation).map(|angle| ANGLE_DEG.number(angle)),
+            "quaternion_wxyz": quaternion_from_rotation(rotation),
+            "rotation": (0..3).map(|k| rotation.row(k).iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
+        })
+    };
+    let posture = |(posture, found): (Posture, Option<([f64; 6], bool)>)| {
+        json!({
+            "posture": posture,
+            "joints_deg": found.as_ref().map(|(joints, _)| angles(joints)),
+            "controller_deg": found.as_ref().and_then(|(joints, _)| by_controller(joints)),
+            "within_limits": found.is_some_and(|(_, is_within)| is_within),
+        })
+    };
+    Document::new(&pose.inputs).notes(pose.notes()).with(json!({
+        "robot": pose.robot.name(),
+        "posture": Posture::of(&pose.robot, &pose.joints),
+        "joints_deg": angles(&pose.joints),
+        "controller_deg": by_controller(&pose.joints),
+        "frames": pose.frames().iter().map(frame).collect::<Vec<_>>(),
+        "postures": pose.postures().into_iter().map(posture).collect::<Vec<_>>(),
+    }))
+}
+
+/// What `stead robots` prints.
+pub fn robots_text(arms: &[ShippedArm]) -> String {
+    let header = ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "controller", "not verified"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let yes = |is: bool| if is { "yes" } else { "-" }.to_owned();
+    for arm in arms {
+        let unverified = arm.robot.unverified();
+        rows.push(vec![
+            arm.name.to_owned(),
+            arm.robot.name().to_owned(),
+            arm.robot.data_sheet().payload.map_or_else(String::new, |kg| fixed(kg, 0)),
+            fixed(arm.robot.geometry().reach() * 1e3, 0),
+            yes(arm.has_stiffness),
+            yes(arm.has_dynamics),
+            arm.robot.controller().map_or_else(|| "-".to_owned(), |controller| controller.kind.word().to_owned()),
+            if unverified.is_empty() { "-".to_owned() } else { unverified.join("; ") },
+        ]);
+    }
+    aligned(&rows, &[0, 1, 4, 5, 6, 7])
+}
+
+/// What `stead robots --json` prints.
+pub fn robots_json(arms: &[ShippedArm]) -> Value {
+    let one = |arm: &ShippedArm| {
+        json!({
+            "name": arm.name,
+            "robot": arm.robot.name(),
+            "payload_kg": arm.robot.data_sheet().payload,
+            "wrist_reach_mm": Unit { factor: 1e3, decimals: 3 }.number(arm.robot.geometry().reach()),
+            "has_stiffness": arm.has_stiffness,
+            "has_masses": arm.has_dynamics,
+            "controller": arm.robot.controller().map(|controller| controller.kind.word()),
+            "unverified": arm.robot.unverified(),
+            "source": arm.source,
+        })
+    };
+    Document::new(&[]).with(json!({ "robots": arms.iter().map(one).collect::<Vec<_>>() }))
+}

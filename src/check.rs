@@ -1,0 +1,98 @@
+//! What was understood of a run or a robot file.
+
+use crate::result::{Report, result};
+use crate::{Arm, Error, Run};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use stead_format::input::InputFile;
+use stead_format::robot::says_stiffness;
+use stead_placement::overview::Overview;
+use stead_placement::problem::Problem;
+use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
+use stead_report::document::Document;
+use stead_report::picture::{arm_alone, arm_of_run};
+use stead_report::{Files, Folder};
+
+/// What was understood of a file: figures to compare with what was meant, and the arm as a picture.
+#[derive(Debug, Clone)]
+pub struct Checked {
+    text: String,
+    document: Value,
+    picture: String,
+    notes: Vec<String>,
+}
+
+impl Checked {
+    /// Reads a run file, or a robot file, which need not state its stiffness, and says what was understood.
+    ///
+    /// ```
+    /// let checked = stead::Checked::read("configs/caro-2013.toml")?;
+    /// assert_eq!(checked.to_json()["middle"]["points_tried"], 105);
+    /// assert!(checked.to_string().contains("45.0 deg from the flange axis"));
+    /// # Ok::<(), stead::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        let file = file.as_ref();
+        match says_stiffness(file)? {
+            Some(has_stiffness) => {
+                let arm = Arm::read(file)?;
+                Ok(Self::of_arm(&arm, has_stiffness))
+            }
+            None => {
+                let run = Run::read(file)?;
+                Ok(Self::of_run(run.problem(), run.inputs(), run.notes()))
+            }
+        }
+    }
+
+    fn of_arm(arm: &Arm, has_stiffness: bool) -> Self {
+        let robot = arm.robot();
+        let notes = stead_model::plausibility::arm(robot);
+        let result = serde_json::json!({ "robot": robot_json(robot), "has_stiffness": has_stiffness });
+        Self {
+            text: robot_lines(robot, Some(has_stiffness)),
+            document: Document::new(arm.inputs()).notes(&notes).with(result),
+            picture: arm_alone(robot),
+            notes,
+        }
+    }
+
+    fn of_run(problem: &Problem, inputs: &[InputFile], notes: &[String]) -> Self {
+        let overview = Overview::of(problem);
+        let notes: Vec<String> = notes.iter().cloned().chain(overview.notes()).collect();
+        let run = CheckedRun { problem, overview: &overview, inputs, notes: &notes };
+        Self { text: run_text(&run), document: run_json(&run), picture: arm_of_run(problem, &overview), notes }
+    }
+
+    /// The arm as it was understood, as SVG.
+    pub fn picture(&self) -> &str {
+        &self.picture
+    }
+}
+
+impl Report for Checked {
+    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        Ok(folder.results("check", &[]).write(&self.files()?)?)
+    }
+
+    fn files(&self) -> Result<Files, Error> {
+        Ok(vec![("check.svg".to_owned(), self.picture.clone().into_bytes())])
+    }
+
+    fn document(&self) -> Value {
+        self.document.clone()
+    }
+
+    fn table(&self) -> String {
+        self.text.clone()
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+}
+
+result!(Checked);
