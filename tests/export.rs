@@ -38,7 +38,7 @@ fn check(bench: &Bench, more: &[&str]) -> Ended {
 #[test]
 fn a_program_is_written_with_its_frames_and_read_back() {
     let bench = bench();
-    let ended = export(&bench, &["--max-moves", "60"]);
+    let ended = export(&bench, &["--max-moves", "70"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     for part in [
         "PART: krl for KUKA KR270-2\n5 segments, 115 moves (5 to joint angles, 110 on lines) in 2 parts\n",
@@ -60,7 +60,7 @@ fn a_program_is_written_with_its_frames_and_read_back() {
 
     let json = bench.stead(&[&KRL[..], &["--out", "q/PART", "--json"]].concat()).json();
     assert_eq!((&json["linear_moves"], &json["parts"]), (&110.into(), &1.into()));
-    assert_eq!(json["frames"][1]["abc_deg"][0], 90.0);
+    assert!((json["frames"][1]["abc_deg"][0].as_f64().unwrap() - 90.0).abs() < 1e-6);
 }
 
 #[test]
@@ -132,7 +132,6 @@ fn a_corrected_path_is_followed() {
 #[test]
 fn what_is_refused_leaves_nothing_behind() {
     let bench = bench();
-    bench.copy("results/caro-2013/worst.csv", "other/plan.csv");
     let row = bench.read(PLAN).lines().nth(8).unwrap().to_owned();
     bench.write("other/moved.csv", &bench.read(PLAN).replace(&row, &row.replacen(',', ",9", 1)));
     bench.write("p/THERE_01.src", "mine");
@@ -156,7 +155,7 @@ fn what_is_refused_leaves_nothing_behind() {
     );
     refused(&with(&["--out", "p/1PART"]), &["--out: '1PART' does not begin with a letter"]);
     refused(&with(&["--out", "p/PART.src"]), &["--out: 'PART.src' has other characters"]);
-    refused(&with(&["--out", ".."]), &["--out: '' is "]);
+    refused(&with(&["--out", ".."]), &["--out: '' does not begin with a letter"]);
     refused(&with(&["--out", "p/THERE"]), &["p/THERE_01.src: is there already, and is left as it is"]);
     refused(
         &["export", RUN, PLAN, "--format", "fanuc", "--out", "p/PART"],

@@ -93,7 +93,8 @@ fn the_elbow_of_a_fanuc_is_up_where_it_is_above_the_line_from_shoulder_to_wrist(
         let posture = Posture::of(&robot, &joints);
         let frames = Frames::new(&robot, &joints);
         let [shoulder, elbow, wrist] = [frames.origins[1], frames.origins[2], frames.wrist_centre()];
-        let ahead = Vector3::new(joints[0].cos(), joints[0].sin(), 0.0);
+        let (sine, cosine) = libm::sincos(joints[0]);
+        let ahead = Vector3::new(cosine, sine, 0.0);
         let side = |v: Vector3<f64>| (v.dot(&ahead), v.z);
         let ((ex, ez), (wx, wz)) = (side(elbow - shoulder), side(wrist - shoulder));
         let above = wx * ez - wz * ex;
