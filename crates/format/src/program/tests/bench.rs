@@ -48,6 +48,7 @@ characteristic_length_mm = 682
 [redundancy]
 beta_step_deg = 7.2
 feed_mm_per_s = 66.667
+max_beta_rate_deg_per_mm = 0.9
 ";
 
 /// A folder with run, arm, task and plan.

@@ -164,7 +164,7 @@ fn a_joint_that_is_a_turn_away_and_a_move_of_the_other_kind_are_found() {
         assert!(check.mismatch.as_ref().is_some_and(|text| text.contains("axis 6 is a turn away")), "{check:?}");
     }
     for (from, to) in
-        [("LIN {", "CIRC {"), ("PTP {A1", "SPTP {A1"), ("END", "FOR I=1 TO 3\nEND"), ("$TOOL={", "$TOOL.Z={")]
+        [("LIN {", "CIRC {"), ("PTP {A1", "SPTP {A1"), ("\nEND\n", "\nFOR I=1 TO 3\nEND\n"), ("$TOOL={", "$TOOL.Z={")]
     {
         std::fs::write(&file, original.replacen(from, to, 1)).unwrap();
         let message = bench.check(&main).unwrap_err().to_string();

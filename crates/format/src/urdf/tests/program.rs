@@ -7,6 +7,7 @@ use crate::program::tests::bench::{ARMS, Bench};
 use crate::program::{ExportOptions, Program, ProgramFormat};
 use nalgebra::{Rotation3, Vector3};
 use stead_model::robot::Pose;
+use stead_numerics::rotation::rotation_vector;
 
 /// The numbers of a line, in their order.
 fn numbers(line: &str) -> Vec<f64> {
@@ -109,8 +110,7 @@ fn the_moves_of_a_program_are_the_task_through_the_urdf() {
         };
         let near = |found: &Pose<f64>, wanted: &Pose<f64>, place: &str| {
             let off_mm = (found.translation - wanted.translation).norm() * 1e3;
-            let off_deg =
-                Rotation3::from_matrix_unchecked(found.rotation.transpose() * wanted.rotation).angle().to_degrees();
+            let off_deg = rotation_vector(&(found.rotation.transpose() * wanted.rotation)).norm().to_degrees();
             assert!(off_mm < 0.01 && off_deg < 0.01, "{name}, {place}: {off_mm} mm, {off_deg} deg");
         };
         // The angles of every move stand in the table.
