@@ -20,6 +20,8 @@
 //! | [`Run`] | [`place`](Run::place) | [`Placements`] | `stead place` |
 //! | [`Run`] | [`score`](Run::score) | [`PlacementScore`] | `stead score` |
 //! | [`Run`] | [`explain`](Run::explain) | [`Explanations`] | `stead explain` |
+//! | [`Run`] | [`export`](Run::export) | [`ExportedProgram`] | `stead export` |
+//! | [`Run`] | [`check_program`](Run::check_program) | [`CheckedProgram`] | `stead export --check` |
 //! | [`Study`] | [`run`](Study::run) | [`Finished`] | `stead study run` |
 //! | [`AssessmentRun`] | [`assess`](AssessmentRun::assess) | [`RobotAssessment`] | `stead assess` |
 //! | [`FitRun`] | [`fit`](FitRun::fit) | [`IdentifiedRobot`] | `stead identify fit` |
@@ -49,6 +51,7 @@ mod check;
 mod circularity;
 mod compensation;
 mod error;
+mod export;
 pub mod guide;
 mod identification;
 mod result;
@@ -63,6 +66,7 @@ pub use check::Checked;
 pub use circularity::{Circularity, Profile};
 pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
+pub use export::{CheckedProgram, ExportedProgram};
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
 pub use robot::{Arm, PoseOfArm, ShippedArms};
 pub use run::{Placements, Run};
@@ -72,12 +76,16 @@ pub use stead_assessment::roundness::Sector;
 pub use stead_format::Overrides;
 pub use stead_format::cam::gcode::Machine;
 pub use stead_format::cam::{
-    ImportedPath, LengthUnit, ProgramFormat, ReadSettings as PathSettings, Resampling, import_path,
+    CamFormat, ImportedPath, LengthUnit, ReadSettings as PathSettings, Resampling, import_path,
 };
 pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init, init_run};
 pub use stead_format::input::InputError;
+pub use stead_format::program::check::{Largest, MovePlace, ProgramCheck};
+pub use stead_format::program::{
+    CorrectedPath, ExportOptions, OperatorFrame, Program, ProgramFile, ProgramFormat, Rotation,
+};
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
 pub use stead_format::urdf::{Deviation, HomePose, ImportOptions, ImportedRobot, ImportedRow, import_robot};

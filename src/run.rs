@@ -33,7 +33,7 @@ use stead_study::{self as study, Placed, Scored};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Run {
-    run: Arc<format::Run>,
+    pub(crate) run: Arc<format::Run>,
 }
 
 impl Run {

@@ -34,7 +34,13 @@ fn long_help(bench: &Bench, command: &[String]) -> String {
 fn the_overview_groups_every_command_by_its_question() {
     let bench = Bench::new();
     let overview = bench.stead(&["--help"]).stdout;
-    for heading in ["Where to put the workpiece:", "How good a robot is", "What the loaded tool does:", "Exit codes:"] {
+    for heading in [
+        "Where to put the workpiece:",
+        "How good a robot is",
+        "What the loaded tool does:",
+        "What the robot is to run:",
+        "Exit codes:",
+    ] {
         assert!(overview.contains(heading), "{heading} in {overview}");
     }
     // The parser's own list, which no group can leave a command out of.
@@ -44,6 +50,7 @@ fn the_overview_groups_every_command_by_its_question() {
     let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
     for name in expected.into_iter().chain([
         "circularity",
+        "export",
         "robot",
         "robots",
         "pose",

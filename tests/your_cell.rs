@@ -39,7 +39,8 @@ fn edit(bench: &Bench, file: &str, lines: &[&str]) {
         }
         let key = format!("{} ", line.split(' ').next().unwrap());
         let from = edited.iter().position(|own| own.starts_with(&table)).unwrap_or_else(|| panic!("{table} in {file}"));
-        let at = edited[from..].iter().position(|own| own.starts_with(&key)).unwrap_or_else(|| panic!("{key} in {file}"));
+        let at =
+            edited[from..].iter().position(|own| own.starts_with(&key)).unwrap_or_else(|| panic!("{key} in {file}"));
         edited[from + at] = (*line).to_owned();
     }
     bench.write(file, &(edited.join("\n") + "\n"));

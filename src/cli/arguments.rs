@@ -1,6 +1,7 @@
 //! The arguments of the command line: subcommands and options.
 
 use super::check::CheckOptions;
+use super::export::ExportCommand;
 use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
 use super::help;
 use super::import::ImportCommand;
@@ -44,6 +45,9 @@ pub(super) enum Command {
     /// Correct a path so that the deflected tool follows the target path
     #[command(after_long_help = help::COMPENSATE)]
     Compensate(CompensateOptions),
+    /// Write a robot program from a plan: KRL, RAPID, Fanuc or CSV; or read one back and compare it
+    #[command(after_long_help = super::export::HELP)]
+    Export(ExportCommand),
     /// Identify joint compliances from measured deflections: plan the measurements, fit the parameters
     #[command(subcommand)]
     Identify(IdentifyCommand),

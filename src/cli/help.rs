@@ -2,11 +2,12 @@
 //! the question that they answer.
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
-const GROUPS: [(&str, &[&str]); 7] = [
+const GROUPS: [(&str, &[&str]); 8] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
+    ("What the robot is to run", &["export"]),
     ("How round a measured profile is", &["circularity"]),
     ("What was understood of robots and runs", &["check", "pose", "robots"]),
     ("Input files, shell and manual", &[]),

@@ -11,6 +11,7 @@ mod circularity;
 mod compensate;
 mod completions;
 mod explain;
+mod export;
 mod given;
 mod help;
 mod identify;
@@ -98,6 +99,7 @@ pub fn main() -> ExitCode {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
+        Command::Export(options) => export::run(&options),
         Command::Study(command) => study::run(&command),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),

@@ -2,7 +2,7 @@
 //!
 //! | question | page |
 //! |---|---|
-//! | How do I begin with my own cell? | [`starting`] |
+//! | How do I begin with my own cell? | [`your_cell`], [`starting`] |
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
@@ -13,6 +13,7 @@
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
 //! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
+//! | How do I get the plan onto the robot? | [`export`] |
 //! | Will the cut chatter? | [`stability`] |
 //! | What do forces and surface look like over time? | [`simulate`] |
 //! | How round is a measured profile? | [`circularity`] |
@@ -40,6 +41,8 @@ pub mod compensation_file {}
 pub mod conventions {}
 #[doc = include_str!("explain.md")]
 pub mod explain {}
+#[doc = include_str!("export.md")]
+pub mod export {}
 #[doc = include_str!("files.md")]
 pub mod files {}
 #[doc = include_str!("glossary.md")]
@@ -90,3 +93,5 @@ pub mod tables {}
 pub mod troubleshooting {}
 #[doc = include_str!("validation.md")]
 pub mod validation {}
+#[doc = include_str!("your_cell.md")]
+pub mod your_cell {}

@@ -2,7 +2,7 @@
 //! an answer promises.
 
 use crate::cam::gcode::Machine;
-use crate::cam::{LengthUnit, ProgramFormat, ReadSettings, Resampling, import_bytes};
+use crate::cam::{CamFormat, LengthUnit, ReadSettings, Resampling, import_bytes};
 use crate::input::InputError;
 use crate::task::parse_csv;
 use crate::urdf::{ImportOptions, import_robot_text};
@@ -59,7 +59,7 @@ impl Reader {
     /// Settings of many kinds; long lines are not divided, so that there are few points.
     fn settings(self, bytes: &[u8]) -> ReadSettings {
         let kind = bytes.len();
-        let format = if self == Self::Gcode { ProgramFormat::Gcode } else { ProgramFormat::Cldata };
+        let format = if self == Self::Gcode { CamFormat::Gcode } else { CamFormat::Cldata };
         let gcode = self == Self::Gcode;
         ReadSettings {
             format: Some(format),

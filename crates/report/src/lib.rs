@@ -16,6 +16,7 @@ pub mod names;
 pub mod output;
 pub mod picture;
 pub mod placement;
+pub mod program;
 pub mod robot;
 pub mod simulation;
 pub mod stability;

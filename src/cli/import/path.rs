@@ -5,7 +5,7 @@ use super::super::{Failure, print, say_notes};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
-use stead::{LengthUnit, Machine, PathSettings, ProgramFormat, Resampling, import_path};
+use stead::{CamFormat, LengthUnit, Machine, PathSettings, Resampling, import_path};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PathOptions {
@@ -25,7 +25,7 @@ pub(in super::super) struct PathOptions {
     pub units: Option<LengthUnit>,
     /// What the file is written in [default: told from the file]
     #[arg(long, value_parser = PossibleValuesParser::new(["cldata", "gcode"]).map(|word| format(&word)))]
-    pub format: Option<ProgramFormat>,
+    pub format: Option<CamFormat>,
     /// Machine that G-code with rotary axes is for
     #[arg(long, value_parser = PossibleValuesParser::new(Machine::ALL.map(|(word, _)| word)).try_map(|word| machine(&word)))]
     pub machine: Option<Machine>,
@@ -67,8 +67,8 @@ fn unit(word: &str) -> LengthUnit {
     if word == "inch" { LengthUnit::Inch } else { LengthUnit::Millimetre }
 }
 
-fn format(word: &str) -> ProgramFormat {
-    if word == "gcode" { ProgramFormat::Gcode } else { ProgramFormat::Cldata }
+fn format(word: &str) -> CamFormat {
+    if word == "gcode" { CamFormat::Gcode } else { CamFormat::Cldata }
 }
 
 fn machine(word: &str) -> Result<Machine, String> {

@@ -54,7 +54,7 @@ impl LengthUnit {
 
 /// What a program is written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ProgramFormat {
+pub enum CamFormat {
     /// Cutter location data, APT words in text.
     Cldata,
     /// G-code of ISO 6983.
@@ -65,7 +65,7 @@ pub enum ProgramFormat {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadSettings {
     /// The format; told from the file where left out.
-    pub format: Option<ProgramFormat>,
+    pub format: Option<CamFormat>,
     /// The unit of length, needed where the program does not state it.
     pub units: Option<LengthUnit>,
     /// The machine that G-code with rotary axes is for.
@@ -142,8 +142,8 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
         })?,
     };
     let program = match format {
-        ProgramFormat::Cldata => cldata::read(file, text, settings)?,
-        ProgramFormat::Gcode => gcode::read(file, text, settings)?,
+        CamFormat::Cldata => cldata::read(file, text, settings)?,
+        CamFormat::Gcode => gcode::read(file, text, settings)?,
     };
     ImportedPath::new(file, program, settings.resampling)
 }
@@ -152,14 +152,14 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
 const TELLING_LINES: usize = 2000;
 
 /// The format by the first line that is of one alone.
-fn format_of(text: &str) -> Option<ProgramFormat> {
+fn format_of(text: &str) -> Option<CamFormat> {
     text.lines().take(TELLING_LINES).find_map(|line| {
         let line = line.trim();
         if line.starts_with("$$") {
-            return Some(ProgramFormat::Cldata);
+            return Some(CamFormat::Cldata);
         }
         if line.starts_with('%') || line.starts_with('(') || line.starts_with(';') {
-            return Some(ProgramFormat::Gcode);
+            return Some(CamFormat::Gcode);
         }
         let word: String =
             line.chars().take_while(|c| c.is_ascii_alphabetic()).collect::<String>().to_ascii_uppercase();
@@ -167,9 +167,9 @@ fn format_of(text: &str) -> Option<ProgramFormat> {
         let is_cldata = word.len() > 1 && (rest.starts_with('/') || cldata::is_known(&word));
         let is_gcode = word.len() == 1 && rest.starts_with(|c: char| c.is_ascii_digit() || "+-.#".contains(c));
         if is_cldata {
-            Some(ProgramFormat::Cldata)
+            Some(CamFormat::Cldata)
         } else if is_gcode || gcode::foreign(line).is_some() {
-            Some(ProgramFormat::Gcode)
+            Some(CamFormat::Gcode)
         } else {
             None
         }

@@ -15,7 +15,7 @@ fn settings() -> ReadSettings {
 /// The moves of a program.
 fn program(text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
     match format_of(text) {
-        Some(ProgramFormat::Gcode) => gcode::read(Path::new("f"), text, settings),
+        Some(CamFormat::Gcode) => gcode::read(Path::new("f"), text, settings),
         _ => cldata::read(Path::new("f"), text, settings),
     }
 }

@@ -1,8 +1,6 @@
 //! Compensation files: the config of `stead compensate`.
 
 mod file;
-mod rows;
-mod stations;
 #[cfg(test)]
 mod tests;
 
@@ -12,10 +10,8 @@ use super::robot::robot_from;
 use super::run::read_run;
 use super::toml_file::TomlFile;
 use crate::input::{InputError, InputFile, input_file};
-use crate::manifest::{self, Unlisted};
+use crate::plan::plan_from;
 use crate::quantity::Quantity;
-use rows::rows_from;
-use stations::placed;
 use std::path::Path;
 use stead_calibration::compensation::{CompensationProblem, Settings, other_geometry};
 use stead_model::robot::Robot;
@@ -62,9 +58,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         inputs.push(if is_run { InputFile { role: "run", name: run_file.name.clone(), ..read } } else { read });
     }
     let plan_file = at.key("plan").named_file()?;
-    manifest::check(&plan_file.file, &plan_file.bytes, Unlisted::Refused)?;
-    let rows = rows_from(&plan_file.file, &plan_file.bytes, run.problem.task.path())?;
-    let plan = placed(&plan_file.file, &rows, &run.problem)?;
+    let plan = plan_from(&plan_file.file, &plan_file.bytes, &run.problem)?;
     inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));
 
     let real = match (reality, file.reality) {

@@ -2,6 +2,7 @@
 
 mod arms;
 mod mutations;
+mod program;
 mod refusals;
 mod rows;
 

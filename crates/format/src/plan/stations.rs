@@ -1,4 +1,4 @@
-//! From the rows of a plan to the stations of a compensation: where the workpiece stands, and whether plan and run belong
+//! From the rows of a plan to its points in the base frame: where the workpiece stands, and whether plan and run belong
 //! together.
 //!
 //! A plan file does not state its placement, but every row has it: joint angles and beta tell how the workpiece is turned, and
@@ -16,9 +16,13 @@ use stead_placement::problem::{Placement, Problem};
 
 /// A plan that fits its run.
 #[derive(Debug)]
-pub(super) struct PlacedPlan {
+pub(crate) struct PlacedPlan {
+    /// Where the workpiece stands.
     pub placement: Placement,
+    /// The points with their targets in the base frame.
     pub points: Vec<PathPoint>,
+    /// The free angle about the tool axis at every point. rad
+    pub betas: Vec<f64>,
     /// What the user should know.
     pub note: Option<String>,
 }
@@ -67,7 +71,7 @@ pub(super) fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result
         note = note.or_else(|| deflection_note(problem, &station, row));
         stations.push(station);
     }
-    Ok(PlacedPlan { placement, points: stations, note })
+    Ok(PlacedPlan { placement, points: stations, betas: rows.iter().map(|row| row.beta).collect(), note })
 }
 
 fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {

@@ -1,0 +1,101 @@
+//! Where the tool has to be after every move of a program: from the task, the placement and beta, or from the corrected path.
+
+use super::super::corrected;
+use super::geometry::{Frame, Matrix, about_z, cross, flange, length};
+use crate::input::InputError;
+use crate::plan::PlacedPlan;
+use std::path::Path;
+use stead_model::robot::Pose;
+use stead_model::task::PathPoint;
+use stead_placement::problem::{Placement, Problem};
+
+/// One move as it has to be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Expected {
+    pub segment: usize,
+    /// The path point, from 0, at which or behind which the tool is.
+    pub point: usize,
+    /// Whether all joints move at once.
+    pub is_joint: bool,
+    /// Whether the tool is retracted.
+    pub is_retracted: bool,
+    /// The tool in the base frame.
+    pub tool: Frame,
+    /// Angles that those of the arm are near to. rad
+    pub near: [f64; 6],
+}
+
+/// A frame of the model, in mm.
+pub(super) fn frame(pose: &Pose<f64>) -> Frame {
+    let turn = std::array::from_fn(|row| std::array::from_fn(|column| pose.rotation[(row, column)]));
+    Frame { turn, origin: [0, 1, 2].map(|axis| pose.translation[axis] * 1e3) }
+}
+
+/// The workpiece in the base frame.
+pub(super) fn workpiece(placement: &Placement) -> Frame {
+    let Placement { x, y, z, yaw } = *placement;
+    Frame { turn: about_z(yaw), origin: [x, y, z].map(|m| m * 1e3) }
+}
+
+/// All moves of a program with this retraction (mm).
+///
+/// # Errors
+/// [`InputError`] for a corrected path that cannot be read.
+pub(super) fn moves(
+    problem: &Problem,
+    plan: &PlacedPlan,
+    corrected: Option<&Path>,
+    approach: f64,
+) -> Result<Vec<Expected>, InputError> {
+    let placed = workpiece(&plan.placement);
+    let mut tools: Vec<(Frame, [f64; 6])> = problem
+        .task
+        .points()
+        .iter()
+        .zip(&plan.betas)
+        .zip(&plan.points)
+        .map(|((point, beta), row)| (placed.of(&tool_at(point, *beta)), row.joints))
+        .collect();
+    if let Some(file) = corrected {
+        let mounted = frame(&problem.spindle.flange_from_tool);
+        for (tool, (position, degrees, is_corrected)) in tools.iter_mut().zip(corrected::rows(file)?) {
+            if is_corrected {
+                let joints = degrees.map(f64::to_radians);
+                let turn = flange(problem.robot.joints(), &joints).of(&mounted).turn;
+                *tool = (Frame { turn, origin: position }, joints);
+            }
+        }
+    }
+    let mut moves = Vec::new();
+    for (number, range) in problem.task.segments().iter().enumerate() {
+        let at = |point: usize, is_joint: bool, by: f64| {
+            let (tool, near) = tools[point];
+            // The tool's z axis points to the workpiece.
+            let tool = tool.of(&Frame::shift([0.0, 0.0, -by]));
+            Expected { segment: number + 1, point, is_joint, is_retracted: by > 0.0, tool, near }
+        };
+        moves.push(at(range.start, true, approach));
+        let has_approach = approach > 0.0;
+        moves.extend(range.clone().skip(usize::from(!has_approach)).map(|point| at(point, false, 0.0)));
+        if has_approach {
+            moves.push(at(range.end - 1, false, approach));
+        }
+    }
+    Ok(moves)
+}
+
+/// The tool at a path point in the workpiece frame: z against the tool axis, x at beta from the feed towards the left of it.
+fn tool_at(point: &PathPoint, beta: f64) -> Frame {
+    let numbers = |v: &nalgebra::Vector3<f64>| [v.x, v.y, v.z];
+    let (axis, feed) = (numbers(&point.axis), numbers(&point.feed));
+    let left = cross(&axis, &feed);
+    let size = length(&left);
+    let left = left.map(|v| v / size);
+    let ahead = cross(&left, &axis);
+    let (s, c) = libm::sincos(beta);
+    let x: [f64; 3] = std::array::from_fn(|k| c * ahead[k] + s * left[k]);
+    let z = axis.map(|v| -v);
+    let y = cross(&z, &x);
+    let turn: Matrix = std::array::from_fn(|row| [x[row], y[row], z[row]]);
+    Frame { turn, origin: numbers(&point.position).map(|m| m * 1e3) }
+}

@@ -1,0 +1,235 @@
+//! A program read back: every pose of the tool rebuilt from its text and compared with the plan.
+//!
+//! Nothing is shared with the writers: the languages are parsed anew, and frames, angles and forward kinematics are those of
+//! `geometry`. Joint moves go through the rows of the robot and the controller's signs and offsets; linear moves through the frames
+//! that the program states. Either way the flange is found first, and then the tool of the run on it, so that a wrong tool frame in the
+//! program is found, too.
+
+mod expected;
+mod fanuc;
+mod geometry;
+mod krl;
+mod rapid;
+mod table;
+mod written;
+
+use super::{CorrectedPath, ProgramFormat, corrected::corrected_targets, motion::Target};
+use crate::input::{InputError, InputFile, input_file};
+use crate::plan::read_plan;
+use crate::run::Run;
+use expected::{Expected, frame, workpiece};
+use geometry::{Frame, apart, flange, of_rows};
+use std::path::{Path, PathBuf};
+use stead_model::robot::{Controller, Robot};
+use written::{Goal, Source, Written};
+
+/// How far the tool may be off. mm
+pub const POSITION_MM: f64 = 0.01;
+/// How far the tool may be turned. deg
+pub const ANGLE_DEG: f64 = 0.01;
+
+/// A move of a program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MovePlace {
+    /// File and line of the move.
+    pub file: PathBuf,
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// Segment of the plan, from 1.
+    pub segment: usize,
+    /// Path point at which the tool is, or from which it is retracted, from 0.
+    pub point: usize,
+    /// Whether it is retracted.
+    pub is_retracted: bool,
+}
+
+/// A deviation and where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Largest {
+    /// How large, in the unit of the field.
+    pub value: f64,
+    /// The move.
+    pub at: MovePlace,
+}
+
+/// How a program compares with its plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProgramCheck {
+    /// The program.
+    pub file: PathBuf,
+    /// How many moves it has.
+    pub moves: usize,
+    /// How many of them to joint angles.
+    pub joint_moves: usize,
+    /// How many moves the plan asks for.
+    pub expected_moves: usize,
+    /// The largest distance of the tool centre point from where it should be. mm
+    pub position: Option<Largest>,
+    /// The largest angle of the tool to how it should be turned. deg
+    pub angle: Option<Largest>,
+    /// The first way in which the moves are others than the plan's, but for their places.
+    pub mismatch: Option<String>,
+    /// The files that it was compared with.
+    pub inputs: Vec<InputFile>,
+}
+
+impl ProgramCheck {
+    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg.
+    pub fn is_sound(&self) -> bool {
+        let within = |largest: &Option<Largest>, limit: f64| largest.as_ref().is_some_and(|found| found.value <= limit);
+        self.mismatch.is_none() && within(&self.position, POSITION_MM) && within(&self.angle, ANGLE_DEG)
+    }
+}
+
+/// Reads a program and compares it with the plan that it was made of.
+///
+/// # Errors
+/// [`InputError`] with file and line for a program that is not understood, and for a plan or corrected path that does not fit the run.
+pub fn check(
+    run: &Run,
+    plan: &Path,
+    program: &Path,
+    corrected: Option<CorrectedPath<'_>>,
+    approach: f64,
+) -> Result<ProgramCheck, InputError> {
+    let source = Source::read(program)?;
+    let format = format_of(program)?;
+    let (plan, plan_file) = read_plan(plan, &run.problem)?;
+    let mut inputs = run.inputs.clone();
+    inputs.push(plan_file);
+    if let Some(path) = corrected {
+        let target = |point: &stead_calibration::compensation::PathPoint| Target {
+            base_from_tool: point.base_from_tool,
+            posture: point.posture,
+            joints: point.joints,
+        };
+        let planned: Vec<Target> = plan.points.iter().map(target).collect();
+        inputs.push(corrected_targets(&run.problem, &planned, path)?.2);
+    }
+    let written = match format {
+        ProgramFormat::Krl => krl::moves(&source)?,
+        ProgramFormat::Rapid => rapid::moves(&source)?,
+        ProgramFormat::Fanuc => fanuc::moves(&source)?,
+        ProgramFormat::Csv => table::moves(&source)?,
+    };
+    inputs.push(input_file("program", program.to_string_lossy().replace('\\', "/"), source.text.as_bytes()));
+    let expected = expected::moves(&run.problem, &plan, corrected.map(|path| path.file), approach * 1e3)?;
+    let robot = &run.problem.robot;
+    let arm = Arm {
+        robot,
+        controller: robot.controller(),
+        mounted: frame(&run.problem.spindle.flange_from_tool),
+        placed: workpiece(&plan.placement),
+    };
+    let mut result = arm.compared(&source, &written.all, &expected)?;
+    result.inputs = inputs;
+    Ok(result)
+}
+
+/// The form of a program by the ending of its file.
+fn format_of(program: &Path) -> Result<ProgramFormat, InputError> {
+    let ending = program.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let found = ProgramFormat::ALL.into_iter().find(|format| format.extension() == ending);
+    found.ok_or_else(|| {
+        InputError::new(program, "is no program that can be read back")
+            .allowed("a main program that `stead export` wrote: .src (KRL), .mod (RAPID), .ls (Fanuc), .csv")
+    })
+}
+
+/// What turns the goals of a program into places of the tool.
+struct Arm<'a> {
+    robot: &'a Robot,
+    controller: Option<&'a Controller>,
+    /// The tool on the flange, as the run has it.
+    mounted: Frame,
+    /// The workpiece in the base frame.
+    placed: Frame,
+}
+
+impl Arm<'_> {
+    fn compared(
+        &self,
+        source: &Source,
+        written: &[Written],
+        expected: &[Expected],
+    ) -> Result<ProgramCheck, InputError> {
+        let mut check = ProgramCheck {
+            file: source.file.clone(),
+            moves: written.len(),
+            joint_moves: written.iter().filter(|one| one.goal.is_joint()).count(),
+            expected_moves: expected.len(),
+            position: None,
+            angle: None,
+            mismatch: None,
+            inputs: Vec::new(),
+        };
+        for (one, wanted) in written.iter().zip(expected) {
+            if check.mismatch.is_none() {
+                check.mismatch = self.mismatch(one, wanted);
+            }
+            for tool in self.tools(one)? {
+                let (mm, deg) = apart(&tool, &wanted.tool);
+                keep_largest(&mut check.position, mm, one, wanted);
+                keep_largest(&mut check.angle, deg, one, wanted);
+            }
+        }
+        if written.len() != expected.len() && check.mismatch.is_none() {
+            check.mismatch =
+                Some(format!("the program has {} moves, and the plan asks for {}", written.len(), expected.len()));
+        }
+        Ok(check)
+    }
+
+    /// In what a move is another than the plan's, but for its place: its kind, or a turn of a joint.
+    fn mismatch(&self, one: &Written, wanted: &Expected) -> Option<String> {
+        let place = format!("{}:{}", one.file.display(), one.line);
+        if one.goal.is_joint() != wanted.is_joint {
+            let kind = |is_joint: bool| if is_joint { "a joint move" } else { "a linear move" };
+            let (found, expected) = (kind(one.goal.is_joint()), kind(wanted.is_joint));
+            let point = wanted.point;
+            return Some(format!("{place} is {found}, and at point {point} the plan asks for {expected}"));
+        }
+        let (Goal::Angles(angles) | Goal::Row { angles: Some(angles), .. }) = one.goal else { return None };
+        let rows = of_rows(self.controller?, &angles);
+        let far = (0..6).find(|axis| (rows[*axis] - wanted.near[*axis]).abs() > std::f64::consts::PI)?;
+        Some(format!("{place}: axis {} is a turn away from the plan at point {}", far + 1, wanted.point))
+    }
+
+    /// Where a move brings the tool of the run, in the base frame, by each way in which the program says it.
+    fn tools(&self, one: &Written) -> Result<Vec<Frame>, InputError> {
+        let unknown = |what: &str| {
+            InputError::new(&one.file, format!("cannot be compared, since the robot file has no {what}"))
+                .at_line(one.line)
+                .allowed("a robot file with [controller] and [root]")
+        };
+        let by_angles = |angles: &[f64; 6]| {
+            let controller = self.controller.ok_or_else(|| unknown("[controller]"))?;
+            Ok(flange(self.robot.joints(), &of_rows(controller, angles)).of(&self.mounted))
+        };
+        match &one.goal {
+            Goal::Angles(angles) => Ok(vec![by_angles(angles)?]),
+            Goal::Row { tool, angles, .. } => {
+                let mut tools = vec![self.placed.of(tool)];
+                tools.extend(angles.as_ref().map(by_angles).transpose()?);
+                Ok(tools)
+            }
+            Goal::Line { tool, frames: [base, mounted] } => {
+                let root = self.controller.and_then(|controller| controller.root_from_base);
+                let root = frame(&root.ok_or_else(|| unknown("[root]"))?);
+                let flange = root.inverted().of(base).of(tool).of(&mounted.inverted());
+                Ok(vec![flange.of(&self.mounted)])
+            }
+        }
+    }
+}
+
+fn keep_largest(largest: &mut Option<Largest>, value: f64, one: &Written, wanted: &Expected) {
+    // What is no number is larger than any.
+    if largest.as_ref().is_none_or(|found| value > found.value || value.is_nan()) {
+        let Expected { segment, point, is_retracted, .. } = *wanted;
+        *largest = Some(Largest {
+            value,
+            at: MovePlace { file: one.file.clone(), line: one.line, segment, point, is_retracted },
+        });
+    }
+}

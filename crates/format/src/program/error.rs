@@ -1,0 +1,67 @@
+//! Why a plan is not exported.
+
+use crate::input::InputError;
+
+/// Why a plan that is sound makes no program.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ProgramError {
+    /// The controller takes no program of this name.
+    #[error("{name} {problem}; allowed: {allowed}")]
+    Name {
+        /// The name, in quotes.
+        name: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What would be taken.
+        allowed: String,
+    },
+    /// A statement that could break out of its line.
+    #[error("{option}: is no statement that is taken, found {found}; allowed: {allowed}")]
+    Statement {
+        /// The option with the statement.
+        option: &'static str,
+        /// What was found, in quotes.
+        found: String,
+        /// What would be taken.
+        allowed: String,
+    },
+    /// The form is for other controllers than the robot's.
+    #[error("--format: {format} is not for the robot's controller; allowed: {allowed}")]
+    OtherController {
+        /// The form.
+        format: &'static str,
+        /// The forms for the robot.
+        allowed: String,
+    },
+    /// A number is out of its range.
+    #[error("{option}: is out of range, found {found}; allowed: {allowed}")]
+    Range {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        found: String,
+        /// The range.
+        allowed: &'static str,
+    },
+    /// The arm cannot be at a path point or retract from it in the posture of the plan.
+    #[error("point {point}{way}: {reason}; allowed: another --approach-mm, 0 for none")]
+    Unreached {
+        /// The path point, from 0.
+        point: usize,
+        /// How far from it.
+        way: String,
+        /// Why not.
+        reason: String,
+    },
+}
+
+/// Why a plan is not exported.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ExportError {
+    /// Something in a file is wrong.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The program cannot be made.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+}

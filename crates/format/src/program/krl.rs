@@ -1,0 +1,97 @@
+//! Programs for KUKA's controllers, in KRL.
+
+use super::layout::{Layout, Lines, ProgramFile};
+use super::motion::{Move, MoveKind};
+use super::names::number;
+use super::status::{status, turn};
+use stead_model::robot::Pose;
+use stead_numerics::rotation::zyx_from_rotation;
+
+/// A frame as X, Y, Z in mm and A, B, C in deg, `Rz(A) Ry(B) Rx(C)`.
+pub(super) fn frame(pose: &Pose<f64>, [mm, deg]: [usize; 2]) -> String {
+    let xyz = pose.translation * 1e3;
+    let abc = zyx_from_rotation(&pose.rotation).map(f64::to_degrees);
+    let entry = |name: &str, value: f64, decimals: usize| format!("{name} {}", number(value, decimals));
+    let lengths = ["X", "Y", "Z"].into_iter().zip(xyz.iter()).map(|(name, value)| entry(name, *value, mm));
+    let angles = ["A", "B", "C"].into_iter().zip(abc).map(|(name, value)| entry(name, value, deg));
+    lengths.chain(angles).collect::<Vec<_>>().join(",")
+}
+
+/// Decimals of `$BASE` and `$TOOL`: so fine that over 2 m of workpiece they move nothing by 1e-4 mm.
+pub(super) const FRAME_DECIMALS: [usize; 2] = [4, 6];
+/// Decimals of a pose: as posts write positions; a unit of the angles turns a tool of 0.5 m by 1e-3 mm.
+const POSE_DECIMALS: [usize; 2] = [3, 4];
+/// Decimals of joint angles: all six off by half a unit move nothing 4 m away by 3e-3 mm.
+const AXIS_DECIMALS: usize = 5;
+
+/// The main program, which calls the parts, and the parts.
+pub(super) fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
+    let mut files = vec![main(layout)];
+    files.extend((0..layout.parts.len()).map(|index| part(layout, index)));
+    files
+}
+
+fn head(layout: &Layout<'_>, name: &str) -> Lines {
+    let mut lines = Lines::default();
+    lines.line("&ACCESS RVP");
+    lines.line("&REL 1");
+    lines.line(format_args!("DEF {name} ( )"));
+    layout.origin.iter().for_each(|text| lines.line(format_args!("; {text}")));
+    lines.line(";FOLD INI");
+    lines.line("BAS (#INITMOV,0)");
+    lines.line(";ENDFOLD (INI)");
+    lines
+}
+
+fn main(layout: &Layout<'_>) -> ProgramFile {
+    let mut lines = head(layout, layout.name);
+    lines.line(format_args!("; $BASE={{{}}}", frame(&layout.frames.root_from_workpiece, FRAME_DECIMALS)));
+    lines.line(format_args!("; $TOOL={{{}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
+    lines.line(layout.spindle_on.unwrap_or("; spindle on: stead export --spindle-on"));
+    for index in 0..layout.parts.len() {
+        lines.line(format_args!("{} ( )", layout.part_name(index)));
+    }
+    lines.line(layout.spindle_off.unwrap_or("; spindle off: stead export --spindle-off"));
+    lines.line("END");
+    ProgramFile { name: format!("{}.src", layout.name), text: lines.0 }
+}
+
+fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
+    let name = layout.part_name(index);
+    let mut lines = head(layout, &name);
+    lines.line(format_args!("$BASE={{FRAME: {}}}", frame(&layout.frames.root_from_workpiece, FRAME_DECIMALS)));
+    lines.line(format_args!("$TOOL={{FRAME: {}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
+    lines.line("$ADVANCE=5");
+    lines.line(format_args!("$APO.CDIS={}", number(layout.blend * 1e3, 4)));
+    lines.line(format_args!("BAS (#VEL_PTP,{})", Layout::JOINT_SPEED_PERCENT));
+    let mut feed = f64::NAN;
+    let moves = layout.moves_of(index);
+    for (number_in_part, step) in moves.iter().enumerate() {
+        if let Some(text) = layout.heading(index, number_in_part) {
+            lines.line(format_args!("; {text}"));
+        }
+        match step.kind {
+            MoveKind::Joint => joint(&mut lines, layout, step),
+            MoveKind::Linear => {
+                if step.feed != feed {
+                    feed = step.feed;
+                    lines.line(format_args!("$VEL.CP={}", number(feed, 6)));
+                }
+                let is_blended = step.is_blended && number_in_part + 1 < moves.len();
+                let blending = if is_blended { " C_DIS" } else { "" };
+                lines.line(format_args!("LIN {{{}}}{blending}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
+            }
+        }
+    }
+    lines.line("END");
+    ProgramFile { name: format!("{name}.src"), text: lines.0 }
+}
+
+fn joint(lines: &mut Lines, layout: &Layout<'_>, step: &Move) {
+    let angles = step.angles.unwrap_or(step.joints);
+    let (s, t) = (status(step.posture, layout.sign_3, angles[4]), turn(&angles));
+    lines.line(format_args!("; start: {},S {s},T {t}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
+    let axes =
+        angles.iter().zip(1..).map(|(angle, axis)| format!("A{axis} {}", number(angle.to_degrees(), AXIS_DECIMALS)));
+    lines.line(format_args!("PTP {{{}}}", axes.collect::<Vec<_>>().join(",")));
+}

@@ -1,0 +1,72 @@
+//! What all writers need: the moves in their parts, the frames, and the texts around them.
+
+use super::motion::{Frames, Move, MoveKind};
+use super::names;
+use std::fmt::Write;
+use std::ops::Range;
+
+/// One file of a program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProgramFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it.
+    pub text: String,
+}
+
+/// A program about to be written.
+#[derive(Debug)]
+pub(super) struct Layout<'a> {
+    /// The name of the main program.
+    pub name: &'a str,
+    /// What the program is and what it was made of, as texts for comments.
+    pub origin: Vec<String>,
+    pub moves: &'a [Move],
+    pub parts: Vec<Range<usize>>,
+    pub frames: Frames,
+    /// Distance from a corner at which blending begins; 0 for exact stops. m
+    pub blend: f64,
+    /// Statements of the user's own.
+    pub spindle_on: Option<&'a str>,
+    pub spindle_off: Option<&'a str>,
+    /// 1 where the controller's third axis counts in the direction of the row, else -1.
+    pub sign_3: f64,
+    /// Mass and centre (m, flange frame) of what the flange carries, where known.
+    pub load: Option<(f64, [f64; 3])>,
+}
+
+impl Layout<'_> {
+    /// Share of the full joint speed in joint moves: slow, for they lead through a cell that nobody has checked.
+    pub const JOINT_SPEED_PERCENT: u8 = 20;
+
+    /// The name of a part, counted from 0.
+    pub fn part_name(&self, index: usize) -> String {
+        format!("{}{}", self.name, names::part(index + 1))
+    }
+
+    /// The moves of a part.
+    pub fn moves_of(&self, index: usize) -> &[Move] {
+        &self.moves[self.parts[index].clone()]
+    }
+
+    /// What a comment before a move of a part says, where a segment begins or goes on.
+    pub fn heading(&self, index: usize, number: usize) -> Option<String> {
+        let step = &self.moves_of(index)[number];
+        match step.kind {
+            MoveKind::Joint => Some(format!("segment {}", step.segment)),
+            MoveKind::Linear if number == 0 => Some(format!("segment {} goes on", step.segment)),
+            MoveKind::Linear => None,
+        }
+    }
+}
+
+/// Lines of a text; writing to it cannot fail.
+#[derive(Debug, Default)]
+pub(super) struct Lines(pub String);
+
+impl Lines {
+    /// Adds a line.
+    pub fn line(&mut self, line: impl std::fmt::Display) {
+        let _ = writeln!(self.0, "{line}");
+    }
+}

@@ -1,0 +1,348 @@
+//! Robot programs from plans: the moves (`motion`), in the words of a controller (`krl`, `rapid`, `fanuc`) or as a `table`, and a
+//! program read back and compared with its plan (`check`).
+//!
+//! Linear poses are in the workpiece frame, so that positions are those of the task. The two frames of a program are where the
+//! workpiece stands in the controller's robot root, and where the tool is on the flange.
+
+pub mod check;
+mod corrected;
+mod error;
+mod fanuc;
+mod frames;
+mod krl;
+mod layout;
+mod motion;
+mod names;
+mod rapid;
+mod split;
+mod status;
+mod table;
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use error::{ExportError, ProgramError};
+pub use frames::{OperatorFrame, Rotation};
+pub use layout::ProgramFile;
+
+use crate::input::{InputError, InputFile};
+use crate::new_file::write_all_new;
+use crate::plan::{PlacedPlan, read_plan};
+use crate::run::Run;
+use corrected::corrected_targets;
+use layout::Layout;
+use motion::{Ends, Frames, Move, MoveKind, Target};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use stead_model::robot::ControllerKind;
+use stead_placement::problem::{Placement, Problem};
+
+/// The form of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProgramFormat {
+    /// KUKA: KRL, files `.src`.
+    Krl,
+    /// ABB: RAPID, files `.mod`.
+    Rapid,
+    /// Fanuc: TP programs in ASCII, files `.ls`.
+    Fanuc,
+    /// A table of moves, for any post.
+    Csv,
+}
+
+impl ProgramFormat {
+    /// All, in the order in which they are listed.
+    pub const ALL: [Self; 4] = [Self::Krl, Self::Rapid, Self::Fanuc, Self::Csv];
+
+    /// Its name on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Krl => "krl",
+            Self::Rapid => "rapid",
+            Self::Fanuc => "fanuc",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// The ending of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Krl => "src",
+            Self::Rapid => "mod",
+            Self::Fanuc => "ls",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// Whose controllers take it; none for the table.
+    pub fn controller(self) -> Option<ControllerKind> {
+        match self {
+            Self::Krl => Some(ControllerKind::Kuka),
+            Self::Rapid => Some(ControllerKind::Abb),
+            Self::Fanuc => Some(ControllerKind::Fanuc),
+            Self::Csv => None,
+        }
+    }
+}
+
+/// The path that a program follows where it is not that of the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CorrectedPath<'a> {
+    /// `corrected-path.csv` of `stead compensate`.
+    pub file: &'a Path,
+    /// Whether points that could not be corrected are commanded as planned; else they are refused.
+    pub is_uncorrected_as_planned: bool,
+}
+
+/// How a program is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExportOptions<'a> {
+    /// In which form.
+    pub format: ProgramFormat,
+    /// Its name, without folder and ending.
+    pub name: &'a str,
+    /// The corrected path to follow.
+    pub corrected: Option<CorrectedPath<'a>>,
+    /// How far the tool is retracted along its axis before and after a segment; 0 for not at all. m
+    pub approach: f64,
+    /// Distance from a corner at which blending begins; 0 for exact stops. m
+    pub blend: f64,
+    /// Most moves in a part.
+    pub max_moves: usize,
+    /// The statement that starts the spindle.
+    pub spindle_on: Option<&'a str>,
+    /// The statement that stops it.
+    pub spindle_off: Option<&'a str>,
+}
+
+impl<'a> ExportOptions<'a> {
+    /// With the values of the command line where they are left out there.
+    pub fn new(format: ProgramFormat, name: &'a str) -> Self {
+        Self {
+            format,
+            name,
+            corrected: None,
+            approach: Self::APPROACH,
+            blend: 1e-3,
+            max_moves: 5000,
+            spindle_on: None,
+            spindle_off: None,
+        }
+    }
+    /// How far the tool is retracted where nothing is said. m
+    pub const APPROACH: f64 = 0.05;
+}
+
+/// A program, not written to files yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Program {
+    /// Its form.
+    pub format: ProgramFormat,
+    /// Its name.
+    pub name: String,
+    /// The robot that it is for.
+    pub robot: String,
+    /// Its files, the one to start first.
+    pub files: Vec<ProgramFile>,
+    /// The frames to enter at the controller, where its root is known: workpiece, then tool.
+    pub frames: Vec<OperatorFrame>,
+    /// How many segments it has.
+    pub segments: usize,
+    /// How many moves to joint angles.
+    pub joint_moves: usize,
+    /// How many moves on straight lines.
+    pub linear_moves: usize,
+    /// How many parts the moves are in.
+    pub parts: usize,
+    /// Points commanded as planned since they could not be corrected.
+    pub uncorrected: usize,
+    /// The files that it was made of.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know.
+    pub notes: Vec<String>,
+}
+
+impl Program {
+    /// Writes the files into a folder, which is made where there is none. All files or none: where one of them is there already
+    /// nothing is changed. Returns their paths.
+    ///
+    /// # Errors
+    /// [`InputError`] that names the file that is there already, or that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, InputError> {
+        let files: Vec<(PathBuf, &str)> =
+            self.files.iter().map(|file| (folder.join(&file.name), file.text.as_str())).collect();
+        write_all_new(&files)?;
+        Ok(files.into_iter().map(|(path, _)| path).collect())
+    }
+}
+
+/// The longest retraction, in m, and the widest blending, in m: beyond them a unit is wrong.
+const MAX_LENGTHS: [f64; 2] = [1.0, 0.1];
+/// Most moves in a part.
+const MAX_MOVES: usize = 1_000_000;
+
+/// Makes the program of a plan that `stead place` wrote for a run.
+///
+/// # Errors
+/// [`ExportError::Input`] for a plan that is not of this run, a corrected path that is not of this plan, and a robot without the
+/// tables that the form needs; [`ExportError::Program`] for options that are not taken, and points that the arm does not reach.
+pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Program, ExportError> {
+    check_options(run, options)?;
+    let planned = targets(run, plan, options.corrected)?;
+    let problem = &run.problem;
+    let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
+    let moves = motion::moves(problem, &planned.placement, &planned.targets, ends)?;
+    let frames = motion::frames(problem, &planned.placement);
+    let parts = split::parts(&moves, options.max_moves);
+    let mut notes = planned.notes;
+    notes.extend(names::check(options.name, options.format, parts.len())?);
+    notes.extend(format_note(options, &moves, frames.is_some()));
+    let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
+    let files = files(run, options, &planned.inputs, &moves, parts, frames)?;
+    let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
+    Ok(Program {
+        format: options.format,
+        name: options.name.to_owned(),
+        robot: problem.robot.name().to_owned(),
+        files,
+        frames: operator_frames(problem, frames),
+        segments: problem.task.segments().len(),
+        joint_moves,
+        linear_moves: moves.len() - joint_moves,
+        parts: part_count,
+        uncorrected: planned.uncorrected,
+        inputs: planned.inputs,
+        notes,
+    })
+}
+
+/// The files of a program in its form.
+fn files(
+    run: &Run,
+    options: &ExportOptions<'_>,
+    inputs: &[InputFile],
+    moves: &[Move],
+    parts: Vec<Range<usize>>,
+    frames: Option<Frames>,
+) -> Result<Vec<ProgramFile>, ProgramError> {
+    let format = options.format;
+    let (Some(frames), Some(_)) = (frames, format.controller()) else { return Ok(table::files(options.name, moves)) };
+    let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
+    let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
+    let problem = &run.problem;
+    let layout = Layout {
+        name: options.name,
+        origin: origin(run, inputs),
+        moves,
+        parts,
+        frames,
+        blend: options.blend,
+        spindle_on: on.as_deref(),
+        spindle_off: off.as_deref(),
+        sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
+        load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
+    };
+    Ok(match format {
+        ProgramFormat::Rapid => rapid::files(&layout),
+        ProgramFormat::Fanuc => fanuc::files(&layout),
+        ProgramFormat::Krl | ProgramFormat::Csv => krl::files(&layout),
+    })
+}
+
+/// What a program follows, and where from.
+struct Planned {
+    placement: Placement,
+    targets: Vec<Target>,
+    uncorrected: usize,
+    inputs: Vec<InputFile>,
+    notes: Vec<String>,
+}
+
+/// The targets of a plan, or those of its corrected path.
+fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>) -> Result<Planned, InputError> {
+    let (plan, file) = read_plan(plan, &run.problem)?;
+    let mut inputs = run.inputs.clone();
+    inputs.push(file);
+    let PlacedPlan { placement, points, note, .. } = &plan;
+    let planned: Vec<Target> = points
+        .iter()
+        .map(|point| Target { base_from_tool: point.base_from_tool, posture: point.posture, joints: point.joints })
+        .collect();
+    let (targets, uncorrected) = match corrected {
+        Some(path) => {
+            let (targets, uncorrected, file) = corrected_targets(&run.problem, &planned, path)?;
+            inputs.push(file);
+            (targets, uncorrected)
+        }
+        None => (planned, 0),
+    };
+    Ok(Planned { placement: *placement, targets, uncorrected, inputs, notes: note.iter().cloned().collect() })
+}
+
+/// Whether the options are in their ranges, and the form is one for the robot.
+fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportError> {
+    names::check(options.name, options.format, 1)?;
+    let lengths = [("--approach-mm", options.approach), ("--blend-mm", options.blend)];
+    for (((option, length), max), allowed) in
+        lengths.into_iter().zip(MAX_LENGTHS).zip(["a number from 0 to 1000", "a number from 0 to 100"])
+    {
+        if !(0.0..=max).contains(&length) {
+            return Err(ProgramError::Range { option, found: format!("{} mm", length * 1e3), allowed }.into());
+        }
+    }
+    if !(1..=MAX_MOVES).contains(&options.max_moves) {
+        let (option, allowed) = ("--max-moves", "a whole number from 1 to 1000000");
+        return Err(ProgramError::Range { option, found: options.max_moves.to_string(), allowed }.into());
+    }
+    let Some(kind) = options.format.controller() else { return Ok(()) };
+    let controller = run.problem.robot.controller();
+    let missing = match controller {
+        None => "controller",
+        Some(controller) if controller.kind != kind => {
+            let fitting = ProgramFormat::ALL.into_iter().filter(|format| format.controller() == Some(controller.kind));
+            let words: Vec<&str> = fitting.chain([ProgramFormat::Csv]).map(ProgramFormat::word).collect();
+            let allowed = words.join(", ");
+            return Err(ProgramError::OtherController { format: options.format.word(), allowed }.into());
+        }
+        Some(controller) if controller.root_from_base.is_none() => "root",
+        Some(_) => return Ok(()),
+    };
+    let robot = run.inputs.iter().find(|input| input.role == "robot").map_or("", |input| input.name.as_str());
+    let problem = format!("is missing, and a program in {} needs it", options.format.word());
+    Err(InputError::new(Path::new(robot), problem)
+        .in_field(missing)
+        .allowed(
+            "[controller] with kind, sign and offset_deg, and [root] with xyz_mm and an orientation as abc_deg (`stead import robot` writes \
+             both commented out; the page robot_file says how to check them); or --format csv, for poses in the workpiece frame alone",
+        )
+        .into())
+}
+
+/// What the program is and what it was made of, for comments.
+fn origin(run: &Run, inputs: &[InputFile]) -> Vec<String> {
+    let mut lines = vec![format!("written by stead {} for", env!("CARGO_PKG_VERSION"))];
+    lines.push(names::comment(run.problem.robot.name(), 60));
+    lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
+    lines
+}
+
+/// What the form cannot hold.
+fn format_note(options: &ExportOptions<'_>, moves: &[Move], has_frames: bool) -> Option<String> {
+    let is_whole = |step: &Move| (step.feed * 1e3 - f64::from(fanuc::speed(step.feed))).abs() < 1e-6;
+    match options.format {
+        ProgramFormat::Fanuc if !moves.iter().all(is_whole) || options.blend > 0.0 => Some(format!(
+            "TP programs hold whole mm/s and blend by a share of the speed: feeds are rounded, and corners are {}",
+            if options.blend > 0.0 { fanuc::BLENDING } else { "FINE" }
+        )),
+        ProgramFormat::Csv if !has_frames => Some(
+            "the robot file has no [root]: poses are in the workpiece frame, and no frame of the controller is known"
+                .to_owned(),
+        ),
+        _ => None,
+    }
+}
+
+/// The frames to enter at the controller, in its convention.
+fn operator_frames(problem: &Problem, frames: Option<Frames>) -> Vec<OperatorFrame> {
+    let (Some(frames), Some(controller)) = (frames, problem.robot.controller()) else { return Vec::new() };
+    frames::operator_frames(controller.kind, &frames)
+}

@@ -1,0 +1,219 @@
+//! The moves of a program before it is put into the words of a controller: joint moves to a retracted point over each segment,
+//! then linear moves through its points, and back.
+
+use super::ProgramError;
+use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
+use stead_model::robot::{Pose, Posture, Robot};
+use stead_placement::problem::{Placement, Problem};
+
+/// Where the tool shall be at a path point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Target {
+    /// Tool frame in the base frame. m
+    pub base_from_tool: Pose<f64>,
+    /// Posture of the arm.
+    pub posture: Posture,
+    /// Joint angles with their turns, as they are printed in the plan. rad
+    pub joints: [f64; 6],
+}
+
+/// How a move is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MoveKind {
+    /// All joints at once, to angles.
+    Joint,
+    /// The tool centre point on a straight line, to a pose.
+    Linear,
+}
+
+/// One move to a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Move {
+    pub kind: MoveKind,
+    /// Number of the segment, from 1.
+    pub segment: usize,
+    /// The path point, from 0; none where the tool is retracted from it.
+    pub point: Option<usize>,
+    /// Tool frame in the workpiece frame. m
+    pub workpiece_from_tool: Pose<f64>,
+    /// Posture of the arm.
+    pub posture: Posture,
+    /// Exact joint angles of the rows, turns included. rad
+    pub joints: [f64; 6],
+    /// Angles of the controller, where it is known how it counts. rad
+    pub angles: Option<[f64; 6]>,
+    /// Speed of the tool centre point. m/s
+    pub feed: f64,
+    /// Whether the next move may begin before this one has arrived.
+    pub is_blended: bool,
+}
+
+impl Move {
+    /// The same move to a place that is no path point.
+    fn without_point(self) -> Self {
+        Self { point: None, ..self }
+    }
+}
+
+/// The frames that a program is in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Frames {
+    /// The workpiece in the controller's robot root.
+    pub root_from_workpiece: Pose<f64>,
+    /// The tool on the flange.
+    pub flange_from_tool: Pose<f64>,
+}
+
+/// How close to its points a program goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ends {
+    /// How far the tool is retracted along its axis before and after a segment. m
+    pub approach: f64,
+    /// Whether corners are blended.
+    pub has_blending: bool,
+}
+
+/// A retracted point is gone to in this many steps, each of which the arm must reach.
+const APPROACH_STEPS: i32 = 10;
+/// A joint that turns farther in one of these steps passes a singularity. rad
+const MAX_APPROACH_STEP: f64 = 0.5;
+
+/// The frames of a program, where the robot's root is known.
+pub(super) fn frames(problem: &Problem, placement: &Placement) -> Option<Frames> {
+    let root_from_base = problem.robot.controller()?.root_from_base?;
+    Some(Frames {
+        root_from_workpiece: root_from_base.then(&placement.base_from_workpiece()),
+        flange_from_tool: problem.spindle.flange_from_tool,
+    })
+}
+
+/// All moves, segment by segment.
+///
+/// # Errors
+/// [`ProgramError::Unreached`] where the arm cannot be at a point, or cannot retract from it, in the posture of the plan.
+pub(super) fn moves(
+    problem: &Problem,
+    placement: &Placement,
+    targets: &[Target],
+    ends: Ends,
+) -> Result<Vec<Move>, ProgramError> {
+    let maker = Maker { problem, workpiece_from_base: placement.base_from_workpiece().inverse() };
+    let mut moves = Vec::with_capacity(targets.len() + 2 * problem.task.segments().len());
+    let has_approach = ends.approach > 0.0;
+    for (segment, range) in problem.task.segments().iter().enumerate() {
+        let (first, last) = (range.start, range.end - 1);
+        let start = maker.exact(first, &targets[first])?;
+        let entry = maker.retracted(first, &targets[first], &start, ends.approach, "before")?;
+        let joint = maker.to(segment, first, MoveKind::Joint, &targets[first], &entry);
+        // Without an approach the joint move goes to the first point.
+        moves.push(if has_approach { joint.without_point() } else { joint });
+        for point in range.clone().skip(usize::from(!has_approach)) {
+            let at = maker.exact(point, &targets[point])?;
+            let linear = maker.to(segment, point, MoveKind::Linear, &targets[point], &at);
+            let is_blended = ends.has_blending && point != first && point != last;
+            moves.push(Move { is_blended, ..linear });
+        }
+        if has_approach {
+            let end = maker.exact(last, &targets[last])?;
+            let exit = maker.retracted(last, &targets[last], &end, ends.approach, "after")?;
+            moves.push(maker.to(segment, last, MoveKind::Linear, &targets[last], &exit).without_point());
+        }
+    }
+    Ok(moves)
+}
+
+/// The feed on the way to a path point: that of the task, on the way to the first point of a segment that to the next; of the run where the
+/// task has none. m/s
+fn feed_at(problem: &Problem, point: usize) -> f64 {
+    let path = problem.task.path();
+    let segment = &path.segments()[path.segment_of(point)];
+    let of = if point == segment.start && segment.len() > 1 { point + 1 } else { point };
+    path.feed(of).unwrap_or(problem.redundancy.feed)
+}
+
+/// The arm in one place.
+#[derive(Debug, Clone, Copy)]
+struct At {
+    base_from_tool: Pose<f64>,
+    joints: [f64; 6],
+}
+
+struct Maker<'a> {
+    problem: &'a Problem,
+    workpiece_from_base: Pose<f64>,
+}
+
+impl Maker<'_> {
+    fn to(&self, segment: usize, point: usize, kind: MoveKind, target: &Target, at: &At) -> Move {
+        Move {
+            kind,
+            segment: segment + 1,
+            point: Some(point),
+            workpiece_from_tool: self.workpiece_from_base.then(&at.base_from_tool),
+            posture: target.posture,
+            joints: at.joints,
+            angles: self.problem.robot.controller().map(|controller| controller.angles(&at.joints)),
+            feed: feed_at(self.problem, point),
+            is_blended: false,
+        }
+    }
+
+    /// The joint angles of a target to the last digit: those of its posture, in the turns of the plan.
+    fn exact(&self, point: usize, target: &Target) -> Result<At, ProgramError> {
+        let unreached = |reason| ProgramError::Unreached { point, way: String::new(), reason };
+        let joints = self.joints(&target.base_from_tool, target.posture, &target.joints).map_err(unreached)?;
+        Ok(At { base_from_tool: target.base_from_tool, joints })
+    }
+
+    /// The tool drawn back along its axis, away from the workpiece.
+    fn retracted(
+        &self,
+        point: usize,
+        target: &Target,
+        from: &At,
+        approach: f64,
+        when: &str,
+    ) -> Result<At, ProgramError> {
+        let robot = &self.problem.robot;
+        // The tool's z axis points to the workpiece.
+        let back = -target.base_from_tool.rotation.column(2);
+        let mut at = *from;
+        for step in 1..=APPROACH_STEPS {
+            if approach == 0.0 {
+                break;
+            }
+            let by = approach * f64::from(step) / f64::from(APPROACH_STEPS);
+            let unreached = |reason| {
+                let way = format!(", {:.1} mm back along the tool axis {when} its segment", by * 1e3);
+                ProgramError::Unreached { point, way, reason }
+            };
+            at.base_from_tool.translation = from.base_from_tool.translation + back * by;
+            let joints = self.joints(&at.base_from_tool, target.posture, &at.joints).map_err(unreached)?;
+            let swung = (0..6).find(|j| (joints[*j] - at.joints[*j]).abs() > MAX_APPROACH_STEP);
+            if let Some(j) = swung {
+                return Err(unreached(format!("joint {} would have to swing round a singularity", j + 1)));
+            }
+            if let Some(reason) = beyond_limit(robot, &joints) {
+                return Err(unreached(reason));
+            }
+            at.joints = joints;
+        }
+        Ok(at)
+    }
+
+    /// The joint angles of a pose in a posture, each in the turn nearest to an angle.
+    fn joints(&self, base_from_tool: &Pose<f64>, posture: Posture, near: &[f64; 6]) -> Result<[f64; 6], String> {
+        let base_from_flange = base_from_tool.then(&self.problem.spindle.flange_from_tool.inverse());
+        let angles = self.problem.robot.inverse(&base_from_flange, posture).map_err(|error| error.to_string())?;
+        Ok(std::array::from_fn(|j| near[j] + wrap(angles[j] - near[j])))
+    }
+}
+
+fn beyond_limit(robot: &Robot, joints: &[f64; 6]) -> Option<String> {
+    robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
+        let is_within = (joint.min - ANGLE_ROUNDING..=joint.max + ANGLE_ROUNDING).contains(angle);
+        let [angle, min, max] = [*angle, joint.min, joint.max].map(f64::to_degrees);
+        (!is_within)
+            .then(|| format!("joint {number} would stand at {angle:.3} deg, and goes from {min:.3} to {max:.3}"))
+    })
+}

@@ -1,0 +1,43 @@
+//! Programs as a table for other posts: one row for each move.
+
+use super::layout::{Lines, ProgramFile};
+use super::motion::{Move, MoveKind};
+use super::names::number;
+use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
+
+/// The columns: poses of the tool in the workpiece frame, as `Rz(A) Ry(B) Rx(C)` and as a quaternion; angles of the controller, empty
+/// where it is not known how it counts; `point` is empty where the tool is retracted.
+pub(super) const COLUMNS: &str = "\
+    segment,point,move,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,q_w,q_x,q_y,q_z,a1_deg,a2_deg,a3_deg,a4_deg,a5_deg,a6_deg,feed_mm_per_s";
+
+const MM_DECIMALS: usize = 4;
+const DEG_DECIMALS: usize = 5;
+const QUATERNION_DECIMALS: usize = 9;
+
+/// The one file.
+pub(super) fn files(name: &str, moves: &[Move]) -> Vec<ProgramFile> {
+    let mut lines = Lines::default();
+    lines.line(COLUMNS);
+    moves.iter().for_each(|step| lines.line(row(step)));
+    vec![ProgramFile { name: format!("{name}.csv"), text: lines.0 }]
+}
+
+fn row(step: &Move) -> String {
+    let pose = &step.workpiece_from_tool;
+    let kind = match step.kind {
+        MoveKind::Joint => "joint",
+        MoveKind::Linear => "linear",
+    };
+    let point = step.point.map_or_else(String::new, |point| point.to_string());
+    let mut cells = vec![step.segment.to_string(), point, kind.to_owned()];
+    cells.extend(pose.translation.iter().map(|m| number(m * 1e3, MM_DECIMALS)));
+    cells.extend(zyx_from_rotation(&pose.rotation).map(|angle| number(angle.to_degrees(), DEG_DECIMALS)));
+    cells.extend(quaternion_from_rotation(&pose.rotation).map(|part| number(part, QUATERNION_DECIMALS)));
+    match step.angles {
+        Some(angles) => cells.extend(angles.map(|angle| number(angle.to_degrees(), DEG_DECIMALS))),
+        None => cells.extend(std::iter::repeat_n(String::new(), 6)),
+    }
+    // A joint move has no speed of the tool.
+    cells.push(if step.kind == MoveKind::Linear { number(step.feed * 1e3, 4) } else { String::new() });
+    cells.join(",")
+}

@@ -1,0 +1,6 @@
+//! Programs of small runs on imported arms: what is in them, what is refused, and what the reader of programs finds.
+
+pub(crate) mod bench;
+mod reading;
+mod status;
+mod writers;

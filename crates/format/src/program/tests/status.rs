@@ -1,0 +1,112 @@
+//! S and T by their geometry, on random postures.
+
+use super::super::status::{fanuc_config, status, turn};
+use super::bench::Bench;
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stead_model::robot::{Controller, ControllerKind, Frames, Posture, Robot};
+
+/// The distance of the wrist centre from axis 2.
+fn stretch(robot: &Robot, joints: &[f64; 6]) -> f64 {
+    let frames = Frames::new(robot, joints);
+    (frames.wrist_centre() - frames.origins[1]).norm()
+}
+
+/// The angle of the third axis, as the controller counts it, at which the arm is stretched: looked for, not computed.
+fn stretched(robot: &Robot, controller: &Controller, angles: &[f64; 6]) -> f64 {
+    let at = |a3: f64| {
+        let mut angles = *angles;
+        angles[2] = a3;
+        stretch(robot, &controller.joints(&angles))
+    };
+    let (mut best, mut step) = (0.0, 0.2);
+    let start = (-16..16).map(|k| f64::from(k) * 0.2).max_by(|a, b| at(*a).total_cmp(&at(*b)));
+    best += start.unwrap();
+    while step > 1e-9 {
+        best = [best - step, best, best + step].into_iter().max_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap();
+        step /= 1.5;
+    }
+    best
+}
+
+/// Arms whose third axis counts in either direction, and whose rows fold either way.
+fn arms() -> Vec<(Robot, Controller)> {
+    ["kuka", "abb", "fanuc"]
+        .map(|name| {
+            let robot = Bench::new(name).run.problem.robot;
+            let given = *robot.controller().unwrap();
+            // As a KUKA counts: axis 3 downwards, so that the rows of the Fanuc, which counts upwards, count against it.
+            let is_upwards = name == "fanuc";
+            let mut sign = given.sign;
+            let mut offset = given.offset;
+            if is_upwards {
+                (sign[2], sign[4]) = (-sign[2], -sign[4]);
+                offset[2] = given.offset[2];
+            }
+            let controller = Controller { kind: ControllerKind::Kuka, sign, offset, is_j3_level: false, ..given };
+            (robot, controller)
+        })
+        .to_vec()
+}
+
+#[test]
+fn s_and_t_are_those_of_the_geometry() {
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    for (robot, controller) in arms() {
+        let mut seen = [0; 8];
+        for _ in 0..4000 {
+            let angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
+            let joints = controller.joints(&angles);
+            let posture = Posture::of(&robot, &joints);
+            let s = status(posture, controller.sign[2], angles[4]);
+            // Bit 0: the wrist centre in the frame that turns with axis 1.
+            let frames = Frames::new(&robot, &joints);
+            let (sine, cosine) = libm::sincos(joints[0]);
+            let ahead = Vector3::new(cosine, sine, 0.0).dot(&(frames.wrist_centre() - frames.origins[0]));
+            // Bit 1: beyond the stretched arm, by less than half a turn.
+            let best = stretched(&robot, &controller, &angles);
+            let beyond = stead_model::robot::angles::wrap(angles[2] - best);
+            if ahead.abs() < 1e-6 || beyond.abs() < 1e-6 || beyond.abs() > 3.1 {
+                continue;
+            }
+            let expected = u8::from(ahead < 0.0) + 2 * u8::from(beyond > 0.0) + 4 * u8::from(angles[4] < 0.0);
+            assert_eq!(s, expected, "{} at {angles:?}", robot.name());
+            seen[usize::from(s)] += 1;
+            let bits: u8 = (0..6).map(|axis| u8::from(angles[axis] < 0.0) << axis).sum();
+            assert_eq!(turn(&angles), bits);
+        }
+        assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
+    }
+}
+
+#[test]
+fn the_elbow_of_a_fanuc_is_up_where_it_is_above_the_line_from_shoulder_to_wrist() {
+    let robot = Bench::new("fanuc").run.problem.robot;
+    let controller = robot.controller().unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(10);
+    let mut ups = 0;
+    for _ in 0..4000 {
+        let mut angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-1.5..1.5));
+        angles[0] = random.random_range(-6.0..6.0);
+        let joints = controller.joints(&angles);
+        let posture = Posture::of(&robot, &joints);
+        let frames = Frames::new(&robot, &joints);
+        let [shoulder, elbow, wrist] = [frames.origins[1], frames.origins[2], frames.wrist_centre()];
+        let (sine, cosine) = libm::sincos(joints[0]);
+        let ahead = Vector3::new(cosine, sine, 0.0);
+        let side = |v: Vector3<f64>| (v.dot(&ahead), v.z);
+        let ((ex, ez), (wx, wz)) = (side(elbow - shoulder), side(wrist - shoulder));
+        let above = wx * ez - wz * ex;
+        if posture.is_back() || above.abs() < 1e-6 {
+            continue;
+        }
+        let config = fanuc_config(posture, controller.sign[2], &angles);
+        assert_eq!(config.contains('U'), above > 0.0, "{angles:?} {config}");
+        ups += usize::from(above > 0.0);
+        let turns = |angle: f64| ((angle.to_degrees() + 180.0).div_euclid(360.0)) as i32;
+        assert!(config.starts_with(if angles[4] > 0.0 { 'F' } else { 'N' }) && config.contains(" T, "));
+        assert!(config.ends_with(&format!(", {}, {}, {}", turns(angles[0]), turns(angles[3]), turns(angles[5]))));
+    }
+    assert!((500..3500).contains(&ups), "{ups}");
+}

@@ -1,0 +1,129 @@
+//! `stead export`: a robot program from a plan, or a program read back.
+
+use super::values::finite;
+use super::{Failure, print, print_json, say_notes};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::path::{Path, PathBuf};
+use stead::{CorrectedPath, Error, ExportOptions, ProgramFormat, Run};
+
+#[derive(Debug, Args)]
+pub(super) struct ExportCommand {
+    /// Run file (TOML) of the plan
+    pub config: PathBuf,
+    /// Plan that `stead place` wrote for it, as results/<run>/best.csv
+    pub plan: PathBuf,
+    /// Form of the program: krl (KUKA), rapid (ABB), fanuc, or csv for any post
+    #[arg(long, value_name = "F", value_parser = formats(), required_unless_present = "check")]
+    pub format: Option<ProgramFormat>,
+    /// Folder and name of the program, without ending; its files must not be there yet
+    #[arg(long, value_name = "DIR/NAME", required_unless_present = "check")]
+    pub out: Option<PathBuf>,
+    /// Follow the path of `stead compensate` (corrected-path.csv) instead of the plan's
+    #[arg(long, value_name = "FILE")]
+    pub corrected: Option<PathBuf>,
+    /// Command points that could not be corrected as planned, instead of refusing the path
+    #[arg(long, requires = "corrected")]
+    pub uncorrected_as_planned: bool,
+    /// How far the tool is retracted along its axis before and after a segment; 0 for not at all
+    #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
+    pub approach_mm: f64,
+    /// Distance from a corner at which blending begins; 0 for exact stops
+    #[arg(long, value_name = "D", value_parser = finite, default_value = "1", allow_hyphen_values = true)]
+    pub blend_mm: f64,
+    /// Most moves in a part
+    #[arg(long, value_name = "N", default_value = "5000", allow_hyphen_values = true)]
+    pub max_moves: usize,
+    /// Statement that starts the spindle, instead of a comment
+    #[arg(long, value_name = "TEXT")]
+    pub spindle_on: Option<String>,
+    /// Statement that stops the spindle, instead of a comment
+    #[arg(long, value_name = "TEXT")]
+    pub spindle_off: Option<String>,
+    /// Read this program back (its main file) and compare every pose with the plan, instead of writing one
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "blend_mm", "max_moves", "spindle_on", "spindle_off"])]
+    pub check: Option<PathBuf>,
+    /// Print one JSON document instead of a text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Examples, files and exit codes, for the long help.
+pub(super) const HELP: &str = "\
+Examples:
+  stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
+  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
+  stead export my/run.toml results/run/best.csv --check my/program/PART.src
+
+Files written, none of which may be there yet:
+  NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
+  NAME.mod, NAME_01.mod, ..          rapid, likewise
+  NAME.ls, NAME_01.ls, ..            fanuc, likewise
+  NAME.csv                           csv: one row for each move
+The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
+--check writes nothing. Collisions are not checked: run a program slowly and without a cut first.
+
+Exit codes:
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg
+  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan
+  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
+
+fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
+    PossibleValuesParser::new(ProgramFormat::ALL.map(ProgramFormat::word)).try_map(|word| {
+        let found = ProgramFormat::ALL.into_iter().find(|format| format.word() == word);
+        found.ok_or("no such format")
+    })
+}
+
+pub(super) fn run(options: &ExportCommand) -> Result<(), Failure> {
+    let run = Run::read(&options.config)?;
+    say_notes(run.notes());
+    match &options.check {
+        Some(program) => check(options, &run, program),
+        None => export(options, &run),
+    }
+}
+
+fn corrected(options: &ExportCommand) -> Option<CorrectedPath<'_>> {
+    let is_uncorrected_as_planned = options.uncorrected_as_planned;
+    options.corrected.as_deref().map(|file| CorrectedPath { file, is_uncorrected_as_planned })
+}
+
+fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
+    let (Some(format), Some(out)) = (options.format, &options.out) else {
+        return Err(Failure::Usage("--format and --out are needed to write a program".to_owned()));
+    };
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    let asked = ExportOptions {
+        corrected: corrected(options),
+        approach: options.approach_mm / 1e3,
+        blend: options.blend_mm / 1e3,
+        max_moves: options.max_moves,
+        spindle_on: options.spindle_on.as_deref(),
+        spindle_off: options.spindle_off.as_deref(),
+        ..ExportOptions::new(format, &name)
+    };
+    let program = run.export(&options.plan, &asked)?;
+    let written = program.write(out.parent().unwrap_or(Path::new("")))?;
+    say_notes(program.notes());
+    if options.json {
+        return print_json(&program);
+    }
+    let files: String = written.iter().map(|file| format!("  {}\n", file.display())).collect();
+    print(format!("{program}\nwritten:\n{files}").as_bytes())
+}
+
+fn check(options: &ExportCommand, run: &Run, program: &Path) -> Result<(), Failure> {
+    if !(0.0..=1000.0).contains(&options.approach_mm) {
+        let problem = format!("--approach-mm: is out of range, found {}", options.approach_mm);
+        return Err(Error::Argument(format!("{problem}; allowed: a number from 0 to 1000")).into());
+    }
+    let checked = run.check_program(&options.plan, program, corrected(options), options.approach_mm / 1e3)?;
+    if options.json {
+        print_json(&checked)?;
+    } else {
+        print(checked.to_string().as_bytes())?;
+    }
+    Ok(checked.sound()?)
+}

@@ -1,0 +1,158 @@
+//! Robot programs from plans, and programs read back.
+
+use crate::{Error, Run};
+use serde_json::Value;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use stead_format::program::check::{self, ANGLE_DEG, POSITION_MM, ProgramCheck};
+use stead_format::program::{CorrectedPath, ExportError, ExportOptions, OperatorFrame, Program, ProgramError};
+use stead_report::program::{program_check_json, program_check_text, program_json, program_text};
+
+impl Run {
+    /// Makes a robot program of a plan that [`Run::place`] wrote (`best.csv` and the like).
+    ///
+    /// ```
+    /// use stead::{ExportOptions, ProgramFormat, Run};
+    /// let run = Run::read("configs/caro-2013.toml")?;
+    /// let program = run.export("results/caro-2013/best.csv", &ExportOptions::new(ProgramFormat::Csv, "PART"))?;
+    /// let (name, text) = program.files().next().unwrap_or_default();
+    /// assert_eq!(name, "PART.csv");
+    /// // A joint move to each of the five segments, a line to each of the 105 points, and a line away from each segment.
+    /// assert_eq!(text.lines().count(), 1 + 5 + 105 + 5);
+    /// # Ok::<(), stead::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a plan that is not of this run, a corrected path that is not of this plan, and a robot file that does not
+    /// say how the controller counts; [`Error::Argument`] for options that are not taken; [`Error::Failed`] where the arm does not
+    /// reach a retracted point.
+    pub fn export(&self, plan: impl AsRef<Path>, options: &ExportOptions<'_>) -> Result<ExportedProgram, Error> {
+        let program = stead_format::program::export(&self.run, plan.as_ref(), options)?;
+        Ok(ExportedProgram { program })
+    }
+
+    /// Reads a program back (its main file) and compares every pose in it with the plan. `corrected` and `approach` (m) are those of
+    /// the export. Nothing is shared with what writes programs.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line for a program that is not understood, or a plan that is not of this run.
+    pub fn check_program(
+        &self,
+        plan: impl AsRef<Path>,
+        program: impl AsRef<Path>,
+        corrected: Option<CorrectedPath<'_>>,
+        approach: f64,
+    ) -> Result<CheckedProgram, Error> {
+        let check = check::check(&self.run, plan.as_ref(), program.as_ref(), corrected, approach)?;
+        Ok(CheckedProgram { check })
+    }
+}
+
+impl From<ExportError> for Error {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Input(error) => Self::Input(error),
+            ExportError::Program(error @ ProgramError::Unreached { .. }) => Self::failed(error),
+            ExportError::Program(error @ ProgramError::Name { .. }) => Self::Argument(format!("--out: {error}")),
+            ExportError::Program(error) => Self::Argument(error.to_string()),
+        }
+    }
+}
+
+/// A robot program, in memory.
+#[derive(Debug, Clone)]
+pub struct ExportedProgram {
+    program: Program,
+}
+
+impl ExportedProgram {
+    /// What it consists of.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// The names and texts of its files, the one to start first.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.program.files.iter().map(|file| (file.name.as_str(), file.text.as_str()))
+    }
+
+    /// The frames to enter at the controller, where the robot file has its root: workpiece, then tool.
+    pub fn frames(&self) -> &[OperatorFrame] {
+        &self.program.frames
+    }
+
+    /// Writes the files into a folder, which is made where it is missing: all, or none where one of them is there already.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the file that is there already, or that cannot be written.
+    pub fn write(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        Ok(self.program.write(folder.as_ref())?)
+    }
+
+    /// What the user should know, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.program.notes
+    }
+
+    /// The JSON document that the command prints with `--json`.
+    pub fn to_json(&self) -> Value {
+        program_json(&self.program)
+    }
+}
+
+impl fmt::Display for ExportedProgram {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&program_text(&self.program))
+    }
+}
+
+impl serde::Serialize for ExportedProgram {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_json().serialize(serializer)
+    }
+}
+
+/// A program compared with its plan.
+#[derive(Debug, Clone)]
+pub struct CheckedProgram {
+    check: ProgramCheck,
+}
+
+impl CheckedProgram {
+    /// What was found.
+    pub fn check(&self) -> &ProgramCheck {
+        &self.check
+    }
+
+    /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg.
+    ///
+    /// # Errors
+    /// [`Error::Failed`] where it is not.
+    pub fn sound(&self) -> Result<(), Error> {
+        if self.check.is_sound() {
+            return Ok(());
+        }
+        Err(Error::Failed(format!(
+            "{}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
+             plan, checked with the --corrected and --approach-mm that it was exported with",
+            self.check.file.display()
+        )))
+    }
+
+    /// The JSON document that the command prints with `--json`.
+    pub fn to_json(&self) -> Value {
+        program_check_json(&self.check)
+    }
+}
+
+impl fmt::Display for CheckedProgram {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&program_check_text(&self.check))
+    }
+}
+
+impl serde::Serialize for CheckedProgram {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_json().serialize(serializer)
+    }
+}
