@@ -2,7 +2,7 @@
 //! the question that they answer.
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
-const GROUPS: [(&str, &[&str]); 7] = [
+const GROUPS: [(&str, &[&str]); 8] = [
     ("Where to put the workpiece", &["place", "score", "explain"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
