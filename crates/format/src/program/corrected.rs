@@ -147,17 +147,30 @@ fn command(row: &Row<'_>, columns: &Columns, problem: &Problem, planned: &Target
     Ok(Target { base_from_tool, posture: planned.posture, joints })
 }
 
-/// Positions (mm, base frame), joint angles (deg) and whether corrected, of every row: for the reader of programs, which makes its own
-/// poses of them.
-pub(super) fn rows(file: &Path) -> Result<Vec<([f64; 3], [f64; 6], bool)>, InputError> {
+/// A row of the corrected path as it is printed, for the reader of programs, which makes a pose of its own of it.
+pub(super) struct PrintedCommand {
+    /// Tool centre point in the base frame. mm
+    pub position: [f64; 3],
+    /// Joint angles. deg
+    pub joints: [f64; 6],
+    pub is_corrected: bool,
+}
+
+/// All rows of a corrected path.
+///
+/// # Errors
+/// [`InputError`] for a file that cannot be read, or without the columns.
+pub(super) fn printed_commands(file: &Path) -> Result<Vec<PrintedCommand>, InputError> {
     let bytes = plan::read(file, "corrected-path.csv of `stead compensate` for this plan")?;
     let mut table = CsvTable::new(file, &bytes)?;
     let columns = columns(&table)?;
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
-        let position = row.vector(columns.corrected)?;
-        let joints = try_each(columns.joints, |column| row.number(column))?;
-        rows.push((position.into(), joints, row.text(columns.status) == CORRECTED));
+        rows.push(PrintedCommand {
+            position: row.vector(columns.corrected)?.into(),
+            joints: try_each(columns.joints, |column| row.number(column))?,
+            is_corrected: row.text(columns.status) == CORRECTED,
+        });
     }
     Ok(rows)
 }

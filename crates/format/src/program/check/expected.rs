@@ -58,11 +58,11 @@ pub(super) fn moves(
         .collect();
     if let Some(file) = corrected {
         let mounted = frame(&problem.spindle.flange_from_tool);
-        for (tool, (position, degrees, is_corrected)) in tools.iter_mut().zip(corrected::rows(file)?) {
-            if is_corrected {
-                let joints = degrees.map(f64::to_radians);
+        for (tool, command) in tools.iter_mut().zip(corrected::printed_commands(file)?) {
+            if command.is_corrected {
+                let joints = command.joints.map(f64::to_radians);
                 let turn = flange(problem.robot.joints(), &joints).of(&mounted).turn;
-                *tool = (Frame { turn, origin: position }, joints);
+                *tool = (Frame { turn, origin: command.position }, joints);
             }
         }
     }
