@@ -44,7 +44,7 @@ pub enum ProgramError {
         allowed: &'static str,
     },
     /// The arm cannot be at a path point or retract from it in the posture of the plan.
-    #[error("point {point}{way}: {reason}; allowed: another --approach-mm, 0 for none")]
+    #[error("point {point}{way}: {reason}; allowed: {}", approaches(*.most))]
     Unreached {
         /// The path point, from 0.
         point: usize,
@@ -52,7 +52,18 @@ pub enum ProgramError {
         way: String,
         /// Why not.
         reason: String,
+        /// The farthest in whole mm that the tool can be retracted everywhere, where the plan itself can be followed. mm
+        most: Option<u32>,
     },
+}
+
+/// Which retractions a plan allows.
+fn approaches(most: Option<u32>) -> String {
+    match most {
+        None => "a plan within the reach of the arm".to_owned(),
+        Some(0) => "--approach-mm 0, for none".to_owned(),
+        Some(most) => format!("--approach-mm up to {most}, or 0 for none"),
+    }
 }
 
 /// Why a plan is not exported.

@@ -3,7 +3,7 @@
 
 use super::ProgramError;
 use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
-use stead_model::robot::{Pose, Posture, Robot};
+use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
 
 /// Where the tool shall be at a path point.
@@ -100,10 +100,18 @@ pub(super) fn moves(
     let maker = Maker { problem, workpiece_from_base: placement.base_from_workpiece().inverse() };
     let mut moves = Vec::with_capacity(targets.len() + 2 * problem.task.segments().len());
     let has_approach = ends.approach > 0.0;
+    let retracted = |point: usize, at: &At, when| {
+        maker.retracted(point, &targets[point], at, ends.approach, when).map_err(|error| match error {
+            ProgramError::Unreached { point, way, reason, .. } => {
+                ProgramError::Unreached { point, way, reason, most: Some(maker.farthest(targets, ends.approach)) }
+            }
+            other => other,
+        })
+    };
     for (segment, range) in problem.task.segments().iter().enumerate() {
         let (first, last) = (range.start, range.end - 1);
         let start = maker.exact(first, &targets[first])?;
-        let entry = maker.retracted(first, &targets[first], &start, ends.approach, "before")?;
+        let entry = retracted(first, &start, "before")?;
         let joint = maker.to(segment, first, MoveKind::Joint, &targets[first], &entry);
         // Without an approach the joint move goes to the first point.
         moves.push(if has_approach { joint.without_point() } else { joint });
@@ -115,7 +123,7 @@ pub(super) fn moves(
         }
         if has_approach {
             let end = maker.exact(last, &targets[last])?;
-            let exit = maker.retracted(last, &targets[last], &end, ends.approach, "after")?;
+            let exit = retracted(last, &end, "after")?;
             moves.push(maker.to(segment, last, MoveKind::Linear, &targets[last], &exit).without_point());
         }
     }
@@ -160,9 +168,21 @@ impl Maker<'_> {
 
     /// The joint angles of a target to the last digit: those of its posture, in the turns of the plan.
     fn exact(&self, point: usize, target: &Target) -> Result<At, ProgramError> {
-        let unreached = |reason| ProgramError::Unreached { point, way: String::new(), reason };
+        let unreached = |reason| ProgramError::Unreached { point, way: String::new(), reason, most: None };
         let joints = self.joints(&target.base_from_tool, target.posture, &target.joints).map_err(unreached)?;
         Ok(At { base_from_tool: target.base_from_tool, joints })
+    }
+
+    /// The farthest in whole mm, up to a distance in m, that the tool can be retracted before and after every segment. mm
+    fn farthest(&self, targets: &[Target], approach: f64) -> u32 {
+        let segments = self.problem.task.segments();
+        let ends = segments.iter().flat_map(|range| [(range.start, "before"), (range.end - 1, "after")]);
+        ends.fold((approach * 1e3).floor() as u32, |most, (point, when)| {
+            let target = &targets[point];
+            let Ok(at) = self.exact(point, target) else { return 0 };
+            let is_reached = |mm: &u32| self.retracted(point, target, &at, f64::from(*mm) / 1e3, when).is_ok();
+            (1..=most).rev().find(is_reached).unwrap_or(0)
+        })
     }
 
     /// The tool drawn back along its axis, away from the workpiece.
@@ -174,7 +194,6 @@ impl Maker<'_> {
         approach: f64,
         when: &str,
     ) -> Result<At, ProgramError> {
-        let robot = &self.problem.robot;
         // The tool's z axis points to the workpiece.
         let back = -target.base_from_tool.rotation.column(2);
         let mut at = *from;
@@ -185,7 +204,7 @@ impl Maker<'_> {
             let by = approach * f64::from(step) / f64::from(APPROACH_STEPS);
             let unreached = |reason| {
                 let way = format!(", {:.1} mm back along the tool axis {when} its segment", by * 1e3);
-                ProgramError::Unreached { point, way, reason }
+                ProgramError::Unreached { point, way, reason, most: None }
             };
             at.base_from_tool.translation = from.base_from_tool.translation + back * by;
             let joints = self.joints(&at.base_from_tool, target.posture, &at.joints).map_err(unreached)?;
@@ -193,7 +212,7 @@ impl Maker<'_> {
             if let Some(j) = swung {
                 return Err(unreached(format!("joint {} would have to swing round a singularity", j + 1)));
             }
-            if let Some(reason) = beyond_limit(robot, &joints) {
+            if let Some(reason) = beyond_limit(self.problem, &joints) {
                 return Err(unreached(reason));
             }
             at.joints = joints;
@@ -209,10 +228,13 @@ impl Maker<'_> {
     }
 }
 
-fn beyond_limit(robot: &Robot, joints: &[f64; 6]) -> Option<String> {
-    robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
-        let is_within = (joint.min - ANGLE_ROUNDING..=joint.max + ANGLE_ROUNDING).contains(angle);
-        let [angle, min, max] = [*angle, joint.min, joint.max].map(f64::to_degrees);
+/// Which joint is beyond its limit; the margin that plans keep from limits is for the cut, and not for the way to it.
+fn beyond_limit(problem: &Problem, joints: &[f64; 6]) -> Option<String> {
+    let margin = problem.constraints.joint_margin;
+    problem.robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
+        let (min, max) = (joint.min - margin, joint.max + margin);
+        let is_within = (min - ANGLE_ROUNDING..=max + ANGLE_ROUNDING).contains(angle);
+        let [angle, min, max] = [*angle, min, max].map(f64::to_degrees);
         (!is_within)
             .then(|| format!("joint {number} would stand at {angle:.3} deg, and goes from {min:.3} to {max:.3}"))
     })
