@@ -166,9 +166,12 @@ mod tests {
         assert_eq!(silent, ["motoman-ms210"]);
     }
 
-    /// The axes of an arm at controller angles zero as its maker defines them: a point on each in mm, its direction; then the
+    /// A point on an axis in m, and its direction.
+    type Axis = ([f64; 3], [f64; 3]);
+
+    /// The axes of an arm at controller angles zero as its maker defines them: a point on each, its direction; then the
     /// flange. Written from the makers' drawings, without the rows.
-    fn zero_pose(robot: &Robot) -> ([([f64; 3], [f64; 3]); 6], Pose<f64>) {
+    fn zero_pose(robot: &Robot) -> ([Axis; 6], Pose<f64>) {
         let [first, second, third, fourth, _, sixth] = robot.joints();
         let (low, shoulder, upper) = (first.d, second.a, third.a);
         let (rise, forearm, hand, aside) = (-fourth.a, fourth.d, sixth.d, -third.d);

@@ -22,6 +22,15 @@ pub struct ArmPose {
     pub inputs: Vec<InputFile>,
 }
 
+/// Joint angles of one posture.
+#[derive(Debug, Clone, Copy)]
+struct Reached {
+    /// Inside the limits where they can be. rad
+    angles: [f64; 6],
+    /// Whether they are.
+    is_within: bool,
+}
+
 /// A frame with its name: `flange in base`.
 type NamedFrame = (&'static str, &'static str, Pose<f64>);
 
@@ -38,15 +47,14 @@ impl ArmPose {
         base.into_iter().chain(roots).collect()
     }
 
-    /// The joint angles of every posture that has the flange here, inside the limits where they can be, and whether they are; none
-    /// where the posture does not reach the pose.
-    fn postures(&self) -> Vec<(Posture, Option<([f64; 6], bool)>)> {
+    /// The joint angles of every posture that has the flange here; none where the posture does not reach the pose.
+    fn postures(&self) -> Vec<(Posture, Option<Reached>)> {
         let flange = self.robot.forward(&self.joints);
         let of = |posture: Posture| {
             let wrapped = self.robot.inverse(&flange, posture).ok()?;
             let nearest = |joint: usize| Range::of(&self.robot.joints()[joint]).nearest(wrapped[joint]);
             let angles = std::array::from_fn(|joint| nearest(joint).0);
-            Some((angles, (0..6).all(|joint| nearest(joint).1 == 0.0)))
+            Some(Reached { angles, is_within: (0..6).all(|joint| nearest(joint).1 == 0.0) })
         };
         Posture::ALL.into_iter().map(|posture| (posture, of(posture))).collect()
     }
@@ -89,11 +97,11 @@ pub fn pose_text(pose: &ArmPose) -> String {
     let header = std::iter::once("posture".to_owned()).chain(names).chain(std::iter::once("within limits".to_owned()));
     let mut rows = vec![header.collect::<Vec<_>>()];
     for (posture, found) in pose.postures() {
-        let angles = found.map(|(angles, _)| controller.map_or(angles, |controller| controller.angles(&angles)));
+        let angles = found.map(|found| controller.map_or(found.angles, |controller| controller.angles(&found.angles)));
         let cells = angles.map_or_else(|| vec!["-".to_owned(); 6], |of| of.map(|angle| ANGLE_DEG.text(angle)).into());
         let verdict = match found {
-            Some((_, true)) => "yes",
-            Some((_, false)) => "no",
+            Some(Reached { is_within: true, .. }) => "yes",
+            Some(Reached { is_within: false, .. }) => "no",
             None => "out of reach",
         };
         rows.push(std::iter::once(posture.to_string()).chain(cells).chain([verdict.to_owned()]).collect());
@@ -143,12 +151,12 @@ pub fn pose_json(pose: &ArmPose) -> Value {
             "rotation": (0..3).map(|k| rotation.row(k).iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
         })
     };
-    let posture = |(posture, found): (Posture, Option<([f64; 6], bool)>)| {
+    let posture = |(posture, found): (Posture, Option<Reached>)| {
         json!({
             "posture": posture,
-            "joints_deg": found.as_ref().map(|(joints, _)| angles(joints)),
-            "controller_deg": found.as_ref().and_then(|(joints, _)| by_controller(joints)),
-            "within_limits": found.is_some_and(|(_, is_within)| is_within),
+            "joints_deg": found.as_ref().map(|found| angles(&found.angles)),
+            "controller_deg": found.as_ref().and_then(|found| by_controller(&found.angles)),
+            "within_limits": found.is_some_and(|found| found.is_within),
         })
     };
     Document::new(&pose.inputs).notes(pose.notes()).with(json!({

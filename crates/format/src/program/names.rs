@@ -4,8 +4,8 @@ use super::{ProgramError, ProgramFormat};
 
 /// The longest name of a program and, where older controllers take less, the longest that they take.
 ///
-/// KUKA: 24 characters (KUKA, Quickguide KRL-Syntax, KSS 8.x, "Names in KRL"). ABB: 32, and 16 before IRC5 (ABB, RAPID overview,
-/// "Identifiers"; the second by memory of users, not found in a source that can be read). Fanuc: 36, and 8 before R-30iA (likewise).
+/// KUKA: 24 characters (KUKA, Quickguide KRL-Syntax, KSS 8.x, "Names in KRL"). ABB: 32, and 16 before IRC5; Fanuc: 36, and 8 before
+/// R-30iA: both as users remember them, found in no source that could be read.
 fn limits(format: ProgramFormat) -> (usize, Option<usize>) {
     match format {
         ProgramFormat::Krl => (24, None),
