@@ -25,12 +25,12 @@
 //! # }
 //! ```
 
-use crate::catalogue;
 use crate::deserialize::Node;
 use crate::field::{FieldOverride, FieldOverrides, put, shifted};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use crate::place::Place;
+use crate::shipped;
 use crate::sources::Sources;
 use crate::toml_file::{TomlFile, shorten};
 use serde::de::DeserializeOwned;
@@ -151,7 +151,7 @@ impl Place<'_> {
         let sources = self.file.sources.clone();
         let overrides =
             || FieldOverrides(self.file.overrides().iter().filter_map(|(field, _)| field.within(&self.path)).collect());
-        if let Some(shipped) = catalogue::text(Path::new(&name)) {
+        if let Some(shipped) = shipped::text(Path::new(&name)) {
             let text =
                 shipped.map_err(|error| self.error("names no shipped arm", error.allowed.unwrap_or_default()))?;
             let (file, bytes) = (PathBuf::from(&name), Arc::from(text.as_bytes()));

@@ -46,6 +46,7 @@ pub mod scalars;
 pub mod schema;
 pub mod shapes;
 mod sheet;
+mod shipped;
 pub mod simulation;
 mod sources;
 pub mod spindle;

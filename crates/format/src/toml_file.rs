@@ -1,9 +1,9 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
-use crate::catalogue;
 use crate::field::{FieldOverride, FieldOverrides};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
+use crate::shipped;
 use crate::sources::Sources;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,8 +30,8 @@ impl TomlFile {
     /// # Errors
     /// [`InputError`] when the file cannot be read or is not UTF-8 text, or is a result that its manifest does not vouch for.
     pub fn read(file: &Path) -> Result<Self, InputError> {
-        if let Some(shipped) = catalogue::text(file) {
-            return Self::new(file, shipped?.as_bytes().to_vec());
+        if let Some(text) = shipped::text(file) {
+            return Self::new(file, text?.as_bytes().to_vec());
         }
         let bytes = std::fs::read(file).map_err(|e| {
             InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable TOML file")

@@ -1,7 +1,7 @@
 //! Tool paths from CAM systems: CLDATA and G-code into the points of a task file.
 //!
 //! A reader ([`cldata`], [`gcode`]) turns a program into straight [`Move`]s of the tool centre point, in the workpiece frame, SI
-//! inside. [`segments`](segments::segments) takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`] holds the
+//! inside. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`] holds the
 //! points, writes them as a task file, and says what was found and what was changed.
 
 mod arc;

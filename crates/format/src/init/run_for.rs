@@ -1,9 +1,9 @@
 //! A run file for a robot and a task that are there.
 
-use crate::catalogue;
 use crate::input::InputError;
 use crate::new_file::write_new;
 use crate::robot::{read_geometry, says_stiffness};
+use crate::shipped;
 use crate::task::read_csv;
 use std::path::{Component, Path, PathBuf, absolute};
 use stead_model::robot::Robot;
@@ -18,7 +18,7 @@ pub fn init_run(robot: &Path, task: &Path, out: &Path) -> Result<(), InputError>
     let arm = read_geometry(robot)?;
     let imported = read_csv(task)?;
     let folder = out.parent().unwrap_or(Path::new(""));
-    let robot_name = match catalogue::text(robot) {
+    let robot_name = match shipped::text(robot) {
         Some(_) => robot.display().to_string(),
         None => relative(folder, robot),
     };

@@ -1,8 +1,8 @@
 //! Joint stiffness for an arm whose URDF has none: the values of a shipped arm, with their source.
 
-use crate::catalogue::{PREFIX, by_name, names_near};
 use crate::input::InputError;
 use crate::robot::{JointRow, OneOrRange, RobotFile, has_stiffness};
+use crate::shipped::{PREFIX, by_name, names_near};
 use crate::toml_file::TomlFile;
 use std::path::Path;
 

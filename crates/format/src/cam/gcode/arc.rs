@@ -1,7 +1,8 @@
 //! Arcs of G-code: the centre by I, J, K or the radius R, in one of three planes, with a rise along its normal.
 
+use super::super::ReadSettings;
 use super::super::arc::{Arc, ArcError};
-use super::reader::{Block, Motion, Reader};
+use super::block::Block;
 use super::state::State;
 use crate::input::InputError;
 use nalgebra::Vector3;
@@ -9,22 +10,21 @@ use nalgebra::Vector3;
 /// A radius may be so much less than half the way to the end: digits as printed. m
 const ROUNDING: f64 = 5e-5;
 
-/// The states along an arc from where the machine is, the end last.
+/// The states along an arc in the plane normal to an axis of the machine, about which it turns as a right-handed screw; the end last.
 pub(super) fn arc_of(
-    reader: &Reader<'_>,
+    settings: &ReadSettings,
     block: &Block<'_>,
-    motion: Motion,
-    end: &State,
+    axis: Vector3<f64>,
+    [from, end]: [&State; 2],
     metres: f64,
 ) -> Result<Vec<State>, InputError> {
     let word = |letters: &str| block.words.iter().find(|(letter, _)| letters.contains(*letter)).copied();
-    let fail = |letters: &str, problem: &str, allowed: &str| {
-        reader.fail(block.line, word(letters).unwrap_or(('G', 2.0)), problem, allowed)
-    };
-    if end.angles != reader.state.angles {
+    let fail =
+        |letters: &str, problem: &str, allowed: &str| block.fail(word(letters).unwrap_or(('G', 2.0)), problem, allowed);
+    if end.angles != from.angles {
         return Err(fail("ABC", "an arc that turns the tool", "arcs at a constant tool axis"));
     }
-    let turns_workpiece = reader.settings.machine.is_some() && end.angles != [0.0; 3];
+    let turns_workpiece = settings.machine.is_some() && end.angles != [0.0; 3];
     if turns_workpiece {
         return Err(fail(
             "IJKR",
@@ -33,17 +33,15 @@ pub(super) fn arc_of(
         ));
     }
     if let Some(turns) = block.get('P') {
-        return Err(reader.fail(block.line, ('P', turns), "an arc of several turns", "one turn or less in a block"));
+        return Err(block.fail(('P', turns), "an arc of several turns", "one turn or less in a block"));
     }
-    let [start, last] = [reader.state.programmed(), end.programmed()];
-    let mut axis = Vector3::zeros();
-    axis[reader.modes.plane] = if motion == Motion::Clockwise { -1.0 } else { 1.0 };
+    let [start, last] = [from.programmed(), end.programmed()];
     let offsets = ['I', 'J', 'K'].map(|letter| block.get(letter));
     let centre = match (block.get('R'), offsets.iter().any(Option::is_some)) {
         (Some(_), true) => return Err(fail("R", "a radius and a centre", "R, or I, J and K")),
         (None, false) => return Err(fail("XYZ", "an arc without a centre or radius", "I, J, K or R")),
         (None, true) => {
-            if offsets[reader.modes.plane].is_some_and(|offset| offset != 0.0) {
+            if offsets[axis.iamax()].is_some_and(|offset| offset != 0.0) {
                 return Err(fail(
                     "IJK",
                     "a centre out of the plane of the arc",
@@ -68,7 +66,7 @@ pub(super) fn arc_of(
         }
     };
     let arc = Arc { start, end: last, centre, axis, more_turns: 0 };
-    let points = arc.points(&reader.settings.resampling).map_err(|error| match error {
+    let points = arc.points(&settings.resampling).map_err(|error| match error {
         ArcError::Axis => fail("IJKR", "an arc without a normal", "G17, G18 or G19"),
         ArcError::Radius(from, to) => {
             let [from, to] = [from, to].map(|radius| format!("{:.4} mm", radius * 1e3));

@@ -1,7 +1,48 @@
 //! Blocks of G-code: letters with numbers, comments left out; and programs that are something else by their name.
 
+use crate::input::InputError;
+use std::path::Path;
+
 /// A letter, in upper case, with its number.
 pub(super) type Word = (char, f64);
+
+/// How the tool moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    Rapid,
+    Line,
+    /// Seen against the normal of the plane.
+    Clockwise,
+    CounterClockwise,
+}
+
+/// One block.
+pub(super) struct Block<'a> {
+    pub file: &'a Path,
+    pub line: usize,
+    pub words: &'a [Word],
+}
+
+impl Block<'_> {
+    /// The number of a letter, where the block has it.
+    pub fn get(&self, letter: char) -> Option<f64> {
+        self.words.iter().find(|(own, _)| *own == letter).map(|(_, value)| *value)
+    }
+
+    /// That one of its words is wrong.
+    pub fn fail(&self, word: Word, problem: &str, allowed: &str) -> InputError {
+        failed(self.file, self.line, word, problem, allowed)
+    }
+}
+
+/// That a word of a line is wrong.
+pub(super) fn failed(file: &Path, line: usize, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
+    InputError::new(file, problem)
+        .at_line(line)
+        .in_field(letter.to_string())
+        .found(format!("'{letter}{value}'"))
+        .allowed(allowed)
+}
 
 /// The words of a line, or the text that is none of them.
 pub(super) fn words<'a>(line: &'a str, words: &mut Vec<Word>) -> Result<(), &'a str> {

@@ -2,10 +2,10 @@
 
 use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
 use super::arc::arc_of;
-use super::block::Word;
+use super::block::{Block, Motion, Word, failed};
 use super::state::State;
 use crate::input::InputError;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 
 /// No rotary axis is programmed beyond this. deg
@@ -13,16 +13,6 @@ const LARGEST_ANGLE: f64 = 3.6e4;
 
 /// The letters that a block may have.
 const LETTERS: &str = "GXYZABCIJKRFSTMNOHDP";
-
-/// How the tool moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Motion {
-    Rapid,
-    Line,
-    /// Seen against the normal of the plane.
-    Clockwise,
-    CounterClockwise,
-}
 
 /// What holds until another code of its group.
 pub(super) struct Modes {
@@ -49,19 +39,6 @@ pub(super) struct Reader<'a> {
     has_turned: [bool; 2],
 }
 
-/// One block.
-pub(super) struct Block<'a> {
-    pub line: usize,
-    pub words: &'a [Word],
-}
-
-impl Block<'_> {
-    /// The number of a letter, where the block has it.
-    pub fn get(&self, letter: char) -> Option<f64> {
-        self.words.iter().find(|(own, _)| *own == letter).map(|(_, value)| *value)
-    }
-}
-
 impl<'a> Reader<'a> {
     pub fn new(file: &'a Path, settings: &'a ReadSettings) -> Self {
         let modes = Modes {
@@ -79,7 +56,7 @@ impl<'a> Reader<'a> {
 
     /// Takes a block; false after the one that ends the program.
     pub fn take(&mut self, line: usize, words: &[Word]) -> Result<bool, InputError> {
-        let block = Block { line, words };
+        let block = Block { file: self.file, line, words };
         for (place, (letter, value)) in words.iter().enumerate() {
             if !LETTERS.contains(*letter) {
                 return Err(self.fail(line, (*letter, *value), "a letter that is not known here", LETTERS));
@@ -231,7 +208,7 @@ impl<'a> Reader<'a> {
             self.state = end;
             return self.push_end(block.line, end, None, true, false);
         }
-        let states = if is_arc { arc_of(self, block, motion, &end, metres)? } else { self.state.line_to(&end) };
+        let states = if is_arc { self.arc(block, motion, &end, metres)? } else { self.state.line_to(&end) };
         let first_move = self.program.moves.len();
         for state in states {
             self.push_end(block.line, state, None, false, is_arc)?;
@@ -361,12 +338,15 @@ impl<'a> Reader<'a> {
         })
     }
 
-    pub fn fail(&self, line: usize, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
-        InputError::new(self.file, problem)
-            .at_line(line)
-            .in_field(letter.to_string())
-            .found(format!("'{letter}{value}'"))
-            .allowed(allowed)
+    /// The states along an arc from where the machine is, the end last.
+    fn arc(&self, block: &Block<'_>, motion: Motion, end: &State, metres: f64) -> Result<Vec<State>, InputError> {
+        let mut axis = Vector3::zeros();
+        axis[self.modes.plane] = if motion == Motion::Clockwise { -1.0 } else { 1.0 };
+        arc_of(self.settings, block, axis, [&self.state, end], metres)
+    }
+
+    fn fail(&self, line: usize, word: Word, problem: &str, allowed: &str) -> InputError {
+        failed(self.file, line, word, problem, allowed)
     }
 }
 
