@@ -69,6 +69,15 @@ pub fn coordinate_search(
     (best, objective, evaluations)
 }
 
+/// The placements a step in either sense of radius, height and yaw away from one, inside the cell; `share` of the first steps of a
+/// search.
+pub fn neighbours(problem: &Problem, placement: &Placement, share: f64) -> Vec<Placement> {
+    let all =
+        (0..Directions::WithoutAzimuth as usize).flat_map(|k| [1.0, -1.0].map(|side| (k, side * share * FIRST[k])));
+    let moved = all.map(|(direction, step)| moved(problem, placement, direction, step));
+    moved.filter(|there| there != placement).collect()
+}
+
 /// A placement moved along one direction, inside the cell.
 fn moved(problem: &Problem, placement: &Placement, direction: usize, step: f64) -> Placement {
     let root = problem.robot.geometry().root_in_base;

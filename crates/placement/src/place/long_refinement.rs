@@ -3,12 +3,13 @@
 use super::long_path::LongPath;
 use super::refined::Refined;
 use crate::candidate::Candidate;
+use crate::coordinate_search::neighbours;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::problem::{Placement, Problem};
 use crate::redundancy::Planner;
 use crate::refine::solver::{self, Ending};
-use crate::refine::{LENGTH_UNIT, planned, refine};
+use crate::refine::{LENGTH_UNIT, Solution, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
 use crate::symmetry::apart_about_axis_1;
@@ -29,6 +30,10 @@ const REFINED: usize = 2;
 const TIED: f64 = 0.004;
 /// Placements no farther apart than this, in the refinement's scaled variables, are one.
 const SAME: f64 = 0.05;
+/// How far around a refined placement its neighbours are planned, in the first steps of a coordinate search; the next only after a gain.
+const PROBES: [f64; 3] = [0.4, 0.4, 0.2];
+/// A neighbour is gone on from where its plan is better by more than this (relative).
+const WORTH: f64 = 1e-3;
 /// On paths longer than [`MAX_REFINED`].
 const CLOSE_LONG: f64 = 0.01;
 /// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
@@ -191,20 +196,36 @@ fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
         && yaw <= SAME
 }
 
-/// Refines a basin on the whole path. What comes out counts as the planner plans it, so that whoever asks for the placement alone
-/// gets the same. Returns the report, continued.
+/// Refines a basin on the whole path, and once more from a neighbour with a better plan: the sequential programme stays among the plans
+/// that its start has, and where plans of neighbours go another way through the angles it does not see them. What comes out counts as the
+/// planner plans it, so that whoever asks for the placement alone gets the same. Returns the report, continued.
 fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
-    if monitor.should_stop() {
-        return report;
+    let plan = |placement: &Placement| planned(planner, placement, best.scheme.as_deref(), &mut planner.workspace());
+    let refined = |from: &Solution, report: &mut Refinement| {
+        let run = solver::run(planner.problem(), from, Ending::LOOSE, monitor);
+        report.rounds += 1;
+        report.iterations += run.iterations;
+        report.statuses.push(run.status);
+        plan(&run.solution.placement).filter(|anew| anew.objective < from.objective)
+    };
+    let mut solution = best.solution.clone();
+    for share in PROBES {
+        if monitor.should_stop() {
+            break;
+        }
+        if let Some(anew) = refined(&solution, &mut report) {
+            solution = anew;
+        }
+        let around = neighbours(planner.problem(), &solution.placement, share);
+        let around: Vec<Solution> = around.par_iter().filter_map(plan).collect();
+        let limit = solution.objective * (1.0 - WORTH);
+        let better = around.into_iter().filter(|there| there.objective < limit);
+        match better.min_by(|a, b| a.objective.total_cmp(&b.objective)) {
+            Some(there) => solution = there,
+            None => break,
+        }
     }
-    let run = solver::run(planner.problem(), &best.solution, Ending::LOOSE, monitor);
-    report.rounds += 1;
-    report.iterations += run.iterations;
-    report.statuses.push(run.status);
-    let anew = planned(planner, &run.solution.placement, best.scheme.as_deref(), &mut planner.workspace());
-    if let Some(anew) = anew.filter(|anew| anew.objective < best.solution.objective) {
-        best.solution = anew;
-    }
+    best.solution = solution;
     (report.end, report.end_mean) = (best.solution.placement, best.solution.objective);
     report
 }
