@@ -127,6 +127,14 @@ impl ShippedArms {
         Ok(Self { arms: catalogue::shipped_arms()? })
     }
 
+    /// The robot file of one of them, by its name, to begin one's own with.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where there is no arm of this name.
+    pub fn file(name: &str) -> Result<&'static str, Error> {
+        Ok(catalogue::robot_file(name)?)
+    }
+
     /// Each with what is known of it.
     pub fn arms(&self) -> &[ShippedArm] {
         &self.arms

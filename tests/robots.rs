@@ -19,6 +19,10 @@ fn the_catalogue_says_what_is_known_of_each_arm() {
     let row = |name: &str| list.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap().to_owned();
     assert!(row("kuka-kr240-2").contains("geometry: series 2000 frame"), "{list}");
     assert!(row("staubli-tx200").contains("yes        yes     staubli"), "{list}");
+    // The file of one, to begin with.
+    bench.write("own.toml", &bench.stead(&["robots", "abb-irb6640-235"]).stdout);
+    assert_eq!(bench.stead(&["check", "own.toml"]).code, Some(0));
+    refused(&bench, &["robots", "abb-irb664"], &["is no shipped arm; allowed: abb-irb66"]);
     let document: serde_json::Value = serde_json::from_str(&bench.stead(&["robots", "--json"]).stdout).unwrap();
     let arms = document["robots"].as_array().unwrap();
     assert!(arms.iter().filter(|arm| arm["has_stiffness"] == true).count() >= 12);

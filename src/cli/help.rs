@@ -316,6 +316,7 @@ pub(super) const ROBOTS: &str = "\
 Examples:
   stead robots
   stead robots --json
+  stead robots abb-irb6640-235 > my/arm.toml
 
 A shipped arm takes the place of a robot file by its name: robot = \"name:kuka-kr270-2\".
 

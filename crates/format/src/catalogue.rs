@@ -3,7 +3,7 @@
 use crate::input::InputError;
 use crate::robot::{RobotFile, geometry_from, has_stiffness};
 use crate::shipped::{ARMS, PREFIX, text};
-use crate::toml_file::TomlFile;
+use crate::toml_file::{TomlFile, without_schema};
 use std::path::Path;
 use stead_model::robot::Robot;
 
@@ -28,6 +28,15 @@ pub struct ShippedArm {
 /// [`InputError`] where a shipped file is wrong, which the tests exclude.
 pub fn shipped_arms() -> Result<Vec<ShippedArm>, InputError> {
     ARMS.iter().map(|(name, _)| shipped_arm(name)).collect()
+}
+
+/// The robot file of a shipped arm, by its name with or without `name:`, to begin one's own with.
+///
+/// # Errors
+/// [`InputError`] where there is no arm of this name.
+pub fn robot_file(name: &str) -> Result<&'static str, InputError> {
+    let path = format!("{PREFIX}{}", name.strip_prefix(PREFIX).unwrap_or(name));
+    Ok(without_schema(text(Path::new(&path)).transpose()?.unwrap_or_default()))
 }
 
 /// A shipped arm by its name.
@@ -153,5 +162,7 @@ mod tests {
             "{message}"
         );
         assert!(text(Path::new("robots/kuka-kr270-2.toml")).is_none());
+        assert!(robot_file("abb-irb120").unwrap().starts_with("# ABB IRB 120-3/0.6. Six rows"));
+        assert!(robot_file("name:abb-irb120").is_ok() && robot_file("abb").is_err());
     }
 }
