@@ -26,7 +26,7 @@ pub fn arm(robot: &Robot) -> Vec<String> {
 /// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
 fn odd_stiffness(robot: &Robot) -> Option<String> {
     let [softest, stiffest] = [KNOWN_STIFFNESSES[0] / BEYOND, KNOWN_STIFFNESSES[1] * BEYOND];
-    let stiffness = |joint: usize| 1.0 / robot.compliances_at(&middle(robot))[joint];
+    let stiffness = |joint: usize| 1.0 / robot.compliances_at(&robot.mid_range())[joint];
     let odd: Vec<String> = (0..6)
         .filter(|joint| !(softest..=stiffest).contains(&stiffness(*joint)))
         .map(|joint| format!("joint {} with {} MN m/rad", joint + 1, figures(stiffness(joint) / 1e6)))
@@ -41,14 +41,6 @@ fn odd_stiffness(robot: &Robot) -> Option<String> {
                 several => format!("{} are", several.join(", ")),
             }
         )
-    })
-}
-
-/// The middle of the range of every joint. rad
-fn middle(robot: &Robot) -> [f64; 6] {
-    std::array::from_fn(|joint| {
-        let joint = &robot.joints()[joint];
-        (joint.min + joint.max) / 2.0
     })
 }
 

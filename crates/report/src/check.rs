@@ -91,8 +91,8 @@ pub fn robot_lines(robot: &Robot, has_stiffness: Option<bool>) -> String {
     let stiffness = match has_stiffness {
         Some(false) => "not given: measure the arm (stead identify plan), or take that of a shipped arm".to_owned(),
         _ => {
-            let middle = std::array::from_fn(|joint| (robot.joints()[joint].min + robot.joints()[joint].max) / 2.0);
-            robot.compliances_at(&middle).map(|compliance| fixed(1e-6 / compliance, 3)).join("; ") + " MN m/rad"
+            robot.compliances_at(&robot.mid_range()).map(|compliance| fixed(1e-6 / compliance, 3)).join("; ")
+                + " MN m/rad"
         }
     };
     line(&mut text, &format!("          joint stiffness: {stiffness}"));

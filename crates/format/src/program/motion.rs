@@ -194,13 +194,13 @@ impl Maker<'_> {
         approach: f64,
         when: &str,
     ) -> Result<At, ProgramError> {
+        if approach == 0.0 {
+            return Ok(*from);
+        }
         // The tool's z axis points to the workpiece.
         let back = -target.base_from_tool.rotation.column(2);
         let mut at = *from;
         for step in 1..=APPROACH_STEPS {
-            if approach == 0.0 {
-                break;
-            }
             let by = approach * f64::from(step) / f64::from(APPROACH_STEPS);
             let unreached = |reason| {
                 let way = format!(", {:.1} mm back along the tool axis {when} its segment", by * 1e3);

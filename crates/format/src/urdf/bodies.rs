@@ -45,7 +45,8 @@ fn rigid(urdf: &Urdf, link: usize) -> Result<Option<Inertial>, String> {
     Ok(whole)
 }
 
-fn about_z(angle: f64) -> Pose<f64> {
+/// A turn about z. rad
+pub(super) fn about_z(angle: f64) -> Pose<f64> {
     let (sine, cosine) = libm::sincos(angle);
     Pose { rotation: Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0), translation: Vector3::zeros() }
 }

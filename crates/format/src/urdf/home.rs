@@ -1,5 +1,6 @@
 //! The controller's angles, found from one pose that the user has read at it.
 
+use super::bodies::about_z;
 use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
@@ -162,9 +163,7 @@ fn search(
     let before = tried.pose.then(&robot.rows()[joint]);
     for sign in [1.0, -1.0] {
         for offset in OFFSETS_DEG.map(f64::to_radians) {
-            let (sine, cosine) = libm::sincos(sign * angles[joint] + offset);
-            let rotation = nalgebra::Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
-            let mut next = Tried { pose: before.then(&Pose { rotation, translation: Vector3::zeros() }), ..tried };
+            let mut next = Tried { pose: before.then(&about_z(sign * angles[joint] + offset)), ..tried };
             (next.sign[joint], next.offset[joint]) = (sign, offset);
             search(robot, angles, wanted, next, joint + 1, found);
         }

@@ -222,6 +222,11 @@ impl Robot {
         &self.joints
     }
 
+    /// The middle of the range of every joint. rad
+    pub fn mid_range(&self) -> [f64; 6] {
+        self.joints.each_ref().map(|joint| (joint.min + joint.max) / 2.0)
+    }
+
     /// The frame of every row at joint angle zero, in that before it (the base frame for the first).
     pub fn rows(&self) -> &[Pose<f64>; 6] {
         &self.rows

@@ -37,18 +37,13 @@ pub fn arm_of_run(problem: &Problem, overview: &Overview) -> String {
     };
     let path = problem.task.segments().iter().map(of_segment).collect();
     let surroundings = Surroundings { cell: &problem.cell, path };
-    let joints = overview.middle.joints.unwrap_or_else(|| middle(&problem.robot));
+    let joints = overview.middle.joints.unwrap_or_else(|| problem.robot.mid_range());
     drawn(&problem.robot, &joints, Some(&problem.spindle), Some(&surroundings))
 }
 
 /// An arm alone, in the middle of its joint ranges.
 pub fn arm_alone(robot: &Robot) -> String {
-    drawn(robot, &middle(robot), None, None)
-}
-
-/// The middle of every joint range. rad
-fn middle(robot: &Robot) -> [f64; 6] {
-    std::array::from_fn(|joint| (robot.joints()[joint].min + robot.joints()[joint].max) / 2.0)
+    drawn(robot, &robot.mid_range(), None, None)
 }
 
 fn drawn(
