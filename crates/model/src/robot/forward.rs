@@ -58,6 +58,18 @@ impl<T: Scalar> Frames<T> {
 }
 
 impl Robot {
+    /// The frames of the six rows in the base frame for joint angles `theta` in rad, each fixed to its link.
+    pub fn link_frames(&self, theta: &[f64; 6]) -> [Pose<f64>; 6] {
+        let mut pose = Pose::identity();
+        std::array::from_fn(|j| {
+            let row = &self.rows()[j];
+            let (sine, cosine) = libm::sincos(theta[j]);
+            let turned = Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
+            pose = pose.then(&Pose { rotation: row.rotation * turned, translation: row.translation });
+            pose
+        })
+    }
+
     /// Frame 6 in the base frame for joint angles `theta` in rad, joint limits ignored.
     pub fn forward<T: Scalar>(&self, theta: &[T; 6]) -> Pose<T> {
         Frames::new(self, theta).base_from_flange
@@ -69,6 +81,19 @@ mod tests {
     use super::super::testing::{kr270, odd_arms};
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn the_frames_of_links_are_those_of_the_joints() {
+        for robot in odd_arms().iter().chain([&kr270()]) {
+            let theta = [0.3, -0.4, 0.7, 1.1, -0.9, 2.0];
+            let (links, frames) = (robot.link_frames(&theta), Frames::new(robot, &theta));
+            for j in 0..6 {
+                assert!((links[j].translation - frames.origins[j]).norm() < 1e-12);
+                assert!((links[j].rotation.column(2) - frames.axes[j]).norm() < 1e-12);
+            }
+            assert!((links[5].rotation - frames.base_from_flange.rotation).norm() < 1e-12);
+        }
+    }
 
     #[test]
     fn stretched_arm_reaches_the_sum_of_its_lengths() {

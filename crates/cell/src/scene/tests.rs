@@ -1,0 +1,137 @@
+use super::*;
+use crate::shape::{KeepOut, Shape, Zone};
+use crate::solid::Solid;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stead_model::robot::testing::{kr270, spindle};
+
+fn shape(name: &str, attached: Attachment, solid: Solid, at: [f64; 3]) -> Shape {
+    Shape { name: name.to_owned(), attached, solid, pose: Pose { translation: at.into(), ..Pose::identity() } }
+}
+
+fn along(name: &str, link: u8, radius: f64, to: [f64; 3]) -> Shape {
+    // A capsule from the origin of the frame of the link to a point of it.
+    let to = Vector3::from(to);
+    let z = to.normalize();
+    let x = z.cross(&Vector3::new(z.y, z.z, z.x)).normalize();
+    let rotation = nalgebra::Matrix3::from_columns(&[x, z.cross(&x), z]);
+    Shape {
+        name: name.to_owned(),
+        attached: Attachment::Link(link),
+        solid: Solid::Capsule { radius, length: to.norm() },
+        pose: Pose { rotation, translation: to / 2.0 },
+    }
+}
+
+/// A KR 270 of capsules, with a spindle, a table that is the workpiece's, a pillar and a fence.
+fn scene(clearance: f64) -> Scene {
+    let shapes = vec![
+        along("upper arm", 2, 0.16, [1.25, 0.0, 0.0]),
+        along("forearm", 3, 0.13, [-0.055, 1.1, 0.0]),
+        shape("spindle", Attachment::Flange, Solid::Cylinder { radius: 0.09, length: 0.4 }, [0.0, 0.0, 0.3]),
+        shape("part", Attachment::Workpiece, Solid::Box(Vector3::new(0.4, 0.5, 0.2)), [0.0, 0.0, -0.1]),
+        shape("pillar", Attachment::Base, Solid::Cylinder { radius: 0.15, length: 3.0 }, [0.5, -2.6, 0.0]),
+        shape("fence", Attachment::Base, Solid::Box(Vector3::new(5.0, 0.05, 2.0)), [0.0, -3.0, 0.0]),
+    ];
+    let floor = Zone::HalfSpace { point: Vector3::new(0.0, 0.0, -0.7), normal: Vector3::new(0.0, 0.0, -1.0) };
+    let zones = vec![KeepOut { name: "floor".to_owned(), zone: floor, points: TrackedPoint::ALL.to_vec() }];
+    let around = Surroundings::new(shapes, zones, clearance, Vec::new()).unwrap();
+    Scene::new(&kr270(), &spindle().flange_from_tool, around).unwrap()
+}
+
+fn random_joints(random: &mut ChaCha8Rng) -> [f64; 6] {
+    let robot = kr270();
+    std::array::from_fn(|j| {
+        let joint = &robot.joints()[j];
+        joint.min + (joint.max - joint.min) * random.random::<f64>()
+    })
+}
+
+fn workpiece(random: &mut ChaCha8Rng) -> Pose<f64> {
+    let at = |random: &mut ChaCha8Rng, low: f64, high: f64| low + (high - low) * random.random::<f64>();
+    let (x, y) = (at(random, -0.5, 0.5), at(random, -2.4, -1.6));
+    Pose { translation: Vector3::new(x, y, at(random, -0.6, -0.2)), ..Pose::identity() }
+}
+
+#[test]
+fn kinds_are_told_apart() {
+    let scene = scene(0.01);
+    let kind = |a: &str, b: &str| {
+        let found =
+            scene.pairs().iter().find(|pair| pair.names.iter().any(|n| n == a) && pair.names.iter().any(|n| n == b));
+        found.map(|pair| pair.kind)
+    };
+    assert_eq!(kind("spindle", "part"), Some(PairKind::ToolWorkpiece));
+    assert_eq!(kind("part", "fence"), Some(PairKind::WorkpieceCell));
+    assert_eq!(kind("upper arm", "spindle"), Some(PairKind::ArmArm));
+    assert_eq!(kind("forearm", "pillar"), Some(PairKind::ArmCell));
+    assert_eq!(kind("forearm", "part"), Some(PairKind::ArmWorkpiece));
+    assert_eq!(kind("elbow", "floor"), Some(PairKind::ArmCell));
+    assert_eq!(kind("upper arm", "forearm"), None);
+    assert_eq!(kind("pillar", "fence"), None);
+    assert_eq!(scene.unchecked_links(), [1, 4, 5]);
+}
+
+#[test]
+fn what_covers_call_free_is_free_and_clearances_agree() {
+    let (scene, mut random) = (scene(0.02), ChaCha8Rng::seed_from_u64(1));
+    let (mut hits, mut free, mut saved) = (0, 0, 0);
+    for _ in 0..300 {
+        let poses = scene.poses(&random_joints(&mut random), &workpiece(&mut random));
+        let plain = (0..scene.pairs().len()).find(|pair| {
+            let (distance, pair) = (scene.distance(*pair, &poses, FAR), &scene.pairs()[*pair]);
+            distance < pair.required || (distance <= 0.0 && pair.required > 0.0)
+        });
+        assert_eq!(scene.first_hit(&poses, &PairKind::ALL), plain);
+        let covered = scene.first_covered_hit(&poses, &PairKind::ALL);
+        assert!(covered.is_some() || plain.is_none());
+        let clearance = scene.clearance(&poses, &PairKind::ALL).unwrap();
+        assert_eq!(clearance.distance < scene.pairs()[clearance.pair].required, plain.is_some());
+        hits += usize::from(plain.is_some());
+        free += usize::from(plain.is_none());
+        saved += usize::from(plain.is_none() && covered.is_some());
+    }
+    assert!(hits > 50 && free > 50 && saved > 5, "{hits} {free} {saved}");
+}
+
+#[test]
+fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
+    let (scene, mut random) = (scene(0.01), ChaCha8Rng::seed_from_u64(2));
+    let (mut hits, mut free) = (0, 0);
+    for _ in 0..400 {
+        let (from, workpiece) = (random_joints(&mut random), workpiece(&mut random));
+        let to: [f64; 6] = std::array::from_fn(|j| from[j] + 0.6 * (random.random::<f64>() - 0.5));
+        let at = |share: f64| -> [f64; 6] { std::array::from_fn(|j| from[j] + share * (to[j] - from[j])) };
+        if scene.first_hit(&scene.poses(&from, &workpiece), &PairKind::ALL).is_some() {
+            continue;
+        }
+        match scene.motion((&from, &workpiece), (&to, &workpiece)) {
+            Some(hit) => {
+                hits += 1;
+                assert!(!scene.keeps_apart(hit.pair, &scene.poses(&at(hit.share), &workpiece)));
+            }
+            None => {
+                free += 1;
+                for k in 0..=200 {
+                    let poses = scene.poses(&at(f64::from(k) / 200.0), &workpiece);
+                    // Between two states looked at nothing moves farther than the clearance.
+                    let clearance = scene.clearance(&poses, &PairKind::ALL).unwrap();
+                    assert!(clearance.distance > 0.0, "{clearance:?}");
+                }
+            }
+        }
+    }
+    assert!(hits > 20 && free > 50, "{hits} {free}");
+}
+
+#[test]
+fn pairs_that_always_touch_are_named() {
+    let mut shapes = scene(0.0).surroundings().shapes().to_vec();
+    shapes.push(shape("foot", Attachment::Base, Solid::Box(Vector3::new(0.6, 0.6, 0.6)), [0.0, 0.0, 0.0]));
+    shapes.push(shape("column", Attachment::Link(1), Solid::Box(Vector3::new(0.6, 0.6, 0.6)), [0.0, 0.0, 0.0]));
+    let around = |ignored| Surroundings::new(shapes.clone(), Vec::new(), 0.0, ignored).unwrap();
+    let scene = |ignored| Scene::new(&kr270(), &spindle().flange_from_tool, around(ignored));
+    let pair = ["column".to_owned(), "foot".to_owned()];
+    assert_eq!(scene(Vec::new()).unwrap_err(), SceneError::AlwaysTouching(vec![pair.clone()]));
+    assert!(scene(vec![pair]).is_ok());
+}
