@@ -44,13 +44,15 @@ impl Cover {
             _ => sphere(Vector3::zeros(), half.norm()),
         };
         let spheres = match solid {
+            // The ends, and slices of the cylinder between them.
             Solid::Capsule { radius, length } => {
                 let parts = (length / radius).ceil().clamp(1.0, MAX_SPHERES);
                 let step = length / parts;
                 let reach = libm::hypot(*radius, step / 2.0);
-                (0..parts as usize)
-                    .map(|k| sphere(Vector3::new(0.0, 0.0, -length / 2.0 + (k as f64 + 0.5) * step), reach))
-                    .collect()
+                let at = |z: f64| Vector3::new(0.0, 0.0, z);
+                let ends = [-length / 2.0, length / 2.0].map(|z| sphere(at(z), *radius));
+                let slices = (0..parts as usize).map(|k| sphere(at(-length / 2.0 + (k as f64 + 0.5) * step), reach));
+                ends.into_iter().chain(slices).collect()
             }
             // The box around it is cut along its longest edge into pieces about as long as the next edge.
             _ => {
@@ -127,13 +129,13 @@ mod tests {
             let a_pose = Pose { rotation: rotation_from_zyx(tilt), translation: Vector3::new(0.1, -0.2, 0.05) };
             let b_at = Pose { rotation: rotation_from_zyx(turn), translation: place.into() };
             let here = Pose::identity();
-            for a in solids() {
-                for b in solids() {
-                    let (cover_a, cover_b) = (Cover::new(&a, &a_pose), Cover::new(&b, &here));
+            for (number_a, a) in solids().iter().enumerate() {
+                for (number_b, b) in solids().iter().enumerate() {
+                    let (cover_a, cover_b) = (Cover::new(a, &a_pose), Cover::new(b, &here));
                     let bound = lower_bound(&cover_a, &here, &cover_b, &b_at, 10.0);
-                    let (a, b) = (Collider::new(&a, &a_pose).unwrap(), Collider::new(&b, &here).unwrap());
+                    let (a, b) = (Collider::new(a, &a_pose).unwrap(), Collider::new(b, &here).unwrap());
                     let exact = a.distance(&here, &b, &b_at, 10.0);
-                    prop_assert!(bound <= exact + 1e-7 || (exact <= 0.0 && bound <= 1e-7), "{bound} {exact}");
+                    prop_assert!(bound <= exact + 1e-7 || (exact <= 0.0 && bound <= 1e-7), "{number_a} {number_b} {bound} {exact}");
                 }
             }
         }
