@@ -9,6 +9,7 @@ use super::sense::Sense;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
+use stead_cell::Clearance;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
@@ -47,6 +48,8 @@ pub struct PlanPoint {
     pub score: f64,
     /// Standard deviation of the scored part, where the robot's uncertainty is known. m
     pub deviation: Option<f64>,
+    /// The pair of shapes with the least room; `None` without a scene, and where nothing is near.
+    pub clearance: Option<Clearance>,
 }
 
 /// How large the deflection is along a path, in each direction and altogether.

@@ -6,6 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
+use stead_cell::Scene;
 use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Posture, Robot, Spindle,
@@ -183,6 +185,8 @@ pub struct Problem {
     pub redundancy: Redundancy,
     /// Which postures segments may be driven in.
     pub postures: PostureRules,
+    /// The shapes on the arm and around it, where collisions are looked for.
+    pub scene: Option<Arc<Scene>>,
 }
 
 impl Problem {
@@ -202,7 +206,8 @@ impl Problem {
             plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
             self.cell.note(),
         ];
-        plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).collect()
+        let parts = parts.into_iter().flatten().chain(self.scene_notes());
+        plausibility::arm(&self.robot).into_iter().chain(parts).collect()
     }
 
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement

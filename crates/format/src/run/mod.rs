@@ -193,7 +193,8 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
-    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules };
+    let problem =
+        Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules, scene: None };
     check_postures(&postures, &problem, &search, &at.key("postures"))?;
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;

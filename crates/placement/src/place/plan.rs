@@ -79,6 +79,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 surface_part: s.surface_part,
                 score: s.score(),
                 deviation: s.own.deviation,
+                clearance: problem.state_clearance(placement, &plan.joints[place]),
             });
         }
     }

@@ -156,7 +156,9 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>, ReportError> {
-    let header = ["point", "segment", "beta_deg", "score_mm", "posture", "reason"];
+    let scene = problem.scene.as_deref();
+    let mut header = vec!["point", "segment", "beta_deg", "score_mm", "posture", "reason"];
+    header.extend(scene.map(|_| "pair"));
     let path = problem.task.path();
     let rows = map.rows.iter().enumerate().flat_map(|(point, row)| {
         row.iter().enumerate().map(move |(k, cell)| {
@@ -164,8 +166,12 @@ pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>,
             let mut fields = vec![point.to_string(), segment(path, point), fixed(beta_deg, Unit::ANGLE_DEG.decimals)];
             fields.extend(match cell {
                 Ok(cell) => [Unit::DEFLECTION_MM.text(cell.score), cell.posture.to_string(), String::new()],
-                Err(blocked) => [String::new(), String::new(), blocked.code()],
+                Err(blocked) => [String::new(), String::new(), blocked.kind.code()],
             });
+            fields.extend(scene.map(|scene| {
+                let pair = cell.err().and_then(|blocked| scene.pair(blocked.pair?));
+                pair.map(ToString::to_string).unwrap_or_default()
+            }));
             fields
         })
     });
