@@ -5,9 +5,11 @@
 //! plan that is free is as good as if all states had been looked at.
 
 use crate::constraints::Measured;
+use crate::outcome::PlanPoint;
 use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
 use nalgebra::Vector3;
+use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Scene};
 use stead_model::robot::{Pose, Posture};
 
@@ -22,7 +24,30 @@ pub struct PlanHit {
     pub pair: usize,
 }
 
+/// The least room at the points of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanClearance {
+    /// The path point.
+    pub point: usize,
+    /// The distance of the pair; zero or less where the two touch. m
+    pub distance: f64,
+    /// Their names.
+    pub names: Arc<[String; 2]>,
+}
+
 impl Problem {
+    /// The point of a plan at which a pair has the least room beyond what it has to keep.
+    pub(crate) fn plan_clearance(&self, points: &[PlanPoint]) -> Option<PlanClearance> {
+        let scene = self.scene.as_deref()?;
+        let rooms = points.iter().filter_map(|point| {
+            let clearance = point.clearance?;
+            let pair = scene.pair(clearance.pair)?;
+            Some((clearance.distance - pair.required, point.point, clearance.distance, pair.names.clone()))
+        });
+        let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(PlanClearance { point, distance, names })
+    }
+
     /// Where all that moves stands, for joint angles (rad) and the workpiece at a placement.
     fn poses(scene: &Scene, placement: &Placement, joints: &[f64; 6]) -> Poses {
         scene.poses(joints, &placement.base_from_workpiece())
