@@ -11,7 +11,7 @@ use crate::input::InputError;
 use crate::scalars::words;
 use nalgebra::Vector3;
 use std::path::Path;
-use stead_cell::TriangleMesh;
+use stead_cell::{MeshError, TriangleMesh};
 
 /// The unit of length of a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,7 +47,8 @@ const LARGEST: f64 = 1e3;
 const MAX_TRIANGLES: usize = 1_000_000;
 const THINNER: &str = "at most 1000000 triangles: a mesh for collision checks needs no more than some thousands";
 
-/// The triangles of a mesh file: OBJ where its name ends with `.obj`, else STL. Vertices at one place are one.
+/// The triangles of a mesh file: OBJ where its name ends with `.obj`, else STL. Vertices at one place are one, and the triangles of a closed
+/// mesh face outwards.
 ///
 /// # Errors
 /// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL or OBJ, a file that is cut off, a number that is
@@ -61,6 +62,20 @@ pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMe
         let problem = format!("has a coordinate beyond {} m in vertex {}", LARGEST, far + 1);
         return Err(InputError::new(file, problem).found(found.to_string()).allowed("coordinates within 1000 m; is the unit right?"));
     }
-    TriangleMesh::new(&vertices, &read.triangles)
-        .map_err(|error| InputError::new(file, error.to_string()).allowed("a mesh of triangles with an area"))
+    let no_mesh = |error: MeshError| InputError::new(file, error.to_string()).allowed("a mesh of triangles with an area");
+    let mesh = TriangleMesh::new(&vertices, &read.triangles).map_err(no_mesh)?;
+    if !(mesh.is_closed() && volume(&mesh) < 0.0) {
+        return Ok(mesh);
+    }
+    // Its triangles face inwards: what is inside of it would count as outside.
+    let turned: Vec<[u32; 3]> = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    TriangleMesh::new(mesh.vertices(), &turned).map_err(no_mesh)
+}
+
+/// The volume within a closed mesh; below zero where its triangles face inwards. m^3
+fn volume(mesh: &TriangleMesh) -> f64 {
+    // About a vertex, so that no large coordinates cancel.
+    let about = mesh.vertices().first().copied().unwrap_or_default();
+    let corners = |triangle: &[u32; 3]| triangle.map(|number| mesh.vertices()[number as usize] - about);
+    mesh.triangles().iter().map(corners).map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum()
 }

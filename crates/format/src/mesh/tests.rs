@@ -9,13 +9,10 @@ fn read(file: &str, bytes: &[u8]) -> Result<TriangleMesh, String> {
     read_mesh(file.as_ref(), bytes, MeshUnit::Millimetre).map_err(|error| error.to_string())
 }
 
-/// Area and volume of a closed mesh. m^2, m^3
-fn measures(mesh: &TriangleMesh) -> [f64; 2] {
+/// The area. m^2
+fn area(mesh: &TriangleMesh) -> f64 {
     let corners = |t: &[u32; 3]| t.map(|number| mesh.vertices()[number as usize]);
-    mesh.triangles().iter().map(corners).fold([0.0, 0.0], |[area, volume], [a, b, c]| {
-        let normal = (b - a).cross(&(c - a));
-        [area + normal.norm() / 2.0, volume + a.dot(&normal) / 6.0]
-    })
+    mesh.triangles().iter().map(corners).map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
 }
 
 #[test]
@@ -30,10 +27,9 @@ fn one_wedge_in_four_files_is_one_mesh() {
         let mesh = read(file, bytes).unwrap();
         assert!(mesh.is_closed(), "{file}");
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (6, 8), "{file}");
-        let [area, volume] = measures(&mesh);
         let slope = libm::hypot(100.0, 40.0);
-        assert!((area * 1e6 - (100.0 * 60.0 + 40.0 * 60.0 + 2.0 * 0.5 * 100.0 * 40.0 + slope * 60.0)).abs() < 1e-6);
-        assert!((volume * 1e9 - 0.5 * 100.0 * 40.0 * 60.0).abs() < 1e-6, "{volume}");
+        assert!((area(&mesh) * 1e6 - (100.0 * 60.0 + 40.0 * 60.0 + 100.0 * 40.0 + slope * 60.0)).abs() < 1e-6);
+        assert!((volume(&mesh) * 1e9 - 0.5 * 100.0 * 40.0 * 60.0).abs() < 1e-6, "{file}");
     }
     let metres = read_mesh("a.stl".as_ref(), BINARY, MeshUnit::Metre).unwrap();
     assert_eq!(metres.vertices()[2].x, 100.0);
@@ -90,4 +86,20 @@ fn what_is_no_obj_is_refused_where_it_stops_being_one() {
             assert!(message.contains(part), "{part} in {message}");
         }
     }
+}
+
+/// Triangles that face inwards are turned, so that the inside of a closed mesh is inside.
+#[test]
+fn a_closed_mesh_faces_outwards_whatever_the_file_says() {
+    let turned: String = HOUSE.lines().fold(String::new(), |text, line| match line.strip_prefix("f ") {
+        Some(corners) if !corners.ends_with('\\') => {
+            let words: Vec<&str> = corners.split(' ').rev().collect();
+            format!("{text}f {}\n", words.join(" "))
+        }
+        _ => format!("{text}{line}\n"),
+    });
+    // The face that goes on in the next line.
+    let turned = turned.replacen("f -6 -3 \\\n  -4 -5", "f -5 -4 -3 -6", 1);
+    let mesh = read("a.obj", turned.as_bytes()).unwrap();
+    assert!(mesh.is_closed() && (volume(&mesh) * 1e9 - 120_000.0).abs() < 1e-6);
 }
