@@ -348,7 +348,7 @@ Examples:
   stead init place --robot my/kr210.toml --task my/part.csv --out my/run.toml
 
 Files written to the folder:
-  place     run.toml, robot.toml, task.csv
+  place     run.toml, robot.toml, task.csv, cell.toml
   assess    assess.toml, robot.toml
   identify  identify.toml, robot.toml, sheet.csv
   simulate  simulate.toml, robot.toml (for stead stability too)

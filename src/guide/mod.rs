@@ -6,6 +6,7 @@
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
+//! | What must the robot not hit? | [`surroundings`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -19,7 +20,7 @@
 //! | How round is a measured profile? | [`circularity`] |
 //! | How do I use stead from Rust, from Python? | [`library`], [`python`] |
 //! | Which direction is positive? | [`conventions`] |
-//! | What stands in which file? | [`files`], [`run_file`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
+//! | What stands in which file? | [`files`], [`run_file`], [`surroundings`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
 //! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
 //! | What does this message mean? | [`troubleshooting`], [`glossary`] |
 //!
@@ -87,6 +88,8 @@ pub mod studies {}
 pub mod study {}
 #[doc = include_str!("study_file.md")]
 pub mod study_file {}
+#[doc = include_str!("surroundings.md")]
+pub mod surroundings {}
 #[doc = include_str!("tables.md")]
 pub mod tables {}
 #[doc = include_str!("troubleshooting.md")]

@@ -31,6 +31,7 @@ pub mod inertial;
 pub mod init;
 pub mod input;
 pub mod manifest;
+pub mod mesh;
 mod new_file;
 pub mod orientation;
 pub mod place;
@@ -51,6 +52,7 @@ pub mod simulation;
 mod sources;
 pub mod spindle;
 pub mod study;
+pub mod surroundings;
 pub mod task;
 #[cfg(test)]
 mod testing;

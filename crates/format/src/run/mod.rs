@@ -27,6 +27,7 @@ use crate::input::{InputError, InputFile, input_file};
 use crate::robot::{moving_robot_from, robot_from};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
+use crate::surroundings::{CollisionTable, KeepOutTable, ShapeTable, SurroundingsFile, read_scene};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
 use forces::ForceTables;
@@ -36,6 +37,8 @@ use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::Arc;
+use stead_cell::Scene;
 use stead_model::published::Published;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
@@ -79,6 +82,14 @@ pub struct RunFile {
     pub cut: Option<CutTable>,
     /// Forces in the frame of each path point, in place of force columns or of `[tool]` and `[cut]`.
     pub forces: Option<ForcesTable>,
+    /// What stands around the robot and on it, to be kept apart: a file of the tables below, relative to the folder of this one.
+    pub surroundings: Option<String>,
+    /// Shapes that keep apart, beside those of `surroundings`.
+    pub shape: Option<Vec<ShapeTable>>,
+    /// Zones that points of the arm are kept out of, beside those of `surroundings`.
+    pub keep_out: Option<Vec<KeepOutTable>>,
+    /// How far shapes keep apart, and which may touch.
+    pub collision: Option<CollisionTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,
     /// What is made beside the plans.
@@ -92,6 +103,8 @@ pub struct RunFile {
 pub struct Run {
     /// What is to be solved.
     pub problem: Problem,
+    /// The arm with the shapes on it and around it, where the run states some.
+    pub scene: Option<Arc<Scene>>,
     /// How hard to search.
     pub search: SearchSettings,
     /// Limits of the moves between segments.
@@ -100,7 +113,7 @@ pub struct Run {
     pub certificate: Option<CertificateSettings>,
     /// Whether deflection maps are made.
     pub maps: bool,
-    /// The files that were read, in the order config, robot, task.
+    /// The files that were read, in the order config, robot, task, and others that they name.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
     pub reference: Option<Published<[f64; 4]>>,
@@ -200,9 +213,13 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     check_tables(&search, &problem, &at.key("search"))?;
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
+    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
+    let scene = read_scene(around, &at, &problem.robot, &problem.spindle)?;
+    inputs.extend(scene.inputs);
     notes.extend(problem.notes());
+    notes.extend(scene.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
+    Ok(Run { problem, scene: scene.scene, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
 }
