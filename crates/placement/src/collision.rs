@@ -8,7 +8,6 @@ use crate::constraints::Measured;
 use crate::outcome::PlanPoint;
 use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
-use nalgebra::Vector3;
 use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Scene};
 use stead_model::robot::{Pose, Posture};
@@ -120,34 +119,6 @@ impl Problem {
         self.scene.is_none()
             || (self.placement_hit(placement).is_none()
                 && plans.iter().all(|plan| self.plan_hits(placement, plan, true).is_empty()))
-    }
-
-    /// What looks wrong about the scene though it is possible, in sentences.
-    pub(crate) fn scene_notes(&self) -> Vec<String> {
-        let Some(scene) = self.scene.as_deref() else { return Vec::new() };
-        let mut notes = Vec::new();
-        let links = scene.unchecked_links();
-        if !links.is_empty() {
-            let links: Vec<String> = links.iter().map(u8::to_string).collect();
-            notes.push(format!("arm not checked: no shape is attached to link {}", links.join(", ")));
-        }
-        let reach = self.robot.geometry().reach();
-        for shape in scene.surroundings().shapes() {
-            let [low, high]: [Vector3<f64>; 2] = shape.solid.extent();
-            let size = (high - low).norm();
-            let is_on_arm_or_part = !matches!(shape.attached, stead_cell::Attachment::Base);
-            if is_on_arm_or_part && size > 2.0 * reach {
-                notes.push(format!(
-                    "{:?} is {:.0} mm across, more than twice the reach of the arm: is its file in another unit?",
-                    shape.name,
-                    size * 1e3
-                ));
-            }
-            if matches!(&shape.solid, stead_cell::Solid::Mesh(mesh) if !mesh.is_closed()) {
-                notes.push(format!("the mesh of {:?} is not closed: what is inside of it is not seen", shape.name));
-            }
-        }
-        notes
     }
 }
 

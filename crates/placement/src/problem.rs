@@ -206,8 +206,7 @@ impl Problem {
             plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
             self.cell.note(),
         ];
-        let parts = parts.into_iter().flatten().chain(self.scene_notes());
-        plausibility::arm(&self.robot).into_iter().chain(parts).collect()
+        plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).collect()
     }
 
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement

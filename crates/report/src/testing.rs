@@ -164,6 +164,7 @@ impl Grid {
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,
+            clearance: None,
             mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             points,
         };

@@ -19,7 +19,7 @@ fn column(rows: &[Vec<String>], name: &str) -> Vec<String> {
 
 #[test]
 fn a_plan_has_one_row_per_path_point() {
-    let rows = rows(&tables::plan(&outcome().cases.worst.plan).unwrap());
+    let rows = rows(&tables::plan(&outcome().cases.worst.plan, None).unwrap());
     assert_eq!(rows.len(), 1 + 105);
     assert_eq!(
         rows[0].join(","),
@@ -76,7 +76,7 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
     let pairs = [
         (
             tables::plan(&known.cases.best_worst_plan.plan, None),
-            tables::plan(&outcome().cases.best_worst_plan.plan),
+            tables::plan(&outcome().cases.best_worst_plan.plan, None),
             "std_mm",
             "0.0040000",
         ),
