@@ -73,7 +73,7 @@ impl Collider {
     }
 
     /// The distance of two solids whose attachments stand at poses in one frame, where it is below `limit`; else a value not below
-    /// that. Zero or less where they touch: by how far they are into each other, as far as that is known. m
+    /// that; zero where they touch. m
     pub fn distance(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> f64 {
         let poses = [parry_pose(at) * self.pose, parry_pose(other_at) * other.pose];
         match (&self.form, &other.form) {
@@ -98,15 +98,10 @@ fn tri_mesh(mesh: &TriangleMesh) -> Option<TriMesh> {
     TriMesh::with_flags(vertices, mesh.triangles().to_vec(), flags).ok()
 }
 
-/// The distance of two convex solids, or by how far they are into each other, as a negative number.
+/// The distance of two convex solids, zero where they touch.
 fn convex_distance(a_at: &ParryPose, a: &dyn ParryShape, b_at: &ParryPose, b: &dyn ParryShape) -> f64 {
     // Pairs that the library does not know count as touching.
-    let apart = query::distance(a_at, a, b_at, b).map_or(0.0, |found| found.distance);
-    if apart > 0.0 {
-        return apart;
-    }
-    let contact = query::contact(a_at, a, b_at, b, 0.0).ok().flatten();
-    contact.map_or(0.0, |contact| contact.dist.min(0.0))
+    query::distance(a_at, a, b_at, b).map_or(0.0, |found| found.distance)
 }
 
 /// The distance of a box of the tree from a point, less a radius.
@@ -196,7 +191,7 @@ mod tests {
         assert!((cube.distance(&here, &cube, &at(3.0, 0.0, 0.0), 10.0) - 2.0).abs() < 1e-12);
         assert!((cube.distance(&here, &capsule, &at(0.0, 0.0, 2.0), 10.0) - 0.9).abs() < 1e-12);
         assert!((cube.distance(&here, &cylinder, &at(0.0, 0.0, 2.0), 10.0) - 1.0).abs() < 1e-9);
-        assert!((cube.distance(&here, &cube, &at(0.9, 0.0, 0.0), 10.0) + 0.1).abs() < 1e-6);
+        assert_eq!(cube.distance(&here, &cube, &at(0.9, 0.0, 0.0), 10.0), 0.0);
     }
 
     #[test]

@@ -10,6 +10,9 @@ use stead_model::robot::{Unreachable, angles::ANGLE_ROUNDING};
 /// Joint steps are compared with their limits up to this (rad), steps of beta up to this share of the grid's step: rounding.
 pub const STEP_ROUNDING: f64 = 1e-9;
 
+/// What shapes that touch are counted as beyond their clearance: as much as 0.1 m.
+const TOUCHING: f64 = 1.0;
+
 /// A constraint with what it is measured by.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Measured {
@@ -134,6 +137,8 @@ impl Measured {
         match *self {
             // A point out of reach has no joint angles, so it counts as farther off than any state that has them.
             Self::Reach(_) => 100.0 - self.margin() * 10.0,
+            // How far shapes are into each other is not known.
+            Self::Clearance { distance, .. } if distance <= 0.0 => TOUCHING - self.margin() * 10.0,
             Self::JointLimit { .. }
             | Self::JointStep { .. }
             | Self::BetaRate { .. }
