@@ -13,6 +13,8 @@ pub mod scene;
 pub mod shape;
 pub mod solid;
 pub mod surroundings;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
 
 pub use scene::{Clearance, MotionHit, Pair, PairKind, Poses, Scene, SceneError};
 pub use shape::{Attachment, KeepOut, Shape, TrackedPoint, Zone};

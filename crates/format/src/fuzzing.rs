@@ -119,11 +119,14 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     const URDF: [&[u8]; 2] = [include_bytes!("urdf/fixtures/kuka.urdf"), include_bytes!("urdf/fixtures/abb.urdf")];
-    const CLDATA: [&[u8]; 2] = [include_bytes!("cam/fixtures/pocket.cls"), include_bytes!("cam/fixtures/every_word.cls")];
-    const GCODE: [&[u8]; 2] = [include_bytes!("cam/fixtures/three_axes.nc"), include_bytes!("cam/fixtures/five_axes.nc")];
+    const CLDATA: [&[u8]; 2] =
+        [include_bytes!("cam/fixtures/pocket.cls"), include_bytes!("cam/fixtures/every_word.cls")];
+    const GCODE: [&[u8]; 2] =
+        [include_bytes!("cam/fixtures/three_axes.nc"), include_bytes!("cam/fixtures/five_axes.nc")];
     const TASK: [&[u8]; 2] =
         [include_bytes!("../../../tasks/five-segments.csv"), include_bytes!("cam/fixtures/followed.csv")];
-    const STL: [&[u8]; 2] = [include_bytes!("mesh/fixtures/wedge.stl"), include_bytes!("mesh/fixtures/wedge-ascii.stl")];
+    const STL: [&[u8]; 2] =
+        [include_bytes!("mesh/fixtures/wedge.stl"), include_bytes!("mesh/fixtures/wedge-ascii.stl")];
     const OBJ: [&[u8]; 2] = [include_bytes!("mesh/fixtures/wedge.obj"), include_bytes!("mesh/fixtures/house.obj")];
 
     /// Runs so many fixtures with mutations; how many were taken.

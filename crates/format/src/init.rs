@@ -115,7 +115,7 @@ mod tests {
         let text = std::fs::read_to_string(&file).unwrap();
         std::fs::write(&file, text.replacen("# surroundings", "surroundings", 1)).unwrap();
         let run = read_run(&file).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(run.scene.map(|scene| scene.surroundings().shapes().len()), Some(5));
+        assert_eq!(run.problem.scene.map(|scene| scene.surroundings().shapes().len()), Some(5));
         let assess = written(StarterSet::Assess);
         read_assessment(&assess.path().join("assess.toml")).unwrap_or_else(|e| panic!("{e}"));
         let identify = written(StarterSet::Identify);

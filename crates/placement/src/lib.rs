@@ -22,6 +22,7 @@ mod beta_step;
 pub mod candidate;
 pub mod cell;
 pub mod certify;
+pub mod collision;
 pub mod constraints;
 pub mod coordinate_search;
 pub mod criterion;
@@ -87,6 +88,7 @@ pub mod testing {
                 max_spindle_speed: None,
             },
             postures: PostureRules::NONE,
+            scene: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
+use super::collision::PlanClearance;
 use super::feasibility::{DeflectionMap, deflection_map};
-use super::feed::CutFeed;
 use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
@@ -9,10 +9,13 @@ use super::sense::Sense;
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
+use stead_cell::Clearance;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
+
+pub use super::transfer::{Cycle, Transfer};
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +50,8 @@ pub struct PlanPoint {
     pub score: f64,
     /// Standard deviation of the scored part, where the robot's uncertainty is known. m
     pub deviation: Option<f64>,
+    /// The pair of shapes with the least room; `None` without a scene, and where nothing is near.
+    pub clearance: Option<Clearance>,
 }
 
 /// How large the deflection is along a path, in each direction and altogether.
@@ -103,6 +108,8 @@ pub struct Plan {
     /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err together, so
     /// that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
+    /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
+    pub clearance: Option<PlanClearance>,
 }
 
 /// A placement with one of its plans.
@@ -157,38 +164,9 @@ impl Cases {
     }
 }
 
-/// How long the cut takes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cycle {
-    /// The feed that the arm holds.
-    pub feed: CutFeed,
-    /// Time in the cut: the length of each segment over the feed held there. s
-    pub cutting: f64,
-    /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
-    pub transfers: Vec<Transfer>,
-}
-
-/// A joint move from the end of one segment to the start of the next, from rest to rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Transfer {
-    /// Number of the segment before the move, from 1.
-    pub after_segment: usize,
-    /// Duration; `None` where a joint that moves has no speed in the robot file. s
-    pub duration: Option<f64>,
-    /// Largest joint travel of the move. rad
-    pub travel: f64,
-}
-
 /// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
 /// nothing. m
 pub const CANCELLATION: f64 = 1e-9;
-
-impl Cycle {
-    /// Cutting and moves together; `None` where a move's time is not known. s
-    pub fn total(&self) -> Option<f64> {
-        self.transfers.iter().try_fold(self.cutting, |sum, transfer| Some(sum + transfer.duration?))
-    }
-}
 
 /// State of one genetic search after one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]

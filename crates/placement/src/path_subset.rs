@@ -92,6 +92,7 @@ impl PathSubset {
             robot: problem.robot.clone(),
             task: problem.task.thinned(&kept),
             criterion: problem.criterion.clone(),
+            scene: problem.scene.clone(),
             ..*problem
         }
     }

@@ -12,7 +12,7 @@ use super::sensitivity::objective_with_force_errors;
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{best_alone, choose, leading, refine_basins};
-use notes::{cancellation, interruption};
+use notes::{blocked_moves, cancellation, interruption};
 use plan::{StatedPlans, detailed};
 use refined::Refined;
 use searched::{Searched, search_cell};
@@ -31,8 +31,8 @@ mod score;
 mod searched;
 mod sets;
 
-pub use infeasible::Infeasible;
 use infeasible::infeasible;
+pub use infeasible::{BlockingPair, Infeasible};
 pub use long_path::LongPath;
 pub use score::{Score, score};
 
@@ -96,7 +96,7 @@ pub fn place(
             plan_sense,
             placement: solution.solution.placement,
             plan: detailed(problem, &solution.solution.placement, plans),
-            cycle: cycle(problem, transfer, plans),
+            cycle: cycle(problem, &solution.solution.placement, transfer, plans),
             active_bounds,
         }
     };
@@ -106,6 +106,7 @@ pub fn place(
         Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
         _ => None,
     };
+    let blocked = blocked_moves(problem, &best_case.cycle);
     Ok(Outcome {
         sets: sets.outcomes(&best_case),
         set_basins: sets.basins,
@@ -129,6 +130,7 @@ pub fn place(
         interrupted,
         warnings: cancellation(problem, best.solution.objective)
             .into_iter()
+            .chain(blocked)
             .chain(interrupted.then(interruption))
             .collect(),
     })

@@ -6,6 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
+use stead_cell::Scene;
 use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Posture, Robot, Spindle,
@@ -183,6 +185,8 @@ pub struct Problem {
     pub redundancy: Redundancy,
     /// Which postures segments may be driven in.
     pub postures: PostureRules,
+    /// The shapes on the arm and around it, where collisions are looked for.
+    pub scene: Option<Arc<Scene>>,
 }
 
 impl Problem {

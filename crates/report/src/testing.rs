@@ -9,7 +9,7 @@ use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
-use stead_placement::feasibility::{DeflectionMap, MapCell};
+use stead_placement::feasibility::{DeflectionMap, MapCell, MapReason};
 use stead_placement::feed::{CutFeed, FeedLimit, FeedLimitKind};
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
@@ -135,7 +135,8 @@ impl Grid {
             let allowed = states.iter().zip(Posture::ALL).filter_map(|(s, posture)| Some((s.as_ref().ok()?, posture)));
             let cells = allowed.map(|(state, posture)| MapCell { score: state.score(), posture });
             let nearest = states.iter().filter_map(|s| s.as_ref().err().copied()).max();
-            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(nearest.unwrap_or(ConstraintKind::Reach))
+            let kind = nearest.unwrap_or(ConstraintKind::Reach);
+            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(MapReason { kind, pair: None })
         };
         let rows = self.states.iter().map(|row| row.iter().map(cell).collect()).collect();
         DeflectionMap { beta_count: problem().redundancy.beta_count, rows }
@@ -163,13 +164,14 @@ impl Grid {
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,
+            clearance: None,
             mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             points,
         };
         let transfer = |k: usize| {
             let duration =
                 (placement_sense == Sense::Min || plan_sense == Sense::Min || k != 2).then_some(0.4 * k as f64);
-            Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
+            Transfer { after_segment: k, duration, travel: 0.3 * k as f64, way: None }
         };
         let limit = |k: usize| FeedLimit {
             feed: 0.08 - 0.005 * k as f64,
@@ -230,6 +232,7 @@ impl Grid {
             surface_part: None,
             score: state.score(),
             deviation: state.own.deviation,
+            clearance: None,
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::shape::{Attachment, Shape, TrackedPoint};
 use crate::surroundings::Surroundings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 use stead_model::robot::{Pose, Robot};
 
 /// Why surroundings and an arm do not make a scene.
@@ -52,7 +53,7 @@ impl Scene {
                 let name = |body: usize| surroundings.shapes()[body].name.clone();
                 let reach = reach(robot, (bodies[a].frame, &bodies[a].cover), (bodies[b].frame, &bodies[b].cover));
                 pairs.push(Pair {
-                    names: [name(a), name(b)],
+                    names: Arc::new([name(a), name(b)]),
                     kind,
                     required: surroundings.clearance(),
                     members: Members::Bodies(a, b),
@@ -68,7 +69,7 @@ impl Scene {
                     TrackedPoint::Elbow => (3, 0.0),
                 };
                 pairs.push(Pair {
-                    names: [point.word().to_owned(), zone.name.clone()],
+                    names: Arc::new([point.word().to_owned(), zone.name.clone()]),
                     kind: PairKind::ArmCell,
                     required: 0.0,
                     members: Members::Zone(number, *point),
@@ -103,7 +104,7 @@ impl Scene {
                 break;
             }
         }
-        suspects.into_iter().map(|number| self.pairs[number].names.clone()).collect()
+        suspects.into_iter().map(|number| self.pairs[number].names.as_ref().clone()).collect()
     }
 }
 

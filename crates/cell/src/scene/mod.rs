@@ -13,6 +13,7 @@ use crate::cover::{Cover, lower_bound};
 use crate::shape::{Attachment, TrackedPoint};
 use crate::surroundings::Surroundings;
 use nalgebra::Vector3;
+use std::sync::Arc;
 use stead_model::robot::{Pose, Robot};
 
 /// Frames that shapes are attached to: the base, six links, the workpiece, and external axes.
@@ -32,6 +33,14 @@ impl Poses {
     pub fn new(robot: &Robot, joints: &[f64; 6], base_from_workpiece: &Pose<f64>) -> Self {
         let mut frames = [Pose::identity(); FRAMES];
         frames[1..=6].copy_from_slice(&robot.link_frames(joints));
+        frames[WORKPIECE] = *base_from_workpiece;
+        Self { frames }
+    }
+
+    /// The flange and the workpiece at poses in one frame (m), for pairs of these two alone: all else is left at the origin.
+    pub fn of_tool(base_from_flange: &Pose<f64>, base_from_workpiece: &Pose<f64>) -> Self {
+        let mut frames = [Pose::identity(); FRAMES];
+        frames[6] = *base_from_flange;
         frames[WORKPIECE] = *base_from_workpiece;
         Self { frames }
     }
@@ -95,7 +104,7 @@ struct Body {
 #[derive(Debug, Clone)]
 pub struct Pair {
     /// Their names.
-    pub names: [String; 2],
+    pub names: Arc<[String; 2]>,
     /// What their distance depends on.
     pub kind: PairKind,
     /// The distance that they have to keep. m
@@ -146,7 +155,7 @@ impl PartialEq for Scene {
 }
 
 /// Distances above this are not told apart. m
-pub const FAR: f64 = 10.0;
+pub const FAR: f64 = 1.0;
 
 impl Scene {
     /// The shapes and zones.

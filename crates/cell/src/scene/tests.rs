@@ -1,43 +1,11 @@
 use super::*;
-use crate::shape::{KeepOut, Shape, Zone};
+use crate::shape::Attachment;
 use crate::solid::Solid;
+use crate::surroundings::Surroundings;
+use crate::testing::{kr270_shapes, scene_of, shape};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::testing::{kr270, spindle};
-
-fn shape(name: &str, attached: Attachment, solid: Solid, at: [f64; 3]) -> Shape {
-    Shape { name: name.to_owned(), attached, solid, pose: Pose { translation: at.into(), ..Pose::identity() } }
-}
-
-fn along(name: &str, link: u8, radius: f64, to: [f64; 3]) -> Shape {
-    // A capsule from the origin of the frame of the link to a point of it.
-    let to = Vector3::from(to);
-    let z = to.normalize();
-    let x = z.cross(&Vector3::new(z.y, z.z, z.x)).normalize();
-    let rotation = nalgebra::Matrix3::from_columns(&[x, z.cross(&x), z]);
-    Shape {
-        name: name.to_owned(),
-        attached: Attachment::Link(link),
-        solid: Solid::Capsule { radius, length: to.norm() },
-        pose: Pose { rotation, translation: to / 2.0 },
-    }
-}
-
-/// A KR 270 of capsules, with a spindle, a table that is the workpiece's, a pillar and a fence.
-fn scene(clearance: f64) -> Scene {
-    let shapes = vec![
-        along("upper arm", 2, 0.16, [1.25, 0.0, 0.0]),
-        along("forearm", 3, 0.13, [-0.055, 1.1, 0.0]),
-        shape("spindle", Attachment::Flange, Solid::Cylinder { radius: 0.09, length: 0.4 }, [0.0, 0.0, 0.3]),
-        shape("part", Attachment::Workpiece, Solid::Box(Vector3::new(0.4, 0.5, 0.2)), [0.0, 0.0, -0.1]),
-        shape("pillar", Attachment::Base, Solid::Cylinder { radius: 0.15, length: 3.0 }, [0.5, -2.6, 0.0]),
-        shape("fence", Attachment::Base, Solid::Box(Vector3::new(5.0, 0.05, 2.0)), [0.0, -3.0, 0.0]),
-    ];
-    let floor = Zone::HalfSpace { point: Vector3::new(0.0, 0.0, -0.7), normal: Vector3::new(0.0, 0.0, -1.0) };
-    let zones = vec![KeepOut { name: "floor".to_owned(), zone: floor, points: TrackedPoint::ALL.to_vec() }];
-    let around = Surroundings::new(shapes, zones, clearance, Vec::new()).unwrap();
-    Scene::new(&kr270(), &spindle().flange_from_tool, around).unwrap()
-}
 
 fn random_joints(random: &mut ChaCha8Rng) -> [f64; 6] {
     let robot = kr270();
@@ -55,7 +23,7 @@ fn workpiece(random: &mut ChaCha8Rng) -> Pose<f64> {
 
 #[test]
 fn kinds_are_told_apart() {
-    let scene = scene(0.01);
+    let scene = scene_of(kr270_shapes(), 0.01);
     let kind = |a: &str, b: &str| {
         let found =
             scene.pairs().iter().find(|pair| pair.names.iter().any(|n| n == a) && pair.names.iter().any(|n| n == b));
@@ -74,7 +42,7 @@ fn kinds_are_told_apart() {
 
 #[test]
 fn what_covers_call_free_is_free_and_clearances_agree() {
-    let (scene, mut random) = (scene(0.02), ChaCha8Rng::seed_from_u64(1));
+    let (scene, mut random) = (scene_of(kr270_shapes(), 0.02), ChaCha8Rng::seed_from_u64(1));
     let (mut hits, mut free, mut saved) = (0, 0, 0);
     for _ in 0..300 {
         let poses = scene.poses(&random_joints(&mut random), &workpiece(&mut random));
@@ -96,7 +64,7 @@ fn what_covers_call_free_is_free_and_clearances_agree() {
 
 #[test]
 fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
-    let (scene, mut random) = (scene(0.01), ChaCha8Rng::seed_from_u64(2));
+    let (scene, mut random) = (scene_of(kr270_shapes(), 0.01), ChaCha8Rng::seed_from_u64(2));
     let (mut hits, mut free) = (0, 0);
     for _ in 0..400 {
         let (from, workpiece) = (random_joints(&mut random), workpiece(&mut random));
@@ -126,7 +94,7 @@ fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
 
 #[test]
 fn pairs_that_always_touch_are_named() {
-    let mut shapes = scene(0.0).surroundings().shapes().to_vec();
+    let mut shapes = kr270_shapes();
     shapes.push(shape("foot", Attachment::Base, Solid::Box(Vector3::new(0.6, 0.6, 0.6)), [0.0, 0.0, -0.8]));
     shapes.push(shape("column", Attachment::Link(1), Solid::Box(Vector3::new(0.4, 0.4, 0.6)), [0.0, 0.0, -0.5]));
     let around = |ignored| Surroundings::new(shapes.clone(), Vec::new(), 0.0, ignored).unwrap();

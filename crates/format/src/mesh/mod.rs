@@ -58,11 +58,15 @@ pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMe
     let read = if is_obj { obj::read(file, bytes)? } else { stl::read(file, bytes)? };
     let vertices: Vec<Vector3<f64>> = read.vertices.iter().map(|vertex| vertex * unit.metres()).collect();
     if let Some(far) = vertices.iter().position(|vertex| vertex.iter().any(|c| c.abs() > LARGEST)) {
-        let found = read.vertices[far].iter().fold(0.0_f64, |largest, c| if c.abs() > largest.abs() { *c } else { largest });
+        let found =
+            read.vertices[far].iter().fold(0.0_f64, |largest, c| if c.abs() > largest.abs() { *c } else { largest });
         let problem = format!("has a coordinate beyond {} m in vertex {}", LARGEST, far + 1);
-        return Err(InputError::new(file, problem).found(found.to_string()).allowed("coordinates within 1000 m; is the unit right?"));
+        return Err(InputError::new(file, problem)
+            .found(found.to_string())
+            .allowed("coordinates within 1000 m; is the unit right?"));
     }
-    let no_mesh = |error: MeshError| InputError::new(file, error.to_string()).allowed("a mesh of triangles with an area");
+    let no_mesh =
+        |error: MeshError| InputError::new(file, error.to_string()).allowed("a mesh of triangles with an area");
     let mesh = TriangleMesh::new(&vertices, &read.triangles).map_err(no_mesh)?;
     if !(mesh.is_closed() && volume(&mesh) < 0.0) {
         return Ok(mesh);

@@ -9,8 +9,28 @@ use std::path::Path;
 
 /// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface (points, lines).
 const WITHOUT_SURFACE: [&str; 22] = [
-    "vt", "vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "usemap", "maplib", "p", "l", "bevel", "c_interp", "d_interp",
-    "lod", "shadow_obj", "trace_obj", "ctech", "stech", "end",
+    "vt",
+    "vn",
+    "vp",
+    "g",
+    "o",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "p",
+    "l",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "end",
 ];
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
@@ -22,7 +42,10 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
         let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
         let Some(kind) = words.next() else { continue };
         let fail = |problem: &str, allowed: &str| {
-            Err(InputError::new(file, problem).at_line(number).found(format!("'{}'", shortened(&line))).allowed(allowed))
+            Err(InputError::new(file, problem)
+                .at_line(number)
+                .found(format!("'{}'", shortened(&line)))
+                .allowed(allowed))
         };
         match kind {
             "v" => match words.by_ref().take(3).map(number_of).collect::<Vec<_>>()[..] {
@@ -47,7 +70,12 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
                 }
             }
             kind if WITHOUT_SURFACE.contains(&kind) => {}
-            _ => return fail("is a statement that is not read", "an OBJ of vertices (v) and faces (f), without curved surfaces"),
+            _ => {
+                return fail(
+                    "is a statement that is not read",
+                    "an OBJ of vertices (v) and faces (f), without curved surfaces",
+                );
+            }
         }
     }
     if !read.triangles.is_empty() && largest.0 as usize >= read.vertices.len() {
@@ -60,7 +88,8 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
     Ok(read)
 }
 
-const FACE: &str = "f with three corners or more: numbers of vertices from 1, or from -1 backwards, with or without /texture/normal";
+const FACE: &str =
+    "f with three corners or more: numbers of vertices from 1, or from -1 backwards, with or without /texture/normal";
 
 /// The vertex that a corner names, from 0: counted from 1, or backwards from the last so far.
 fn corner(word: &str, count: usize) -> Option<u32> {

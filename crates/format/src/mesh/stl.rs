@@ -15,13 +15,16 @@ const RECORD: usize = 50;
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
     let begins_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let count = bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes(count.try_into().unwrap_or_default()) as usize);
+    let count =
+        bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes(count.try_into().unwrap_or_default()) as usize);
     let is_binary = count.is_some_and(|count| bytes.len() == HEADER + RECORD * count);
     if !is_binary && begins_as_text && !bytes.contains(&0) {
         return ascii(file, &String::from_utf8_lossy(bytes));
     }
     let Some(count) = count else {
-        return Err(InputError::new(file, "is too short for a mesh").found(format!("{} bytes", bytes.len())).allowed(KINDS));
+        return Err(InputError::new(file, "is too short for a mesh")
+            .found(format!("{} bytes", bytes.len()))
+            .allowed(KINDS));
     };
     if !is_binary {
         let problem = format!("is not as long as its {count} triangles: cut off, or no STL");
@@ -92,7 +95,10 @@ fn ascii(file: &Path, text: &str) -> Result<Triangles, InputError> {
             },
             ("endloop", 3) => {
                 let Ok(vertices) = <[Vector3<f64>; 3]>::try_from(std::mem::take(&mut corners)) else {
-                    return fail("ends a facet that has not three vertices", "three vertices between outer loop and endloop");
+                    return fail(
+                        "ends a facet that has not three vertices",
+                        "three vertices between outer loop and endloop",
+                    );
                 };
                 read.push(vertices);
                 check_count(file, read.triangles.len())?;

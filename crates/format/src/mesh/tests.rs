@@ -17,12 +17,8 @@ fn area(mesh: &TriangleMesh) -> f64 {
 
 #[test]
 fn one_wedge_in_four_files_is_one_mesh() {
-    let files: [(&str, &[u8]); 4] = [
-        ("a.stl", BINARY),
-        ("a.STL", ASCII.as_bytes()),
-        ("a.obj", OBJ.as_bytes()),
-        ("a.OBJ", HOUSE.as_bytes()),
-    ];
+    let files: [(&str, &[u8]); 4] =
+        [("a.stl", BINARY), ("a.STL", ASCII.as_bytes()), ("a.obj", OBJ.as_bytes()), ("a.OBJ", HOUSE.as_bytes())];
     for (file, bytes) in files {
         let mesh = read(file, bytes).unwrap();
         assert!(mesh.is_closed(), "{file}");
@@ -40,7 +36,11 @@ fn what_is_no_stl_is_refused_where_it_stops_being_one() {
     let changed = |from: &str, to: &str| ASCII.replacen(from, to, 1);
     for (text, parts) in [
         (String::new(), &["a.stl: is too short", "found 0 bytes"][..]),
-        ("some text about a part, long enough to have a count of triangles in it, as it were, in its 84 bytes".to_owned(), &["not as long as its"]),
+        (
+            "some text about a part, long enough to have a count of triangles in it, as it were, in its 84 bytes"
+                .to_owned(),
+            &["not as long as its"],
+        ),
         ("solid a\nendsolid a\n".to_owned(), &["has no triangles"]),
         (changed("endsolid wedge", ""), &[":57:", "cut off", "endsolid"]),
         (changed("vertex 0 0 0e0", "vertex 0 nan 0"), &[":4:", "three finite numbers", "found 'vertex 0 nan 0'"]),

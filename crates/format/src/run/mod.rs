@@ -37,8 +37,6 @@ use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::Arc;
-use stead_cell::Scene;
 use stead_model::published::Published;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
@@ -103,8 +101,6 @@ pub struct RunFile {
 pub struct Run {
     /// What is to be solved.
     pub problem: Problem,
-    /// The arm with the shapes on it and around it, where the run states some.
-    pub scene: Option<Arc<Scene>>,
     /// How hard to search.
     pub search: SearchSettings,
     /// Limits of the moves between segments.
@@ -206,19 +202,20 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
-    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules };
+    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
+    let around = read_scene(around, &at, &robot, &spindle)?;
+    let scene = around.scene;
+    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules, scene };
     check_postures(&postures, &problem, &search, &at.key("postures"))?;
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
-    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
-    let scene = read_scene(around, &at, &problem.robot, &problem.spindle)?;
-    inputs.extend(scene.inputs);
+    inputs.extend(around.inputs);
     notes.extend(problem.notes());
-    notes.extend(scene.notes);
+    notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, scene: scene.scene, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
+    Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
 }

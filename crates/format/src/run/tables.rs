@@ -187,6 +187,8 @@ pub struct TransferTable {
     pub jerk_time_s: Option<S<Positive>>,
     /// Distance along the cut over which the controller blends changes of the joint speeds.
     pub blend_mm: Option<Mm<Blend>>,
+    /// How far the tool is drawn out of the cut along its axis before it moves to the next segment, where there are surroundings.
+    pub retract_mm: Option<Mm<Positive>>,
 }
 
 impl TransferTable {
@@ -196,6 +198,7 @@ impl TransferTable {
             acceleration_time: self.acceleration_time_s.map_or(default.acceleration_time, Quantity::si),
             jerk_time: self.jerk_time_s.map_or(default.jerk_time, Quantity::si),
             blend: self.blend_mm.map_or(default.blend, Quantity::si),
+            retract: self.retract_mm.map_or(default.retract, Quantity::si),
         }
     }
 }

@@ -153,7 +153,10 @@ impl Study {
         by_digest(&mut root, inputs.get(1..).unwrap_or_default());
         let mut text = format!("{RESULT_VERSION}\ncertified {}\n{root}\n", self.is_certified);
         // Files that the file of the surroundings names are not in the run file.
-        inputs.iter().filter(|input| input.role == MESH).for_each(|input| text.push_str(&format!("{}\n", input.sha256)));
+        inputs
+            .iter()
+            .filter(|input| input.role == MESH)
+            .for_each(|input| text.push_str(&format!("{}\n", input.sha256)));
         sha256(text.as_bytes())
     }
 }

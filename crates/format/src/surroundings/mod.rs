@@ -82,7 +82,10 @@ fn surroundings(parts: &[Part<'_>], inputs: &mut Vec<InputFile>) -> Result<Optio
         let Some(collision) = &tables.collision else { continue };
         if let (Some(_), Some(_)) = (clearance, collision.clearance()) {
             let at = at.key("collision").key("clearance_mm");
-            return Err(at.error("is stated in another file too", "collision.clearance_mm in the run file or in its surroundings"));
+            return Err(at.error(
+                "is stated in another file too",
+                "collision.clearance_mm in the run file or in its surroundings",
+            ));
         }
         clearance = clearance.or(collision.clearance());
         ignored.extend(collision.ignored());
@@ -91,7 +94,9 @@ fn surroundings(parts: &[Part<'_>], inputs: &mut Vec<InputFile>) -> Result<Optio
         return match parts.iter().find(|part| part.at.key("collision").is_given()) {
             Some(part) => {
                 let at = part.at.key("collision");
-                Err(at.error("is there without anything that could collide", "[[shape]] or [[keep_out]] beside it").found_if(None))
+                Err(at
+                    .error("is there without anything that could collide", "[[shape]] or [[keep_out]] beside it")
+                    .found_if(None))
             }
             None => Ok(None),
         };
@@ -127,7 +132,8 @@ fn no_surroundings(parts: &[Part<'_>], error: &SurroundingsError) -> InputError 
             let place = parts.iter().find_map(|part| {
                 let at = part.at.key("collision").key("ignore");
                 let pairs = part.tables.collision.iter().flat_map(|table| table.ignored()).zip(1..);
-                let found = pairs.filter_map(|(pair, number)| Some((number, pair.iter().position(|known| known == name)? + 1)));
+                let found =
+                    pairs.filter_map(|(pair, number)| Some((number, pair.iter().position(|known| known == name)? + 1)));
                 found.map(|(pair, side)| at.element(pair).element(side)).next()
             });
             let names = parts.iter().flat_map(|part| part.tables.shape.iter().flatten());
@@ -144,7 +150,11 @@ fn no_scene(parts: &[Part<'_>], error: &SceneError) -> InputError {
     match error {
         SceneError::FlatHull(name) => {
             let place = named(parts, name).next().map(|place| place.key("hull"));
-            located(place, "has all its vertices in a plane, so that they have no hull", "mesh in place of hull, or another file")
+            located(
+                place,
+                "has all its vertices in a plane, so that they have no hull",
+                "mesh in place of hull, or another file",
+            )
         }
         SceneError::AlwaysTouching(pairs) => {
             let place = pairs.first().and_then(|[first, _]| named(parts, first).next());

@@ -33,7 +33,9 @@ fn size_note(shape: &Shape, reach: f64) -> Option<String> {
     let limit = if shape.attached == Attachment::Base { LARGE_CELL * reach } else { reach };
     if largest > limit {
         let reach = figures(reach * 1e3);
-        return Some(format!("shape {name:?} is {mm} mm long, and the robot reaches {reach} mm: metres for millimetres?"));
+        return Some(format!(
+            "shape {name:?} is {mm} mm long, and the robot reaches {reach} mm: metres for millimetres?"
+        ));
     }
     let is_small = shape.solid.mesh().is_some() && largest < SMALLEST_MESH;
     is_small.then(|| format!("shape {name:?} is {mm} mm long: is its mesh in metres (unit = \"m\")?"))
@@ -50,7 +52,6 @@ fn open_note(shape: &Shape) -> Option<String> {
 /// Links that nothing is known of.
 fn unchecked_note(links: &[u8]) -> Option<String> {
     let numbers: Vec<String> = links.iter().map(u8::to_string).collect();
-    (!numbers.is_empty()).then(|| {
-        format!("no shape is attached to links {}: the arm is not checked there", numbers.join(", "))
-    })
+    (!numbers.is_empty())
+        .then(|| format!("no shape is attached to links {}: the arm is not checked there", numbers.join(", ")))
 }

@@ -1,7 +1,7 @@
 //! The form of a shape: one of five keys, and the mesh file where it is made of one.
 
-use super::tables::ShapeTable;
 use super::MESH;
+use super::tables::ShapeTable;
 use crate::input::{InputError, InputFile, input_file};
 use crate::mesh::MeshUnit;
 use crate::place::Place;
@@ -25,7 +25,9 @@ impl ShapeTable {
             return Err(second.error(format!("is a second form beside {first}"), FORMS));
         }
         if self.unit.is_some() && self.hull.is_none() && self.mesh.is_none() {
-            return Err(at.key("unit").error("is for a mesh file", "hull or mesh beside it; box_mm and the others are in mm"));
+            return Err(at
+                .key("unit")
+                .error("is for a mesh file", "hull or mesh beside it; box_mm and the others are in mm"));
         }
         let solid = if let Some(edges) = self.box_mm {
             Solid::Box(edges.vector())

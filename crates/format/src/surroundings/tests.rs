@@ -74,7 +74,7 @@ fn a_cell_is_read_with_its_meshes_and_joined_with_tables_of_the_run() {
     let own = "[[shape]]\nname = 'pillar'\nattached = 'base'\ncylinder_mm = { radius = 100, length = 2000 }\nxyz_mm = [900, 900, 0]\n\
                [collision]\nignore = [['pillar', 'spindle']]\n";
     let read = run(folder.path(), NAMED, own).unwrap();
-    let scene = read.scene.unwrap();
+    let scene = read.problem.scene.unwrap();
     let around = scene.surroundings();
     let names: Vec<&str> = around.shapes().iter().map(|shape| shape.name.as_str()).collect();
     assert_eq!(names, ["fence", "upper arm", "spindle", "part", "fixture", "pillar"]);
@@ -87,21 +87,35 @@ fn a_cell_is_read_with_its_meshes_and_joined_with_tables_of_the_run() {
     assert_eq!(spindle.solid, Solid::Cylinder { radius: 0.1, length: 0.4 });
     let size = |solid: &Solid| solid.extent()[1] - solid.extent()[0];
     assert!((size(&part.solid) - Vector3::new(0.1, 0.06, 0.04)).norm() < 1e-12 && matches!(part.solid, Solid::Mesh(_)));
-    assert!((size(&fixture.solid) - Vector3::new(100.0, 60.0, 40.0)).norm() < 1e-9 && matches!(fixture.solid, Solid::Hull(_)));
-    for (a, b, is_ignored) in [(arm, fence, true), (arm, spindle, true), (pillar, spindle, true), (pillar, arm, false)] {
+    assert!(
+        (size(&fixture.solid) - Vector3::new(100.0, 60.0, 40.0)).norm() < 1e-9
+            && matches!(fixture.solid, Solid::Hull(_))
+    );
+    for (a, b, is_ignored) in [(arm, fence, true), (arm, spindle, true), (pillar, spindle, true), (pillar, arm, false)]
+    {
         assert_eq!(around.is_ignored(a, b), is_ignored, "{} {}", a.name, b.name);
     }
     let [floor, door] = around.zones() else { panic!("two zones") };
     assert_eq!(floor.points.len(), 3);
-    assert_eq!(floor.zone, Zone::HalfSpace { point: Vector3::new(0.0, 0.0, -0.7), normal: Vector3::new(0.0, 0.0, -1.0) });
-    assert!(door.zone.distance(&Vector3::new(0.3, 2.3, 0.0)) < 0.0 && door.zone.distance(&Vector3::new(0.3, 1.7, 0.0)) > 0.0);
+    assert_eq!(
+        floor.zone,
+        Zone::HalfSpace { point: Vector3::new(0.0, 0.0, -0.7), normal: Vector3::new(0.0, 0.0, -1.0) }
+    );
+    assert!(
+        door.zone.distance(&Vector3::new(0.3, 2.3, 0.0)) < 0.0
+            && door.zone.distance(&Vector3::new(0.3, 1.7, 0.0)) > 0.0
+    );
     let inputs: Vec<(&str, &str)> = read.inputs.iter().map(|input| (input.role, input.name.as_str())).collect();
     let added = [("surroundings", "cells/cell.toml"), ("mesh", "meshes/wedge.stl"), ("mesh", "meshes/wedge.obj")];
     assert_eq!(inputs[3..], added);
     let fixtures = include_bytes!("../mesh/fixtures/wedge.stl");
     assert_eq!(read.inputs[4].sha256, crate::input::sha256(fixtures));
     let notes = read.notes.join("\n");
-    for part in ["\"fixture\" is 100000 mm long, and the robot reaches", "metres for millimetres?", "links 1, 3, 4, 5: the arm is not checked"] {
+    for part in [
+        "\"fixture\" is 100000 mm long, and the robot reaches",
+        "metres for millimetres?",
+        "links 1, 3, 4, 5: the arm is not checked",
+    ] {
         assert!(notes.contains(part), "{part} in {notes}");
     }
     assert!(!notes.contains("not closed"), "{notes}");
@@ -110,13 +124,13 @@ fn a_cell_is_read_with_its_meshes_and_joined_with_tables_of_the_run() {
 #[test]
 fn a_run_without_shapes_has_no_scene_and_one_with_tables_alone_has_one() {
     let folder = cell("");
-    assert!(run(folder.path(), "", "").unwrap().scene.is_none());
-    assert!(run(folder.path(), NAMED, "").unwrap().scene.is_none());
+    assert!(run(folder.path(), "", "").unwrap().problem.scene.is_none());
+    assert!(run(folder.path(), NAMED, "").unwrap().problem.scene.is_none());
     let pillar = "[[shape]]\nname = 'ball'\nattached = 'base'\ncapsule_mm = { radius = 100, length = 0 }\nxyz_mm = [0, 2500, 0]\n";
-    let scene = run(folder.path(), "", pillar).unwrap().scene.unwrap();
+    let scene = run(folder.path(), "", pillar).unwrap().problem.scene.unwrap();
     assert_eq!((scene.surroundings().clearance(), scene.unchecked_links()), (0.01, vec![1, 2, 3, 4, 5]));
     let wedge = "[[shape]]\nname = 'wedge'\nattached = 'workpiece'\nmesh = 'cells/meshes/wedge.stl'\nunit = 'm'\n";
-    assert!(run(folder.path(), "", wedge).unwrap().scene.is_some());
+    assert!(run(folder.path(), "", wedge).unwrap().problem.scene.is_some());
 }
 
 #[test]
@@ -135,7 +149,10 @@ fn what_looks_wrong_is_noted() {
     let tables = "[[shape]]\nname = 'open'\nattached = 'workpiece'\nmesh = 'open.stl'\n\
                   [[shape]]\nname = 'small'\nattached = 'workpiece'\nmesh = 'small.obj'\n";
     let notes = run(folder.path(), "", tables).unwrap().notes.join("\n");
-    for part in ["the mesh of shape \"open\" is not closed", "shape \"small\" is 1 mm long: is its mesh in metres (unit = \"m\")?"] {
+    for part in [
+        "the mesh of shape \"open\" is not closed",
+        "shape \"small\" is 1 mm long: is its mesh in metres (unit = \"m\")?",
+    ] {
         assert!(notes.contains(part), "{part} in {notes}");
     }
 }
@@ -144,7 +161,6 @@ fn what_looks_wrong_is_noted() {
 fn each_broken_rule_names_file_line_field_value_and_what_is_allowed() {
     for (from, to, parts) in [
         ("'meshes/wedge.stl'", "'none.stl'", [":19: shape[4].mesh: ", "cannot be read", "found 'none.stl'"]),
-
         ("'link_2'", "'link_7'", [":8: shape[2].attached: ", "unknown frame", "found 'link_7'; allowed: \"base\""]),
         ("'link_2'", "'link_02'", [":8: shape[2].attached: ", "unknown frame", "found 'link_02'"]),
         ("'part'", "'fence'", [":17: shape[4].name: ", "another shape", "found 'fence'"]),
@@ -161,17 +177,37 @@ fn each_broken_rule_names_file_line_field_value_and_what_is_allowed() {
         ("[20, 4000, 2000]", "[20, 0, 2000]", [":4: shape[1].box_mm", "found 0", "above 0"]),
         ("xyz_mm = [0, 0, 250]", "unit = 'm'", [":15: shape[3].unit: ", "for a mesh file", "hull or mesh"]),
         ("unit = 'm'", "unit = 'inch'", [":24: shape[5].unit: ", "found 'inch'", "\"mm\" or \"m\""]),
-        ("rpy_deg = [0, 90, 0]", "rpy_deg = [0, 90, 0]\nabc_deg = [0, 0, 0]", [":", "states an orientation beside", "exactly one"]),
+        (
+            "rpy_deg = [0, 90, 0]",
+            "rpy_deg = [0, 90, 0]\nabc_deg = [0, 0, 0]",
+            [":", "states an orientation beside", "exactly one"],
+        ),
         ("['tool', 'wrist', 'elbow']", "[]", [":27: keep_out[1].points: ", "is empty", "\"tool\" or \"wrist\""]),
         ("['tool', 'wrist', 'elbow']", "['tool', 'hand']", [":27: keep_out[1].points", "is unknown", "\"elbow\""]),
         ("['tool', 'wrist', 'elbow']", "['tool', 'tool']", [":27: keep_out[1].points[2]: ", "twice", "found 'tool'"]),
         ("points = ['tool', 'wrist', 'elbow']\n", "", [":25: keep_out[1].points: ", "is missing", "\"tool\" or"]),
-        ("half_space = {", "box_mm = [1, 1, 1]\nhalf_space = {", [":29: keep_out[1].half_space: ", "beside box_mm", "one of the two"]),
+        (
+            "half_space = {",
+            "box_mm = [1, 1, 1]\nhalf_space = {",
+            [":29: keep_out[1].half_space: ", "beside box_mm", "one of the two"],
+        ),
         ("box_mm = [1000, 200, 2000]", "", [":29: keep_out[2].box_mm: ", "is missing", "half_space"]),
-        ("normal = [0, 0, -2]", "normal = [0, 0, 0]", [":28: keep_out[1].half_space.normal: ", "no direction", "found [0, 0, 0]"]),
+        (
+            "normal = [0, 0, -2]",
+            "normal = [0, 0, 0]",
+            [":28: keep_out[1].half_space.normal: ", "no direction", "found [0, 0, 0]"],
+        ),
         ("[0, 0, -2] }", "[0, 0, -2] }\nxyz_mm = [0, 0, 0]", [":29: keep_out[1].xyz_mm: ", "of a box", "half_space ="]),
-        ("'upper arm', 'fence'", "'upper arm', 'gate'", [":36: collision.ignore[1][2]: ", "is no shape", "fence, upper arm, spindle"]),
-        ("'link_2', 'flange'", "'link_4', 'flange'", [":36: collision.ignore[2][1]: ", "is no shape", "found 'link_4'"]),
+        (
+            "'upper arm', 'fence'",
+            "'upper arm', 'gate'",
+            [":36: collision.ignore[1][2]: ", "is no shape", "fence, upper arm, spindle"],
+        ),
+        (
+            "'link_2', 'flange'",
+            "'link_4', 'flange'",
+            [":36: collision.ignore[2][1]: ", "is no shape", "found 'link_4'"],
+        ),
         ("['upper arm', 'fence']", "['upper arm']", [":36: collision.ignore", "2", "found"]),
         ("[collision]", "[collison]", [":34: collison: ", "nearest known one: collision", "allowed: shape, keep_out"]),
     ] {
@@ -188,8 +224,16 @@ fn what_two_files_say_together_is_located_in_the_run() {
     let folder = cell(CELL);
     for (head, tables, parts) in [
         (NAMED, "[collision]\nclearance_mm = 5\n", [":19: collision.clearance_mm: ", "another file too", "found 5"]),
-        ("", "[collision]\nclearance_mm = 5\n", [":17: collision: ", "without anything that could collide", "[[shape]]"]),
-        (NAMED, "[[shape]]\nname = 'part'\nattached = 'base'\nbox_mm = [1, 1, 1]\n", [":19: shape[1].name: ", "another shape", "found 'part'"]),
+        (
+            "",
+            "[collision]\nclearance_mm = 5\n",
+            [":17: collision: ", "without anything that could collide", "[[shape]]"],
+        ),
+        (
+            NAMED,
+            "[[shape]]\nname = 'part'\nattached = 'base'\nbox_mm = [1, 1, 1]\n",
+            [":19: shape[1].name: ", "another shape", "found 'part'"],
+        ),
         ("surroundings = 'none.toml'\n", "", [":1: surroundings: ", "cannot be read", "found 'none.toml'"]),
     ] {
         let message = run(folder.path(), head, tables).unwrap_err();
@@ -204,7 +248,12 @@ fn shapes_that_touch_in_every_posture_are_named_with_the_line_to_write() {
                   [[shape]]\nname = 'column'\nattached = 'link_1'\nbox_mm = [600, 600, 600]\n";
     let message = run(folder.path(), "", tables).unwrap_err();
     let ignore = "ignore = [[\"column\", \"foot\"]]";
-    for part in ["run.toml:21: shape[2]: ", "in every posture tried: \"column\" and \"foot\"", "; allowed: room between them", ignore] {
+    for part in [
+        "run.toml:21: shape[2]: ",
+        "in every posture tried: \"column\" and \"foot\"",
+        "; allowed: room between them",
+        ignore,
+    ] {
         assert!(message.contains(part), "{part} in {message}");
     }
     assert!(run(folder.path(), "", &format!("{tables}[collision]\n{ignore}\n")).is_ok());
@@ -228,15 +277,26 @@ fn cases_of_a_study_know_the_files_of_the_cell() {
     let read = |folder: &Path| {
         run(folder, NAMED, "").unwrap();
         let study = folder.join("study.toml");
-        std::fs::write(&study, "base = 'run.toml'\n[[axis]]\nfield = 'surroundings.collision.clearance_mm'\nvalues = [5, 30]\n").unwrap();
+        std::fs::write(
+            &study,
+            "base = 'run.toml'\n[[axis]]\nfield = 'surroundings.collision.clearance_mm'\nvalues = [5, 30]\n",
+        )
+        .unwrap();
         let study = crate::read_study(&study).unwrap();
-        study.cases.iter().map(|case| study.case(case).unwrap()).map(|case| (case.id, case.run.scene.unwrap())).collect::<Vec<_>>()
+        study
+            .cases
+            .iter()
+            .map(|case| study.case(case).unwrap())
+            .map(|case| (case.id, case.run.problem.scene.unwrap()))
+            .collect::<Vec<_>>()
     };
     let before = read(folder.path());
     let clearances: Vec<f64> = before.iter().map(|(_, scene)| scene.surroundings().clearance()).collect();
     assert_eq!(clearances, [0.005, 0.03]);
     assert_ne!(before[0].0, before[1].0);
-    let ids = |cases: &[(String, std::sync::Arc<stead_cell::Scene>)]| cases.iter().map(|case| case.0.clone()).collect::<Vec<_>>();
+    let ids = |cases: &[(String, std::sync::Arc<stead_cell::Scene>)]| {
+        cases.iter().map(|case| case.0.clone()).collect::<Vec<_>>()
+    };
     assert_eq!(ids(&read(folder.path())), ids(&before));
     let mesh = folder.path().join("cells/meshes/wedge.stl");
     let mut bytes = std::fs::read(&mesh).unwrap();

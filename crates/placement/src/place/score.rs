@@ -64,9 +64,10 @@ pub fn score(
     let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
-    let warnings = cancellation(problem, best.objective).into_iter().collect();
+    let cancelled = cancellation(problem, best.objective);
     let plan = detailed(problem, placement, &best.plans);
-    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans));
+    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, placement, transfer, plans));
+    let warnings = cancelled.into_iter().chain(notes::blocked_moves(problem, &cycles[0])).collect();
     Ok(Score {
         placement: *placement,
         notes: notes::of(problem, &plan, &cycles[0].feed),

@@ -117,9 +117,10 @@ pub fn score_files(
     context: &Context,
 ) -> Result<Files, ReportError> {
     let [best, worst] = score.cases();
+    let scene = problem.scene.as_deref();
     let mut files = vec![
-        ("best-plan.csv", tables::plan(&best.plan)?),
-        ("worst-plan.csv", tables::plan(&worst.plan)?),
+        ("best-plan.csv", tables::plan(&best.plan, scene)?),
+        ("worst-plan.csv", tables::plan(&worst.plan, scene)?),
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
@@ -160,14 +161,15 @@ pub fn write_placement(
 pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) -> Result<Files, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
+    let scene = problem.scene.as_deref();
     let mut files = vec![
-        ("best.csv", tables::plan(&best.plan)?),
-        ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
-        ("worst.csv", tables::plan(&worst.plan)?),
-        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan)?),
+        ("best.csv", tables::plan(&best.plan, scene)?),
+        ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan, scene)?),
+        ("worst.csv", tables::plan(&worst.plan, scene)?),
+        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
-        ("transfers.csv", tables::transfers(&outcome.cases)?),
+        ("transfers.csv", tables::transfers(&outcome.cases, scene)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         (SUMMARY, bytes(&summary)),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),

@@ -36,12 +36,14 @@ impl CaseStatus {
 const CASES: [&str; 4] = ["best", "best_worst_plan", "worst", "worst_worst_plan"];
 
 /// Columns of what is found, behind the figures of the four cases.
-const FIGURES: [(&str, Kind); 21] = [
+const FIGURES: [(&str, Kind); 23] = [
     ("objective_mm", Kind::Number),
     ("cycle_s", Kind::Number),
     ("min_inverse_condition", Kind::Number),
     ("min_joint_margin_deg", Kind::Number),
     ("min_base_distance_mm", Kind::Number),
+    ("min_clearance_mm", Kind::Number),
+    ("nearest_pair", Kind::Text),
     ("max_feed_mm_per_s", Kind::Number),
     ("x_mm", Kind::Number),
     ("y_mm", Kind::Number),
@@ -117,6 +119,8 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
         number(Unit::PLAIN, inverse_condition),
         number(Unit::ANGLE_DEG, smallest(&mut joint_margins(problem, plan))),
         number(Unit::PLACE_MM, base_distance),
+        number(Unit::PLACE_MM, plan.clearance.as_ref().map(|clearance| clearance.distance)),
+        plan.clearance.as_ref().map_or(Cell::None, |clearance| Cell::Text(clearance.names.join(" and "))),
         number(Unit::SPEED_MM_PER_S, cycle.feed.highest().map(|limit| limit.feed)),
         number(Unit::PLACE_MM, Some(placement.x)),
         number(Unit::PLACE_MM, Some(placement.y)),

@@ -1,0 +1,126 @@
+//! Collisions of states and plans: whether the shapes of the scene keep their distance.
+//!
+//! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made as if nothing stood around, and
+//! looked at; what hits is forbidden, and the plan made again ([`crate::redundancy`]). Forbidding states makes no plan cheaper, so a
+//! plan that is free is as good as if all states had been looked at.
+
+use crate::constraints::Measured;
+use crate::outcome::PlanPoint;
+use crate::problem::{Placement, Problem};
+use crate::redundancy::SegmentPlan;
+use std::sync::Arc;
+use stead_cell::{Clearance, PairKind, Poses, Scene};
+use stead_model::robot::{Pose, Posture};
+
+/// A state of a plan in which two shapes are nearer than they may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanHit {
+    /// The path point; of a hit between two points the later one.
+    pub point: usize,
+    /// Whether it is on the way from the point before.
+    pub is_between: bool,
+    /// Number of the pair in the scene.
+    pub pair: usize,
+}
+
+/// The least room at the points of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanClearance {
+    /// The path point.
+    pub point: usize,
+    /// The distance of the pair; zero or less where the two touch. m
+    pub distance: f64,
+    /// Their names.
+    pub names: Arc<[String; 2]>,
+}
+
+impl Problem {
+    /// The point of a plan at which a pair has the least room beyond what it has to keep.
+    pub(crate) fn plan_clearance(&self, points: &[PlanPoint]) -> Option<PlanClearance> {
+        let scene = self.scene.as_deref()?;
+        let rooms = points.iter().filter_map(|point| {
+            let clearance = point.clearance?;
+            let pair = scene.pair(clearance.pair)?;
+            Some((clearance.distance - pair.required, point.point, clearance.distance, pair.names.clone()))
+        });
+        let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(PlanClearance { point, distance, names })
+    }
+
+    /// Where all that moves stands, for joint angles (rad) and the workpiece at a placement.
+    fn poses(scene: &Scene, placement: &Placement, joints: &[f64; 6]) -> Poses {
+        scene.poses(joints, &placement.base_from_workpiece())
+    }
+
+    /// The first pair that is nearer than it may be whatever the arm does, for the workpiece at a placement; `None` also where there is
+    /// no scene.
+    pub fn placement_hit(&self, placement: &Placement) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        scene.first_hit(&Self::poses(scene, placement, &self.robot.mid_range()), &[PairKind::WorkpieceCell])
+    }
+
+    /// The first pair that is nearer than it may be with the arm at joint angles (rad); `None` also where there is no scene.
+    pub fn state_hit(&self, placement: &Placement, joints: &[f64; 6]) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        scene.first_hit(&Self::poses(scene, placement, joints), &PairKind::OF_STATES)
+    }
+
+    /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
+    pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
+        let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
+        self.state_hit(placement, &joints)
+    }
+
+    /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.
+    pub fn state_clearance(&self, placement: &Placement, joints: &[f64; 6]) -> Option<Clearance> {
+        let scene = self.scene.as_deref()?;
+        scene.clearance(&Self::poses(scene, placement, joints), &PairKind::ALL)
+    }
+
+    /// The same as a constraint: that of the pair with the least room; `None` where there is no scene, or nothing is near.
+    pub fn clearance_constraint(&self, placement: &Placement, joints: &[f64; 6]) -> Option<Measured> {
+        let scene = self.scene.as_deref()?;
+        let Clearance { distance, pair } = self.state_clearance(placement, joints)?;
+        let pair = scene.pair(pair)?;
+        Some(Measured::Clearance { names: pair.names.clone(), distance, required: pair.required })
+    }
+
+    /// Whether spindle and holder are too near to the part or its fixture at a path point and free angle (rad), wherever the part
+    /// stands.
+    pub fn tool_hits_workpiece(&self, point: usize, beta: f64) -> bool {
+        let Some(scene) = self.scene.as_deref() else { return false };
+        let at_origin = Placement::from([0.0; 4]);
+        let poses = Poses::of_tool(&self.base_from_flange(point, &at_origin, beta), &Pose::identity());
+        scene.first_hit(&poses, &[PairKind::ToolWorkpiece]).is_some()
+    }
+
+    /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
+    pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
+        let Some(scene) = self.scene.as_deref() else { return Vec::new() };
+        let workpiece = placement.base_from_workpiece();
+        let mut hits = Vec::new();
+        let mut is_free_before = false;
+        for (place, point) in plan.points.clone().enumerate() {
+            let joints = &plan.joints[place];
+            let pair = scene.first_hit(&scene.poses(joints, &workpiece), &PairKind::OF_STATES);
+            if let Some(pair) = pair {
+                hits.push(PlanHit { point, is_between: false, pair });
+            } else if with_motions && is_free_before {
+                let hit = scene.motion((&plan.joints[place - 1], &workpiece), (joints, &workpiece));
+                hits.extend(hit.map(|hit| PlanHit { point, is_between: true, pair: hit.pair }));
+            }
+            is_free_before = pair.is_none();
+        }
+        hits
+    }
+
+    /// Whether nothing hits along the plans of all segments, between points too.
+    pub fn is_free(&self, placement: &Placement, plans: &[SegmentPlan]) -> bool {
+        self.scene.is_none()
+            || (self.placement_hit(placement).is_none()
+                && plans.iter().all(|plan| self.plan_hits(placement, plan, true).is_empty()))
+    }
+}
+
+#[cfg(test)]
+mod tests;
