@@ -12,7 +12,8 @@ const SLAB: [f64; 2] = [0.0, -60.0];
 
 fn lines(marks: &[f64], counts: &[usize]) -> Vec<f64> {
     let steps = marks.windows(2).zip(counts);
-    let inner = steps.flat_map(|(ends, count)| (0..*count).map(move |k| ends[0] + (ends[1] - ends[0]) * k as f64 / *count as f64));
+    let inner = steps
+        .flat_map(|(ends, count)| (0..*count).map(move |k| ends[0] + (ends[1] - ends[0]) * k as f64 / *count as f64));
     inner.chain(marks.last().copied()).collect()
 }
 

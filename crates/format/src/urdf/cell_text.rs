@@ -20,7 +20,9 @@ pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
     );
     links.shapes.iter().for_each(|link| shape(&mut text, link, file));
     if !links.ignored.is_empty() {
-        text.push_str("\n# These touch in every posture tried, or at joint values zero of the URDF.\n[collision]\nignore = [\n");
+        text.push_str(
+            "\n# These touch in every posture tried, or at joint values zero of the URDF.\n[collision]\nignore = [\n",
+        );
         for [a, b] in &links.ignored {
             let _ = writeln!(text, "    [{}, {}],", Value::from(a.as_str()), Value::from(b.as_str()));
         }
@@ -31,7 +33,8 @@ pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
 
 /// Writing to a text cannot fail.
 fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
-    let _ = writeln!(text, "\n[[shape]]\nname = {}\nattached = \"{}\"", Value::from(shape.name.as_str()), shape.attached);
+    let _ =
+        writeln!(text, "\n[[shape]]\nname = {}\nattached = \"{}\"", Value::from(shape.name.as_str()), shape.attached);
     let round = |radius: f64, length: f64| format!("{{ radius = {:?}, length = {:?} }}", mm(radius), mm(length));
     let _ = match &shape.solid {
         Solid::Box(edges) => writeln!(text, "box_mm = {}", vector(edges)),
@@ -39,7 +42,9 @@ fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
         Solid::Capsule { radius, length } => writeln!(text, "capsule_mm = {}", round(*radius, *length)),
         Solid::Hull(_) | Solid::Mesh(_) => {
             let key = if matches!(shape.solid, Solid::Hull(_)) { "hull" } else { "mesh" };
-            let (path, unit) = file.as_ref().map_or(("", MeshUnit::Millimetre), |(path, unit)| (path.as_path().to_str().unwrap_or(""), *unit));
+            let (path, unit) = file
+                .as_ref()
+                .map_or(("", MeshUnit::Millimetre), |(path, unit)| (path.as_path().to_str().unwrap_or(""), *unit));
             let name = relative(out.parent().unwrap_or(Path::new("")), Path::new(path));
             let unit = if unit == MeshUnit::Metre { "\nunit = \"m\"" } else { "" };
             writeln!(text, "{key} = {}{unit}", Value::from(name))

@@ -80,7 +80,13 @@ impl Reading<'_> {
         Ok(())
     }
 
-    fn shape(&mut self, link: usize, geometry: Geometry, pose: Pose<f64>, attached: Attachment) -> Result<(), InputError> {
+    fn shape(
+        &mut self,
+        link: usize,
+        geometry: Geometry,
+        pose: Pose<f64>,
+        attached: Attachment,
+    ) -> Result<(), InputError> {
         let name = self.name(link);
         let (solid, pose, file) = match geometry {
             Geometry::Box(edges) => (Solid::Box(edges), pose, None),
@@ -129,7 +135,11 @@ impl Reading<'_> {
             let mesh = read_mesh(&path, &bytes, MeshUnit::Metre)?;
             let [low, high] = Solid::Mesh(Arc::new(mesh)).extent().map(|end| end.component_mul(scale));
             let middle = Pose { translation: (low + high) / 2.0, ..here };
-            self.notes.push(format!("mesh {} of {name:?} is scaled by {:?}: the box around it is taken", quoted(file), scale.as_slice()));
+            self.notes.push(format!(
+                "mesh {} of {name:?} is scaled by {:?}: the box around it is taken",
+                quoted(file),
+                scale.as_slice()
+            ));
             return Ok(Some((Solid::Box((high - low).abs()), middle, None)));
         };
         let mesh = Arc::new(read_mesh(&path, &bytes, unit)?);
@@ -137,7 +147,9 @@ impl Reading<'_> {
             return Ok(Some((Solid::Hull(mesh), here, Some((path, unit)))));
         }
         let closed = if mesh.is_closed() { "" } else { " and not closed, so that it has no inside" };
-        self.notes.push(format!("the mesh of {name:?} is not convex{closed}: it is taken as it is; a hull would be faster and refuse more"));
+        self.notes.push(format!(
+            "the mesh of {name:?} is not convex{closed}: it is taken as it is; a hull would be faster and refuse more"
+        ));
         Ok(Some((Solid::Mesh(mesh), here, Some((path, unit)))))
     }
 }
@@ -167,7 +179,9 @@ fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Ve
         match Scene::new(robot, &Pose::identity(), around) {
             Ok(scene) => break scene,
             Err(SceneError::AlwaysTouching(pairs)) if !pairs.is_empty() => {
-                notes.extend(pairs.iter().map(|[a, b]| format!("{a:?} and {b:?} touch in every posture tried: ignored")));
+                notes.extend(
+                    pairs.iter().map(|[a, b]| format!("{a:?} and {b:?} touch in every posture tried: ignored")),
+                );
                 ignored.extend(pairs);
             }
             Err(error) => {
@@ -179,7 +193,9 @@ fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Ve
     let poses = scene.poses(zero, &Pose::identity());
     for (pair, number) in scene.pairs().iter().zip(0..) {
         if pair.kind != PairKind::WorkpieceCell && !scene.keeps_apart(number, &poses) {
-            notes.push(format!("{pair} touch at joint values zero: ignored; take the pair out of ignore if they really do"));
+            notes.push(format!(
+                "{pair} touch at joint values zero: ignored; take the pair out of ignore if they really do"
+            ));
             ignored.push(pair.names.clone());
         }
     }
