@@ -330,12 +330,13 @@ pub(super) const IMPORT_ROBOT: &str = "\
 Examples:
   stead import robot kr120.urdf --out my/kr120.toml
   stead import robot cell.urdf --base-link base_link --tip-link tool0 --out my/arm.toml
-  stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --out my/kr210.toml
+  stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --collision --out my/kr210.toml
   stead import robot kr210.urdf --controller kuka --out my/kr210.toml \\
       --home-deg=-31.2,-71.4,63.7,17.9,52.6,-117.3=1791.52,1023.61,1741.52,99.95,-2.34,131.94
 
-Files written: the robot file. Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like
-taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict millimetres.
+Files written: the robot file, and with --collision NAME-cell.toml beside it: the links as shapes of surroundings.
+Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like taken from a shipped arm
+(`stead robots` lists them), which ranks placements and does not predict millimetres.
 
 Exit codes:
   0  done

@@ -3,6 +3,8 @@
 //! Neither format states its unit. What else a file can get wrong is refused with its name, the line or the triangle, and the value.
 
 mod obj;
+#[cfg(test)]
+mod shipped_part;
 mod stl;
 #[cfg(test)]
 mod tests;

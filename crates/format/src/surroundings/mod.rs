@@ -15,7 +15,7 @@ use crate::place::Place;
 use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
 use stead_model::robot::{Robot, Spindle};
-use tables::CLEARANCE;
+pub(crate) use tables::{CLEARANCE, attachment};
 
 /// The scene of a run, where it has one.
 #[derive(Debug, Default)]

@@ -130,13 +130,13 @@ pub struct CollisionTable {
 }
 
 /// The clearance where none is stated. m
-pub(super) const CLEARANCE: f64 = 10e-3;
+pub(crate) const CLEARANCE: f64 = 10e-3;
 
 /// What a shape may move with, for messages.
 const FRAMES: &str = "\"base\", \"workpiece\", \"flange\", or a link, \"link_1\" to \"link_6\"";
 
 /// The frame of a name.
-pub(super) fn attachment(name: &str) -> Option<Attachment> {
+pub(crate) fn attachment(name: &str) -> Option<Attachment> {
     match name {
         "base" => Some(Attachment::Base),
         "workpiece" => Some(Attachment::Workpiece),
