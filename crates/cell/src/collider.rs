@@ -11,7 +11,7 @@ use crate::solid::{Solid, TriangleMesh};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::partitioning::BvhNode;
-use parry3d_f64::query;
+use parry3d_f64::query::{self, ClosestPoints};
 use parry3d_f64::shape::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, Shape as ParryShape, SharedShape, TriMesh, TriMeshFlags,
 };
@@ -77,7 +77,9 @@ impl Collider {
     pub fn distance(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> f64 {
         let poses = [parry_pose(at) * self.pose, parry_pose(other_at) * other.pose];
         match (&self.form, &other.form) {
-            (Form::Convex(a), Form::Convex(b)) => convex_distance(&poses[0], a.as_ref(), &poses[1], b.as_ref()),
+            (Form::Convex(a), Form::Convex(b)) => {
+                convex_distance((&poses[0], a.as_ref()), (&poses[1], b.as_ref()), limit)
+            }
             (Form::Mesh(mesh, is_closed), Form::Convex(b)) => {
                 mesh_distance((mesh, *is_closed), &poses[0].inv_mul(&poses[1]), b.as_ref(), limit)
             }
@@ -98,10 +100,19 @@ fn tri_mesh(mesh: &TriangleMesh) -> Option<TriMesh> {
     TriMesh::with_flags(vertices, mesh.triangles().to_vec(), flags).ok()
 }
 
-/// The distance of two convex solids, zero where they touch.
-fn convex_distance(a_at: &ParryPose, a: &dyn ParryShape, b_at: &ParryPose, b: &dyn ParryShape) -> f64 {
-    // Pairs that the library does not know count as touching.
-    query::distance(a_at, a, b_at, b).map_or(0.0, |found| found.distance)
+/// The distance of two convex solids, where it is below `limit`; zero where they touch.
+fn convex_distance(
+    (a_at, a): (&ParryPose, &dyn ParryShape),
+    (b_at, b): (&ParryPose, &dyn ParryShape),
+    limit: f64,
+) -> f64 {
+    // The search ends as soon as the two are known to be farther apart.
+    match query::closest_points(a_at, a, b_at, b, limit) {
+        Ok(ClosestPoints::Disjoint) => limit,
+        Ok(ClosestPoints::WithinMargin(on_a, on_b)) => (on_a - on_b).length(),
+        // Pairs that the library does not know count as touching.
+        Ok(ClosestPoints::Intersecting) | Err(_) => 0.0,
+    }
 }
 
 /// The distance of a box of the tree from a point, less a radius.
@@ -123,9 +134,8 @@ fn mesh_distance(
         let apart = (node.mins() - bounds.maxs).max(bounds.mins - node.maxs()).max(Vector::ZERO).length();
         apart.max(box_distance(node, sphere.center, sphere.radius))
     };
-    let leaf_cost = |leaf: u32, _: f64| {
-        let found = query::distance(mesh_from_solid, solid, &ParryPose::IDENTITY, &mesh.triangle(leaf));
-        Some(found.map_or(0.0, |found| found.distance))
+    let leaf_cost = |leaf: u32, known: f64| {
+        Some(convex_distance((mesh_from_solid, solid), (&ParryPose::IDENTITY, &mesh.triangle(leaf)), known))
     };
     // Only costs below the limit are found; the search stops at once where one is zero.
     match mesh.bvh().find_best(limit.max(f64::MIN_POSITIVE), node_cost, leaf_cost) {

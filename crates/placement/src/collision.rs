@@ -67,8 +67,20 @@ impl Problem {
 
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
     pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
+        self.likely_hit((point, beta), placement, posture, None)
+    }
+
+    /// Any such pair: `likely` is looked at first.
+    pub(crate) fn likely_hit(
+        &self,
+        (point, beta): (usize, f64),
+        placement: &Placement,
+        posture: Posture,
+        likely: Option<usize>,
+    ) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
         let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
-        self.state_hit(placement, &joints)
+        scene.any_hit(&Self::poses(scene, placement, &joints), &PairKind::OF_STATES, likely)
     }
 
     /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.

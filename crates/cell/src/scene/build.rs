@@ -57,6 +57,7 @@ impl Scene {
                     kind,
                     required: surroundings.clearance(),
                     members: Members::Bodies(a, b),
+                    knows_flips: [a, b].iter().any(|body| matches!(bodies[*body].frame, 4 | 5)),
                     reach,
                 });
             }
@@ -73,6 +74,7 @@ impl Scene {
                     kind: PairKind::ArmCell,
                     required: 0.0,
                     members: Members::Zone(number, *point),
+                    knows_flips: false,
                     reach: travel(robot, 0, frame, beyond),
                 });
             }

@@ -110,6 +110,9 @@ pub struct Pair {
     /// The distance that they have to keep. m
     pub required: f64,
     members: Members,
+    /// Whether turning joints 4 and 6 by half a turn and joint 5 to the other side, which leaves the tool where it is, changes the
+    /// distance: something is attached to link 4 or 5.
+    pub knows_flips: bool,
     /// By how much the two can come nearer for each radian of a joint, at the most. m
     reach: [f64; 6],
 }
@@ -188,6 +191,13 @@ impl Scene {
     pub fn first_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
         (0..self.pairs.len())
             .find(|number| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses))
+    }
+
+    /// A pair of some kinds that is nearer than it may be: `likely` is looked at first, since what hits in one state often hits in the
+    /// next.
+    pub fn any_hit(&self, poses: &Poses, kinds: &[PairKind], likely: Option<usize>) -> Option<usize> {
+        let is_hit = |number: &usize| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses);
+        likely.filter(is_hit).or_else(|| (0..self.pairs.len()).find(is_hit))
     }
 
     /// The first such pair by the covers alone, which may refuse what the shapes allow.

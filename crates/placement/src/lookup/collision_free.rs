@@ -8,6 +8,7 @@ use super::polar::PlacedPath;
 use super::{BetaGrid, LookupTable};
 use crate::problem::Placement;
 use crate::redundancy::forbid;
+use std::cell::Cell;
 use std::ops::Range as Span;
 use stead_model::robot::PostureClass;
 
@@ -30,9 +31,10 @@ impl LookupTable<'_> {
             let betas = traced(&workspace.best_costs, &grid.changes[span.clone()], grid.count);
             let mut is_free = true;
             for (point, beta) in span.clone().zip(betas) {
-                if self.hits(placement, (point, class), grid.beta(beta)) {
+                let likely = Cell::new(None);
+                let hits = |k: usize| self.hits(placement, (point, class), grid.beta(k), &likely);
+                if hits(beta) {
                     is_free = false;
-                    let hits = |k: usize| self.hits(placement, (point, class), grid.beta(k));
                     forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, &mut workspace.forbidden);
                 }
             }
@@ -43,10 +45,22 @@ impl LookupTable<'_> {
         None
     }
 
-    /// Whether something hits at a path point in both flips of a posture class, at a free angle (rad).
-    fn hits(&self, placement: &Placement, (point, class): (usize, usize), beta: f64) -> bool {
-        let hit = |posture| self.problem.posture_hit(point, placement, beta, posture).is_some();
-        PostureClass::ALL[class].postures().into_iter().all(hit)
+    /// Whether something hits at a path point in both flips of a posture class, at a free angle (rad); the pair that does is what is
+    /// likely to hit nearby.
+    fn hits(
+        &self,
+        placement: &Placement,
+        (point, class): (usize, usize),
+        beta: f64,
+        likely: &Cell<Option<usize>>,
+    ) -> bool {
+        let [plain, flipped] = PostureClass::ALL[class].postures();
+        let hit = |posture| self.problem.likely_hit((point, beta), placement, posture, likely.get());
+        let Some(pair) = hit(plain) else { return false };
+        likely.set(Some(pair));
+        let knows_flips =
+            self.problem.scene.as_deref().and_then(|scene| scene.pair(pair)).is_some_and(|p| p.knows_flips);
+        !knows_flips || hit(flipped).is_some()
     }
 }
 

@@ -9,6 +9,7 @@ use crate::candidate::Objective;
 use crate::collision::PlanHit;
 use crate::problem::Placement;
 use crate::sense::Sense;
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_model::robot::{Posture, PostureClass};
 
@@ -144,8 +145,13 @@ impl Planner<'_> {
             let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
             for beta in [nearest, other] {
                 if !forbidden.contains(point, class, beta) {
-                    let hits =
-                        |k| self.problem.posture_hit(point, placement, self.grid.beta(k), plan.posture).is_some();
+                    let likely = Cell::new(Some(hit.pair));
+                    let hits = |k| {
+                        let found =
+                            self.problem.likely_hit((point, self.grid.beta(k)), placement, plan.posture, likely.get());
+                        likely.set(found.or(likely.get()));
+                        found.is_some()
+                    };
                     forbid((point, class), (beta, count), hits, forbidden);
                     return;
                 }
