@@ -44,6 +44,15 @@ const KEYS: &str = "exactly one of rotation (matrix, by rows), abc_deg (Rz(A) Ry
      rpy_deg (Rz(y) Ry(p) Rx(r)), quaternion_wxyz";
 
 impl OrientationKeys {
+    /// Whether none of the keys is there.
+    pub fn are_left_out(&self) -> bool {
+        self.rotation.is_none()
+            && self.abc_deg.is_none()
+            && self.wpr_deg.is_none()
+            && self.rpy_deg.is_none()
+            && self.quaternion_wxyz.is_none()
+    }
+
     /// The rotation that the table states.
     ///
     /// # Errors

@@ -95,5 +95,6 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
         points,
+        axes: problem.axis_paths(),
     }
 }
