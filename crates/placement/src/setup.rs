@@ -209,3 +209,6 @@ impl AxisPositions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
