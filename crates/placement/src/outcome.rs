@@ -341,7 +341,8 @@ impl SetOutcome {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
-    /// The setups that were searched, in their order, where there are several.
+    /// The setups that were searched, in their order, where there are several; what is said below of searches and refinements is of that
+    /// which has the best placement.
     pub tried_setups: Vec<TriedSetup>,
     /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,

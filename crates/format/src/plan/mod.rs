@@ -5,6 +5,8 @@ mod stations;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+pub(crate) use rows::axis_column;
 pub(crate) use stations::PlacedPlan;
 
 use crate::input::{InputError, InputFile, input_file};

@@ -82,7 +82,7 @@ pub(super) fn rows_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<
 }
 
 /// The column of an external axis, from 1.
-pub(super) fn axis_column(number: usize, kind: AxisKind) -> String {
+pub(crate) fn axis_column(number: usize, kind: AxisKind) -> String {
     match kind {
         AxisKind::Rail => format!("e{number}_mm"),
         AxisKind::Turntable => format!("e{number}_deg"),

@@ -50,7 +50,7 @@ pub struct ExternalAxisTable {
 /// Most axes of a cell.
 const MOST: usize = 6;
 /// Most path points along which an axis moves with the robot.
-const MOST_POINTS: usize = 5000;
+const MOST_POINTS: usize = 2000;
 /// A shorter vector is no direction.
 const SHORTEST: f64 = 1e-9;
 

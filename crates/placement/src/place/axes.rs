@@ -27,6 +27,10 @@ const ROUNDS: usize = 3;
 const GAIN: f64 = 1e-4;
 /// How often the positions of an axis along the path are narrowed down.
 const NARROWINGS: usize = 3;
+/// With more path points the placement is not refined again for other positions of the axes.
+const MOST_REFINED: usize = 5000;
+/// Steps of the positions of an axis at the most.
+const STEPS: usize = 60;
 /// Points that are left of a segment at least, where the axis is planned on some of the points of a dense path.
 const KEPT: usize = 4;
 
@@ -78,7 +82,8 @@ fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Opti
 
 /// The placement refined with the axes where they stand.
 fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Improved> {
-    if problem.cell.pinned().is_some() || monitor.should_stop() {
+    let is_long = problem.task.points().len() > MOST_REFINED;
+    if problem.cell.pinned().is_some() || is_long || monitor.should_stop() {
         return None;
     }
     let set_up = problem.in_setup(&known.setup);
@@ -105,7 +110,10 @@ fn by_segments(
     let mut costs = costs(problem, known, &now, placement, &vec![0.0; now.shifts.len()])?;
     let mut step = (axis.max - axis.min) / (GRID - 1) as f64;
     let mut offsets: Vec<f64> = (1..GRID).flat_map(|k| [step * k as f64, -step * k as f64]).collect();
-    while step > LAST_STEP * (axis.max - axis.min) && !monitor.should_stop() {
+    for _ in 0..STEPS {
+        if step <= LAST_STEP * (axis.max - axis.min) || monitor.should_stop() {
+            break;
+        }
         let tried: Vec<(f64, Vec<Vec<Option<f64>>>)> = offsets
             .par_iter()
             .filter_map(|offset| {

@@ -71,6 +71,10 @@ pub(super) fn place_in_all(
     (outcome.evaluations, outcome.states) = (evaluations, states);
     outcome.tried_setups = tried;
     job.improve(&mut outcome);
+    if monitor.should_stop() && !outcome.interrupted {
+        outcome.interrupted = true;
+        outcome.warnings.push(notes::interruption());
+    }
     Ok(outcome)
 }
 
