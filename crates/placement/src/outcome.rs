@@ -341,8 +341,7 @@ impl SetOutcome {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
-    /// The setups that were searched, in their order, where there are several; what is said below of searches and refinements is of that
-    /// which has the best placement.
+    /// The setups that were searched, where there are several; searches and refinements below are those of the best one.
     pub tried_setups: Vec<TriedSetup>,
     /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,

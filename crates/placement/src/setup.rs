@@ -7,7 +7,7 @@ use super::problem::{Placement, Problem};
 use nalgebra::Matrix3;
 use std::borrow::Cow;
 use std::sync::Arc;
-use stead_model::external_axis::{AxisKind, ExternalAxis, robot_from_workpiece};
+use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried, robot_from_workpiece};
 use stead_model::robot::Pose;
 use stead_model::task::Task;
 use stead_numerics::scalar::Scalar;
@@ -135,6 +135,12 @@ impl Problem {
             pose.rotation *= orientation.rotation;
         }
         pose
+    }
+
+    /// Where the external axes have brought the robot at a path point: the frame that rides with it, in which everything is stated, in the cell.
+    /// The identity where no axis carries the robot.
+    pub fn cell_from_carriage(&self, point: usize) -> Pose<f64> {
+        carried(&self.external_axes, self.axis_positions(point), Carried::Robot)
     }
 
     /// Which way up the part lies, where the run says several.
