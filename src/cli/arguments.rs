@@ -285,6 +285,9 @@ pub(super) struct ScoreOptions {
     pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: GivenPlacement,
+    /// Orientation of the part by its name, where the run file has several
+    #[arg(long, value_name = "NAME", conflicts_with = "placement_of")]
+    pub orientation: Option<String>,
     /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -302,6 +305,9 @@ pub(super) struct ExplainOptions {
     pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// Orientation of the part by its name, where the run file has several
+    #[arg(long, value_name = "NAME")]
+    pub orientation: Option<String>,
     /// Path point, counted from 0 in the order of the task file
     #[arg(long, value_name = "I", value_parser = point, allow_negative_numbers = true)]
     pub point: usize,

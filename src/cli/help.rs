@@ -73,6 +73,7 @@ Examples:
   stead score configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258
   stead score configs/caro-2013.toml --x-mm 0 --y-mm -1640 --z-mm -214 --yaw-deg 79 --json
   stead score configs/caro-2013.toml --placement-of results/caro-2013 --case 3 --out results/worst
+  stead score configs/tilting-table.toml --x-mm 1700 --y-mm 0 --z-mm 700 --yaw-deg 0 --orientation flat
 
 Files written with --out:
   best-plan.csv, worst-plan.csv      the two plans, point by point

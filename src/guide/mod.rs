@@ -8,6 +8,7 @@
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
 //! | What must the robot not hit? | [`surroundings`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
+//! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
@@ -30,6 +31,8 @@
 pub mod assess {}
 #[doc = include_str!("assessment_file.md")]
 pub mod assessment_file {}
+#[doc = include_str!("cell_setup.md")]
+pub mod cell_setup {}
 #[doc = include_str!("certify.md")]
 pub mod certify {}
 #[doc = include_str!("circularity.md")]

@@ -10,7 +10,7 @@ use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
 use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Scene};
-use stead_model::robot::{Pose, Posture};
+use stead_model::robot::Posture;
 
 /// A state of a plan in which two shapes are nearer than they may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,22 +47,28 @@ impl Problem {
         Some(PlanClearance { point, distance, names })
     }
 
-    /// Where all that moves stands, for joint angles (rad) and the workpiece at a placement.
-    fn poses(scene: &Scene, placement: &Placement, joints: &[f64; 6]) -> Poses {
-        scene.poses(joints, &placement.base_from_workpiece())
+    /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the base frame, in which
+    /// the cell moves the other way where an external axis carries the robot.
+    pub(crate) fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {
+        let poses = scene.poses(joints, &self.base_from_part(point, placement));
+        if self.external_axes.is_empty() { poses } else { poses.with_cell(self.cell_from_carriage(point).inverse()) }
     }
 
     /// The first pair that is nearer than it may be whatever the arm does, for the workpiece at a placement; `None` also where there is
     /// no scene.
     pub fn placement_hit(&self, placement: &Placement) -> Option<usize> {
         let scene = self.scene.as_deref()?;
-        scene.first_hit(&Self::poses(scene, placement, &self.robot.mid_range()), &[PairKind::WorkpieceCell])
+        let joints = self.robot.mid_range();
+        // Axes move the part along the path; without them all points are alike.
+        let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
+        let hit = |point| scene.first_hit(&self.poses(scene, point, placement, &joints), &[PairKind::WorkpieceCell]);
+        (0..points).find_map(hit)
     }
 
-    /// The first pair that is nearer than it may be with the arm at joint angles (rad); `None` also where there is no scene.
-    pub fn state_hit(&self, placement: &Placement, joints: &[f64; 6]) -> Option<usize> {
+    /// The first pair that is nearer than it may be at a path point with the arm at joint angles (rad); `None` also where there is no scene.
+    pub fn state_hit(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<usize> {
         let scene = self.scene.as_deref()?;
-        scene.first_hit(&Self::poses(scene, placement, joints), &PairKind::OF_STATES)
+        scene.first_hit(&self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
     }
 
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
@@ -80,19 +86,19 @@ impl Problem {
     ) -> Option<usize> {
         let scene = self.scene.as_deref()?;
         let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
-        scene.any_hit(&Self::poses(scene, placement, &joints), &PairKind::OF_STATES, likely)
+        scene.any_hit(&self.poses(scene, point, placement, &joints), &PairKind::OF_STATES, likely)
     }
 
     /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.
-    pub fn state_clearance(&self, placement: &Placement, joints: &[f64; 6]) -> Option<Clearance> {
+    pub fn state_clearance(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Clearance> {
         let scene = self.scene.as_deref()?;
-        scene.clearance(&Self::poses(scene, placement, joints), &PairKind::ALL)
+        scene.clearance(&self.poses(scene, point, placement, joints), &PairKind::ALL)
     }
 
     /// The same as a constraint: that of the pair with the least room; `None` where there is no scene, or nothing is near.
-    pub fn clearance_constraint(&self, placement: &Placement, joints: &[f64; 6]) -> Option<Measured> {
+    pub fn clearance_constraint(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Measured> {
         let scene = self.scene.as_deref()?;
-        let Clearance { distance, pair } = self.state_clearance(placement, joints)?;
+        let Clearance { distance, pair } = self.state_clearance(point, placement, joints)?;
         let pair = scene.pair(pair)?;
         Some(Measured::Clearance { names: pair.names.clone(), distance, required: pair.required })
     }
@@ -102,23 +108,25 @@ impl Problem {
     pub fn tool_hits_workpiece(&self, point: usize, beta: f64) -> bool {
         let Some(scene) = self.scene.as_deref() else { return false };
         let at_origin = Placement::from([0.0; 4]);
-        let poses = Poses::of_tool(&self.base_from_flange(point, &at_origin, beta), &Pose::identity());
+        let part = self.base_from_part(point, &at_origin);
+        let poses = Poses::of_tool(&self.base_from_flange(point, &at_origin, beta), &part);
         scene.first_hit(&poses, &[PairKind::ToolWorkpiece]).is_some()
     }
 
     /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
     pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
         let Some(scene) = self.scene.as_deref() else { return Vec::new() };
-        let workpiece = placement.base_from_workpiece();
         let mut hits = Vec::new();
         let mut is_free_before = false;
         for (place, point) in plan.points.clone().enumerate() {
             let joints = &plan.joints[place];
-            let pair = scene.first_hit(&scene.poses(joints, &workpiece), &PairKind::OF_STATES);
+            let poses = self.poses(scene, point, placement, joints);
+            let pair = scene.first_hit(&poses, &PairKind::OF_STATES);
             if let Some(pair) = pair {
                 hits.push(PlanHit { point, is_between: false, pair });
             } else if with_motions && is_free_before {
-                let hit = scene.motion((&plan.joints[place - 1], &workpiece), (joints, &workpiece));
+                let before = self.poses(scene, point - 1, placement, &plan.joints[place - 1]);
+                let hit = scene.motion((&plan.joints[place - 1], &before), (joints, &poses));
                 hits.extend(hit.map(|hit| PlanHit { point, is_between: true, pair: hit.pair }));
             }
             is_free_before = pair.is_none();

@@ -40,7 +40,7 @@ impl Explanation {
 /// `beta` (rad), in the order of their numbers.
 pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     without_clearance(problem, placement, point, beta).map(|mut explanation| {
-        let measured = explanation.state.as_ref().and_then(|s| problem.clearance_constraint(placement, &s.joints));
+        let measured = explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
         explanation.violations.extend(measured.filter(|measured| !measured.holds()));
         explanation
     })
@@ -108,7 +108,7 @@ pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monito
         allowed.sort_by(|a, b| a.0.score.total_cmp(&b.0.score));
         let mut hit = placement_hit;
         for (cell, joints) in &allowed {
-            match placement_hit.or_else(|| problem.state_hit(placement, joints)) {
+            match placement_hit.or_else(|| problem.state_hit(point, placement, joints)) {
                 None => return Ok(*cell),
                 found => hit = hit.or(found),
             }

@@ -6,6 +6,7 @@ use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
 use super::sense::Sense;
+use super::setup::{AxisPath, Setup, TriedSetup};
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -89,6 +90,8 @@ impl DeflectionFigures {
 pub struct Plan {
     /// All path points.
     pub points: Vec<PlanPoint>,
+    /// Where the external axes stand at every point; empty where there are none.
+    pub axes: Vec<AxisPath>,
     /// How the mean of the scores answers to the stiffness of each joint ([`mean_by_stiffness`]): derivative by its logarithm. m
     ///
     /// [`mean_by_stiffness`]: super::sensitivity::mean_by_stiffness
@@ -121,6 +124,10 @@ pub struct Case {
     pub plan_sense: Sense,
     /// The placement.
     pub placement: Placement,
+    /// How part and external axes are set up for it.
+    pub setup: Setup,
+    /// The name of the orientation of the part, where the run says several.
+    pub orientation: Option<String>,
     /// The plan.
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
@@ -312,6 +319,8 @@ impl SetOutcome {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
+    /// The setups that were searched, where there are several; searches and refinements below are those of the best one.
+    pub tried_setups: Vec<TriedSetup>,
     /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// How a long path was searched; `None` for a path short enough to be searched whole.
@@ -344,7 +353,7 @@ impl Outcome {
     /// Makes the deflection maps at the best and at the worst placement. A stop may leave them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
         let Cases { best, worst, .. } = &self.cases;
-        let map = |case: &Case| deflection_map(problem, &case.placement, monitor);
+        let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
         self.maps = map(best).zip(map(worst)).map(<[DeflectionMap; 2]>::from);
         if self.maps.is_none() {
             self.warnings.push(left_out("the deflection maps are"));

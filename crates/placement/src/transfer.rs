@@ -1,8 +1,8 @@
 //! Moves between segments: how long the joints need from the end of one segment to the start of the next.
 //!
-//! Each joint moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal profiles
-//! come from rsruckig. Without shapes of the cell only the time is computed: that the move clears the workpiece is for the programmer
-//! to see to. With them, moves keep free of all shapes ([`way`]).
+//! Each joint and each external axis moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal
+//! profiles come from rsruckig. Without shapes of the cell only the time is computed: that the move clears the workpiece is for the
+//! programmer to see to. With them, moves keep free of all shapes ([`way`]).
 
 mod way;
 
@@ -61,12 +61,10 @@ pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettin
             let way = way::way(problem, settings, placement, [&pair[0], &pair[1]], index);
             let joints = way.as_ref().map_or(&direct[..], |way| &way.joints);
             let travel = (0..6).map(|j| joints.windows(2).map(|step| (step[0][j] - step[1][j]).abs()).sum::<f64>());
-            Some(Transfer {
-                after_segment: index + 1,
-                duration: way_duration(problem, settings, joints),
-                travel: travel.fold(0.0, f64::max),
-                way,
-            })
+            let positions = [pair[0].points.end - 1, pair[1].points.start].map(|point| problem.axis_positions(point));
+            let of_joints = way_duration(problem, settings, joints);
+            let duration = of_joints.zip(axis_duration(problem, settings, positions)).map(|(a, b)| a.max(b));
+            Some(Transfer { after_segment: index + 1, duration, travel: travel.fold(0.0, f64::max), way })
         })
         .collect();
     Cycle { feed, cutting, transfers }
@@ -122,6 +120,27 @@ pub fn duration(problem: &Problem, settings: &TransferSettings, from: &[f64; 6],
     generator.calculate(&input, &mut trajectory).ok()?;
     let duration = trajectory.get_duration();
     duration.is_finite().then_some(duration)
+}
+
+/// Shortest time in which the external axes move from rest to rest between positions (m or rad), each by itself, beside the joints; `None`
+/// when one that has to move has no speed. s
+fn axis_duration(problem: &Problem, settings: &TransferSettings, [from, to]: [&[f64]; 2]) -> Option<f64> {
+    let moved = problem.external_axes.iter().zip(from.iter().zip(to)).filter(|(_, (from, to))| from != to);
+    moved
+        .map(|(axis, (from, to))| {
+            let mut input = InputParameter::<1>::new(None);
+            let speed = axis.max_speed?;
+            let acceleration = speed / settings.acceleration_time;
+            input.current_position[0] = *from;
+            input.target_position[0] = *to;
+            input.max_velocity[0] = speed;
+            input.max_acceleration[0] = acceleration;
+            input.max_jerk[0] = acceleration / settings.jerk_time;
+            let mut trajectory = Trajectory::<1>::new(None);
+            Ruckig::<1, ThrowErrorHandler>::new(None, 0.01).calculate(&input, &mut trajectory).ok()?;
+            Some(trajectory.get_duration()).filter(|duration| duration.is_finite())
+        })
+        .try_fold(0.0, |longest: f64, duration| Some(longest.max(duration?)))
 }
 
 #[cfg(test)]

@@ -56,6 +56,7 @@ pub fn outcome() -> &'static Outcome {
         let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
         Outcome {
             cases,
+            tried_setups: Vec::new(),
             lookup_summary: None,
             path_levels: None,
             convergence,
@@ -166,6 +167,7 @@ impl Grid {
             mean_deviation: None,
             clearance: None,
             mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
+            axes: Vec::new(),
             points,
         };
         let transfer = |k: usize| {
@@ -186,7 +188,17 @@ impl Grid {
             segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
         };
         let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Some(Vec::new()) }
+        let (placement, setup) = (self.placement, problem().setup.clone());
+        Case {
+            placement_sense,
+            plan_sense,
+            placement,
+            setup,
+            orientation: None,
+            plan,
+            cycle,
+            active_bounds: Some(Vec::new()),
+        }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.

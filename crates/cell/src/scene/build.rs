@@ -40,7 +40,8 @@ impl Scene {
             let collider = Collider::new(&shape.solid, &shape.pose);
             let collider = collider.ok_or_else(|| SceneError::FlatHull(shape.name.clone()))?;
             let cover = Cover::new(&shape.solid, &shape.pose);
-            bodies.push(Body { frame: frame(shape.attached), collider, cover });
+            let box_from_attachment = cover.box_pose.inverse();
+            bodies.push(Body { frame: frame(shape.attached), collider, cover, box_from_attachment });
         }
         let mut pairs = Vec::new();
         for (a, first) in surroundings.shapes().iter().enumerate() {

@@ -2,6 +2,7 @@
 
 mod build;
 mod motion;
+mod quick;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use crate::shape::{Attachment, TrackedPoint};
 use crate::surroundings::Surroundings;
 use nalgebra::Vector3;
 use std::sync::Arc;
+use quick::Quick;
 use stead_model::robot::{Pose, Robot};
 
 /// Frames that shapes are attached to: the base, six links, the workpiece, and external axes.
@@ -43,6 +45,12 @@ impl Poses {
         frames[6] = *base_from_flange;
         frames[WORKPIECE] = *base_from_workpiece;
         Self { frames }
+    }
+
+    /// The same with what stands in the cell at a pose in the base frame: where an external axis carries the robot.
+    pub fn with_cell(mut self, base_from_cell: Pose<f64>) -> Self {
+        self.frames[0] = base_from_cell;
+        self
     }
 
     /// The same with what an external axis carries at a pose in the base frame.
@@ -98,6 +106,8 @@ struct Body {
     frame: usize,
     collider: Collider,
     cover: Cover,
+    /// From the frame of its attachment to that of the box of its cover.
+    box_from_attachment: Pose<f64>,
 }
 
 /// Two shapes that can meet, or a point of the arm and a zone.
@@ -189,15 +199,18 @@ impl Scene {
 
     /// The first pair of some kinds that is nearer than it may be: covers first, then the shapes themselves.
     pub fn first_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
-        (0..self.pairs.len())
-            .find(|number| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses))
+        let quick = Quick::new(self, poses);
+        (0..self.pairs.len()).find(|number| {
+            let pair = &self.pairs[*number];
+            kinds.contains(&pair.kind) && !quick.keeps_apart(self, pair) && !self.keeps_apart(*number, poses)
+        })
     }
 
     /// A pair of some kinds that is nearer than it may be: `likely` is looked at first, since what hits in one state often hits in the
     /// next.
     pub fn any_hit(&self, poses: &Poses, kinds: &[PairKind], likely: Option<usize>) -> Option<usize> {
         let is_hit = |number: &usize| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses);
-        likely.filter(is_hit).or_else(|| (0..self.pairs.len()).find(is_hit))
+        likely.filter(is_hit).or_else(|| self.first_hit(poses, kinds))
     }
 
     /// The first such pair by the covers alone, which may refuse what the shapes allow.
@@ -242,7 +255,8 @@ impl Scene {
     }
 
     fn zone_distance(&self, zone: usize, point: TrackedPoint, poses: &Poses) -> f64 {
-        self.surroundings.zones()[zone].zone.distance(&self.tracked(point, poses))
+        let point = self.tracked(point, poses);
+        self.surroundings.zones()[zone].zone.distance(&poses.frames[0].inverse().point(&point))
     }
 
     /// Where a tracked point of the arm is, in the base frame. m

@@ -73,7 +73,8 @@ fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
         if scene.first_hit(&scene.poses(&from, &workpiece), &PairKind::ALL).is_some() {
             continue;
         }
-        match scene.motion((&from, &workpiece), (&to, &workpiece)) {
+        let [start, end] = [from, to].map(|joints| scene.poses(&joints, &workpiece));
+        match scene.motion((&from, &start), (&to, &end)) {
             Some(hit) => {
                 hits += 1;
                 assert!(!scene.keeps_apart(hit.pair, &scene.poses(&at(hit.share), &workpiece)));

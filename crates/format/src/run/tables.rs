@@ -1,6 +1,7 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
 use super::certificate::Memory;
+use super::orientations::OrientationTable;
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
@@ -30,7 +31,7 @@ ranges! {
 }
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellTable {
     /// Range `[min, max]` of the x coordinate.
@@ -42,6 +43,10 @@ pub struct CellTable {
     /// Range `[min, max]` of sin(yaw / 2), the quaternion component that turns the workpiece about the vertical axis; all
     /// yaw angles where left out.
     pub q4: Option<Interval<Number<PlusMinusOne>>>,
+    /// The ways in which the part may lie, of which the search chooses one: the part is turned so before it is placed.
+    pub orientations: Option<Vec<OrientationTable>>,
+    /// The name of the orientation in which the part lies, in place of a choice among all of them.
+    pub orientation: Option<String>,
 }
 
 impl CellTable {

@@ -5,7 +5,8 @@ use super::pose::{Pose, cast};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use stead_numerics::scalar::Scalar;
 
-/// The joint frames of an arm in one configuration, in base coordinates.
+/// The joint frames of an arm in one configuration, in base coordinates; in those of the cell for an arm that is mounted
+/// ([`Robot::mounted`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frames<T: Scalar> {
     /// Unit vectors of the six joint axes.
@@ -19,7 +20,7 @@ pub struct Frames<T: Scalar> {
 impl<T: Scalar> Frames<T> {
     /// The frames for joint angles `theta` in rad, joint limits ignored.
     pub fn new(robot: &Robot, theta: &[T; 6]) -> Self {
-        let mut pose = Pose::<T>::identity();
+        let mut pose = robot.cell_from_base::<T>();
         let mut axes = [Vector3::zeros(); 6];
         let mut origins = [Vector3::zeros(); 6];
         for (j, row) in robot.rows().iter().enumerate() {

@@ -78,7 +78,7 @@ fn final_plans_are_free_in_small_steps() {
                         assert!(clearance.is_none_or(|clearance| clearance.distance > 0.0));
                     }
                 }
-                assert!(plan.joints.iter().all(|joints| problem.state_hit(&placement, joints).is_none()));
+                assert!(plan.joints.iter().all(|joints| problem.state_hit(0, &placement, joints).is_none()));
             }
         }
     }

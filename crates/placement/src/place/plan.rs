@@ -79,7 +79,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 surface_part: s.surface_part,
                 score: s.score(),
                 deviation: s.own.deviation,
-                clearance: problem.state_clearance(placement, &plan.joints[place]),
+                clearance: problem.state_clearance(point, placement, &plan.joints[place]),
             });
         }
     }
@@ -97,5 +97,6 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
         clearance: problem.plan_clearance(&points),
         points,
+        axes: problem.axis_paths(),
     }
 }

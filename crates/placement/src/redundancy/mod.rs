@@ -13,6 +13,7 @@
 //! 3. `turns_dp`: only where that fails, dynamic programming over beta, the flip and the turns.
 //! 4. [`off_grid`]: beta off the grid, by dynamic programming on ever narrower grids around the plan.
 
+pub mod axis_path;
 mod between;
 mod collision_free;
 mod follow;

@@ -90,7 +90,7 @@ pub fn refine_free(
 ) -> bool {
     let allowed = |point, beta, plan: &SegmentPlan| {
         let state = allowed(problem, placement, point, beta, plan)?;
-        problem.state_hit(placement, &state.joints).is_none().then_some(state)
+        problem.state_hit(point, placement, &state.joints).is_none().then_some(state)
     };
     refine_with(problem, &allowed, sense, range, plan)
 }

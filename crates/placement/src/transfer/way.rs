@@ -40,7 +40,6 @@ struct Space<'a> {
     problem: &'a Problem,
     scene: &'a Scene,
     placement: &'a Placement,
-    workpiece: Pose<f64>,
 }
 
 /// The move from the end of one segment's plan to the start of the next; `None` where there is no scene.
@@ -52,24 +51,30 @@ pub fn way(
     number: usize,
 ) -> Option<Way> {
     let scene = problem.scene.as_deref()?;
-    let space = Space { problem, scene, placement, workpiece: placement.base_from_workpiece() };
+    let space = Space { problem, scene, placement };
     let [from, to] = plans;
     let end = (from.points.end.checked_sub(1)?, *from.betas.last()?, from.posture, *from.joints.last()?);
     let start = (to.points.start, *to.betas.first()?, to.posture, *to.joints.first()?);
     let out = space.retracted(end, settings.retract);
     let into = space.retracted(start, settings.retract);
     let (a, b) = (*out.last()?, *into.last()?);
-    let Some(blocked) = space.hit(&a, &b) else { return Some(joined(&out, &[], &into)) };
+    // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
+    let points = (end.0, start.0);
+    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else { return Some(joined(&out, &[], &into)) };
     for lift in LIFTS {
         let [up, down] = [end, start].map(|end| space.retracted(end, settings.retract + lift));
         if let (Some(high), Some(low)) = (up.last(), down.last())
-            && space.hit(high, low).is_none()
+            && space.hit((high, points.0), (low, points.1)).is_none()
         {
             return Some(joined(&up, &[], &down));
         }
     }
     let mut random = ChaCha8Rng::seed_from_u64(number as u64);
-    Some(match space.around(a, b, &mut random) {
+    let over = match space.hit((&a, points.0), (&a, points.1)) {
+        Some(_) => None,
+        None => space.around((a, b), points.1, &mut random),
+    };
+    Some(match over {
         Some(over) => joined(&out, &over, &into),
         None => Way { joints: vec![end.3, start.3], along_axis: [false; 2], blocked_by: Some(blocked) },
     })
@@ -89,9 +94,11 @@ fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]]) -> Way {
 }
 
 impl Space<'_> {
-    /// The pair that hits on a straight joint move. rad
-    fn hit(&self, from: &[f64; 6], to: &[f64; 6]) -> Option<usize> {
-        self.scene.motion((from, &self.workpiece), (to, &self.workpiece)).map(|hit| hit.pair)
+    /// The pair that hits on a straight joint move (rad), the external axes where they stand at path points, moving evenly.
+    fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
+        let [start, end] =
+            [from, to].map(|(joints, point)| self.problem.poses(self.scene, point, self.placement, joints));
+        self.scene.motion((from.0, &start), (to.0, &end)).map(|hit| hit.pair)
     }
 
     /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits: joint angles
@@ -111,7 +118,7 @@ impl Space<'_> {
                 let joint = &self.problem.robot.joints()[j];
                 (joint.min..=joint.max).contains(&next[j])
             });
-            if !is_inside || self.hit(&last, &next).is_some() {
+            if !is_inside || self.hit((&last, point), (&next, point)).is_some() {
                 break;
             }
             last = next;
@@ -120,8 +127,14 @@ impl Space<'_> {
         all
     }
 
-    /// A free way from one configuration to another, by trees from both: the configurations between, shortened.
-    fn around(&self, from: [f64; 6], to: [f64; 6], random: &mut ChaCha8Rng) -> Option<Vec<[f64; 6]>> {
+    /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path point: the
+    /// configurations on it, shortened.
+    fn around(
+        &self,
+        (from, to): ([f64; 6], [f64; 6]),
+        point: usize,
+        random: &mut ChaCha8Rng,
+    ) -> Option<Vec<[f64; 6]>> {
         let mut trees = [vec![(from, 0)], vec![(to, 0)]];
         let mut grown = 0;
         while trees[0].len() + trees[1].len() < MAX_STATES {
@@ -131,14 +144,14 @@ impl Space<'_> {
             });
             let (mine, theirs) = (grown, 1 - grown);
             grown = theirs;
-            let Some(new) = self.extend(&mut trees[mine], &sample) else { continue };
+            let Some(new) = self.extend(&mut trees[mine], &sample, point) else { continue };
             // The other tree grows towards the new state for as long as it can.
-            while let Some(near) = self.extend(&mut trees[theirs], &new) {
+            while let Some(near) = self.extend(&mut trees[theirs], &new, point) {
                 if near == new {
                     let mut joints = branch(&trees[0]);
                     joints.reverse();
                     joints.extend(branch(&trees[1]).into_iter().skip(1));
-                    return Some(self.shortened(joints, random));
+                    return Some(self.shortened(joints, point, random));
                 }
                 if trees[0].len() + trees[1].len() >= MAX_STATES {
                     break;
@@ -149,7 +162,7 @@ impl Space<'_> {
     }
 
     /// Lets a tree grow by one edge towards a configuration; `None` where that hits, or the tree ends there already.
-    fn extend(&self, tree: &mut Vec<([f64; 6], usize)>, towards: &[f64; 6]) -> Option<[f64; 6]> {
+    fn extend(&self, tree: &mut Vec<([f64; 6], usize)>, towards: &[f64; 6], point: usize) -> Option<[f64; 6]> {
         let apart = |joints: &[f64; 6]| joints.iter().zip(towards).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let (nearest, distance) =
             tree.iter().enumerate().map(|(k, (joints, _))| (k, apart(joints))).min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -160,7 +173,7 @@ impl Space<'_> {
         } else {
             std::array::from_fn(|j| start[j] + share * (towards[j] - start[j]))
         };
-        if distance == 0.0 || self.hit(&start, &new).is_some() {
+        if distance == 0.0 || self.hit((&start, point), (&new, point)).is_some() {
             return None;
         }
         tree.push((new, nearest));
@@ -168,14 +181,14 @@ impl Space<'_> {
     }
 
     /// The same way with straight moves in place of detours, where these are free.
-    fn shortened(&self, mut joints: Vec<[f64; 6]>, random: &mut ChaCha8Rng) -> Vec<[f64; 6]> {
+    fn shortened(&self, mut joints: Vec<[f64; 6]>, point: usize, random: &mut ChaCha8Rng) -> Vec<[f64; 6]> {
         for _ in 0..SHORTCUTS {
             if joints.len() < 3 {
                 break;
             }
             let first = random.random_range(0..joints.len() - 2);
             let last = random.random_range(first + 2..joints.len());
-            if self.hit(&joints[first], &joints[last]).is_none() {
+            if self.hit((&joints[first], point), (&joints[last], point)).is_none() {
                 joints.drain(first + 1..last);
             }
         }
@@ -231,7 +244,8 @@ mod tests {
         if found.blocked_by.is_none() {
             assert!(found.joints.len() > 2);
             for pair in found.joints.windows(2).skip(1).take(found.joints.len() - 3) {
-                assert!(scene.motion((&pair[0], &workpiece), (&pair[1], &workpiece)).is_none());
+                let [a, b] = [0, 1].map(|end| scene.poses(&pair[end], &workpiece));
+                assert!(scene.motion((&pair[0], &a), (&pair[1], &b)).is_none());
                 for share in [0.25, 0.5, 0.75] {
                     let joints: [f64; 6] = std::array::from_fn(|j| pair[0][j] + share * (pair[1][j] - pair[0][j]));
                     let near = scene.clearance(&scene.poses(&joints, &workpiece), &PairKind::ALL);

@@ -3,6 +3,7 @@
 use super::Context;
 use super::json::plan_clearance;
 use super::text::least_room;
+use super::setup::{lines, put_setup};
 use crate::columns::{aligned, line};
 use crate::document::{cut_feed, deflection_mm, placement as placement_json, placement_exact, put_deviation};
 use crate::names;
@@ -47,6 +48,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
         "best": plan(&score.best, &score.cycles[0]),
         "worst": plan(&score.worst, &score.cycles[1]),
     });
+    put_setup(&mut entries, score.orientation.as_ref(), &score.setup, &score.best.axes);
     if let Some(stability) = &context.stability {
         entries["stability"] = crate::stability::path::document(stability, true);
     }
@@ -106,7 +108,12 @@ pub fn score_text(score: &Score, context: &Context) -> String {
     super::text::highest_feed(&score.cycles[0].feed).iter().for_each(|row| line(&mut feed, row));
     let feed = if feed.is_empty() { feed } else { format!("\n{feed}") };
     let stability = stability.unwrap_or_default();
-    format!("{}\n\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
+    let setup: String = lines("this placement", score.orientation.as_ref(), &score.best.axes)
+        .iter()
+        .map(|row| format!("{row}\n"))
+        .collect();
+    let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
+    format!("{}\n{setup}\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
 }
 
 /// What `stead explain --json` prints.

@@ -4,6 +4,8 @@
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
 use super::Context;
+use super::cell_json::{cell, mount};
+use super::setup::{put_setup, tried};
 use crate::document::{Timing, cut_feed, deflection_mm, placement, placement_exact, put_deviation};
 use crate::names;
 use crate::units::Unit;
@@ -19,7 +21,7 @@ use stead_placement::outcome::{
     SetOutcome, SubsetAccuracy, Transfer,
 };
 use stead_placement::postures::PostureRules;
-use stead_placement::problem::{Interval, Problem, Redundancy};
+use stead_placement::problem::{Problem, Redundancy};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
@@ -50,6 +52,8 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("cases", cases(outcome, false, problem.scene.as_deref())),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    entries.extend(tried(problem, outcome).map(|tried| ("setups".to_owned(), tried)));
+    entries.extend(mount(problem).map(|mount| ("mount".to_owned(), mount)));
     entries.extend(postures(problem).map(|rules| ("postures".to_owned(), rules)));
     context.document().with(Value::Object(entries))
 }
@@ -158,6 +162,7 @@ fn case(case: &Case, with_plan: bool, scene: Option<&Scene>) -> Value {
         value["clearance"] = plan_clearance(clearance);
     }
     put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, case.plan.mean_deviation);
+    put_setup(&mut value, case.orientation.as_ref(), &case.setup, &case.plan.axes);
     if with_plan && let Value::Object(map) = &mut value {
         map.insert("plan".to_owned(), case.plan.points.iter().map(plan_point).collect());
     }
@@ -315,11 +320,6 @@ fn transfer_settings(context: &Context) -> Value {
     })
 }
 
-fn cell(problem: &Problem) -> Value {
-    let [x, y, z] = problem.cell.position.map(|bounds| interval(Unit::PLACE_MM, &bounds));
-    json!({ "x_mm": x, "y_mm": y, "z_mm": z, "yaw_deg": interval(Unit::ANGLE_DEG, &problem.cell.yaw) })
-}
-
 /// The confidence is stated where there is something to be confident of.
 fn criterion(problem: &Problem) -> Value {
     let Criterion { weights, aggregate, segment_weights, force_uncertainty, .. } = &problem.criterion;
@@ -379,10 +379,6 @@ fn redundancy(problem: &Problem) -> Value {
 
 fn task(problem: &Problem) -> Value {
     json!({ "points": problem.task.points().len(), "segments": problem.task.segments().len() })
-}
-
-fn interval(unit: Unit, interval: &Interval) -> Value {
-    json!([number(unit, interval.min), number(unit, interval.max)])
 }
 
 fn number(unit: Unit, value: f64) -> Value {

@@ -1,7 +1,9 @@
 //! Reports of `stead place`, and in [`evaluation`] those of single evaluations, `stead score` and `stead explain`.
 
+mod cell_json;
 pub mod evaluation;
 mod json;
+pub(crate) mod setup;
 pub mod tables;
 #[cfg(test)]
 mod tests;

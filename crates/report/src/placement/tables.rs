@@ -1,5 +1,6 @@
 //! The CSV files. One function makes one file; every column carries its unit.
 
+use super::setup;
 use crate::csv_file::{table, vector};
 use crate::names;
 use crate::output::ReportError;
@@ -47,18 +48,21 @@ const PLAN: [&str; 28] = [
 /// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
 /// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg; `total_mm` is the size of the deflection.
 /// Behind it are `surface_mm` where the task states the normal of the surface, and `std_mm` where the robot's uncertainty is
-/// known: the standard deviation of the scored part. Among shapes of a cell, `clearance_mm` is the distance of the pair with the least
-/// room, zero or less where the two touch, and `nearest_pair` names it; both are empty where nothing is nearer than 1 m.
+/// known: the standard deviation of the scored part; then `e1_mm` or `e1_deg` and so on where there are external axes. Among shapes of
+/// a cell, `clearance_mm` is the distance of the pair with the least room, zero where the two touch, and `nearest_pair` names it; both
+/// are empty where nothing is nearer than 1 m.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn plan(plan: &Plan, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
-    let mut header = PLAN.to_vec();
-    header.extend(plan.deflection.surface.map(|_| "surface_mm"));
-    header.extend(plan.mean_deviation.map(|_| "std_mm"));
-    header.extend(scene.iter().flat_map(|_| ["clearance_mm", "nearest_pair"]));
+    let mut header = PLAN.map(str::to_owned).to_vec();
+    header.extend(plan.deflection.surface.map(|_| "surface_mm".to_owned()));
+    header.extend(plan.mean_deviation.map(|_| "std_mm".to_owned()));
+    header.extend(setup::columns(&plan.axes));
+    header.extend(scene.iter().flat_map(|_| ["clearance_mm", "nearest_pair"].map(str::to_owned)));
     let rows = plan.points.iter().map(|point| {
         let mut row = plan_row(point);
+        row.extend(setup::at_point(&plan.axes, point.point));
         row.extend(scene.iter().flat_map(|scene| {
             let distance = point.clearance.map(|clearance| clearance.distance);
             let pair = point.clearance.and_then(|clearance| scene.pair(clearance.pair));
@@ -88,7 +92,8 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 /// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
 /// the ratio where case 1 is a cancellation. `mean_mm` and `max_mm` are of the scores, `objective_mm` is what was minimised. The
 /// last column, `mean_std_mm`, is there where the robot's uncertainty is known: the standard deviation of the mean of the
-/// scored part. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
+/// scored part; behind it the orientation of the part and the positions of external axes that stand still along the path, where a run has
+/// such. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -119,6 +124,9 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
     ];
     header.extend(cases.best.plan.deflection.surface.iter().flat_map(|_| ["mean_surface_mm", "max_surface_mm"]));
     header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
+    header.extend(cases.best.orientation.as_ref().map(|_| "orientation"));
+    let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
+    header.extend(setup::columns(&cases.best.plan.axes));
     let rows = cases.all().into_iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number().to_string()];
         row.extend(placement(&case.placement, true));
@@ -137,6 +145,8 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         row.push(Unit::SPEED_MM_PER_S.text_or_empty(case.cycle.feed.highest().map(|limit| limit.feed)));
         row.extend(surface.into_iter().flat_map(pair));
         row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
+        row.extend(case.orientation.clone());
+        row.extend(setup::standing(&case.plan.axes));
         row
     });
     table("the table of placements", &header, rows)

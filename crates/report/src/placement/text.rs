@@ -1,6 +1,6 @@
 //! The short table for people.
 
-use super::Context;
+use super::{Context, setup};
 use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
@@ -24,6 +24,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     let (points, segments) = (count(points, "point"), count(segments, "segment"));
     let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
     text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    text.push_str(&setup::text(problem, outcome));
     text.push('\n');
     text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
     if let Some(reference) = &context.reference {

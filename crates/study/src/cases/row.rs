@@ -112,7 +112,10 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
     let bounds = bounds.collect::<Vec<_>>().join(" ");
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
     let inverse_condition = smallest(&mut plan.points.iter().map(|point| point.inverse_condition));
-    let base_distance = smallest(&mut plan.points.iter().map(|point| libm::hypot(point.position.x, point.position.y)));
+    let base_distance = smallest(&mut plan.points.iter().map(|point| match problem.robot.is_mounted() {
+        true => problem.base_distance(&point.position),
+        false => libm::hypot(point.position.x, point.position.y),
+    }));
     vec![
         number(Unit::DEFLECTION_MM, Some(plan.objective)),
         number(Unit::TIME_S, cycle.total()),
