@@ -36,7 +36,7 @@ impl MountTable {
     /// [`InputError`] for several orientations, and for one that is none.
     pub(crate) fn cell_from_base(&self, at: &Place<'_>) -> Result<Pose<f64>, InputError> {
         let keys = orientation_keys!(self);
-        let rotation = if keys.are_left_out() { Matrix3::identity() } else { keys.rotation(at)? };
+        let rotation = if keys.is_given() { keys.rotation(at)? } else { Matrix3::identity() };
         Ok(Pose { rotation, translation: self.xyz_mm.vector() })
     }
 }

@@ -40,7 +40,8 @@ impl Explanation {
 /// `beta` (rad), in the order of their numbers.
 pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     without_clearance(problem, placement, point, beta).map(|mut explanation| {
-        let measured = explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
+        let measured =
+            explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
         explanation.violations.extend(measured.filter(|measured| !measured.holds()));
         explanation
     })

@@ -14,8 +14,8 @@ use crate::cover::{Cover, lower_bound};
 use crate::shape::{Attachment, TrackedPoint};
 use crate::surroundings::Surroundings;
 use nalgebra::Vector3;
-use std::sync::Arc;
 use quick::Quick;
+use std::sync::Arc;
 use stead_model::robot::{Pose, Robot};
 
 /// Frames that shapes are attached to: the base, six links, the workpiece, and external axes.

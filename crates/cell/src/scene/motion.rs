@@ -153,7 +153,9 @@ impl Scene {
                     [a, b].iter().map(|body| of(self.bodies[*body].frame, self.bodies[*body].cover.farthest())).sum()
                 }
                 // A zone turns with the cell about the base: no point of the arm is farther from that than its reach and spindle.
-                Members::Zone(..) => of(0, self.robot.geometry().reach() + self.flange_from_tool.translation.norm() + 1.0),
+                Members::Zone(..) => {
+                    of(0, self.robot.geometry().reach() + self.flange_from_tool.translation.norm() + 1.0)
+                }
             }
     }
 }

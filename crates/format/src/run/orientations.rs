@@ -66,7 +66,7 @@ impl CellTable {
                 return Err(at.key("name").error("is there twice", "a name of its own for each orientation"));
             }
             let keys = orientation_keys!(table);
-            let rotation = if keys.are_left_out() { Matrix3::identity() } else { keys.rotation(&at)? };
+            let rotation = if keys.is_given() { keys.rotation(&at)? } else { Matrix3::identity() };
             let is_as_in_the_task = rotation == Matrix3::identity();
             let task = Arc::new(if is_as_in_the_task { task.clone() } else { task.turned(&rotation) });
             found.push(Orientation { name: table.name.clone(), rotation, task });

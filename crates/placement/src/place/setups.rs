@@ -61,6 +61,7 @@ pub(super) fn place_in_all(
             placement: Placement::from([0.0; 4]),
             searched: true,
             findings: Vec::new(),
+            collisions: Vec::new(),
             interrupted: monitor.should_stop(),
         };
         return Err(refused.unwrap_or_else(nothing));

@@ -129,12 +129,7 @@ impl Space<'_> {
 
     /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path point: the
     /// configurations on it, shortened.
-    fn around(
-        &self,
-        (from, to): ([f64; 6], [f64; 6]),
-        point: usize,
-        random: &mut ChaCha8Rng,
-    ) -> Option<Vec<[f64; 6]>> {
+    fn around(&self, (from, to): ([f64; 6], [f64; 6]), point: usize, random: &mut ChaCha8Rng) -> Option<Vec<[f64; 6]>> {
         let mut trees = [vec![(from, 0)], vec![(to, 0)]];
         let mut grown = 0;
         while trees[0].len() + trees[1].len() < MAX_STATES {

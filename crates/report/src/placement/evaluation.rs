@@ -2,8 +2,8 @@
 
 use super::Context;
 use super::json::plan_clearance;
-use super::text::least_room;
 use super::setup::{lines, put_setup};
+use super::text::least_room;
 use crate::columns::{aligned, line};
 use crate::document::{cut_feed, deflection_mm, placement as placement_json, placement_exact, put_deviation};
 use crate::names;
