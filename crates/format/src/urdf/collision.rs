@@ -198,7 +198,7 @@ fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Ve
             notes.push(format!(
                 "{pair} touch at joint values zero: ignored; take the pair out of ignore if they really do"
             ));
-            ignored.push(pair.names.clone());
+            ignored.push(pair.names.as_ref().clone());
         }
     }
     ignored
