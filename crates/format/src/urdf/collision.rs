@@ -56,6 +56,13 @@ pub(super) fn link_shapes(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot
     Ok(LinkShapes { shapes, ignored, notes })
 }
 
+/// The form of a shape, where its middle is in the frame of the `<collision>`, and the mesh file.
+struct Form {
+    solid: Solid,
+    middle: Pose<f64>,
+    file: Option<(PathBuf, MeshUnit)>,
+}
+
 struct Reading<'a> {
     urdf: &'a Urdf,
     shapes: Vec<LinkShape>,
@@ -88,16 +95,17 @@ impl Reading<'_> {
         attached: Attachment,
     ) -> Result<(), InputError> {
         let name = self.name(link);
-        let (solid, pose, file) = match geometry {
-            Geometry::Box(edges) => (Solid::Box(edges), pose, None),
-            Geometry::Cylinder { radius, length } => (Solid::Cylinder { radius, length }, pose, None),
-            Geometry::Sphere(radius) => (Solid::Capsule { radius, length: 0.0 }, pose, None),
-            Geometry::Mesh { file, scale } => match self.mesh(&name, &file, &scale)? {
-                Some((solid, middle, file)) => (solid, pose.then(&middle), file),
-                None => return Ok(()),
-            },
+        let plain = |solid: Solid| Some(Form { solid, middle: Pose::identity(), file: None });
+        let form = match geometry {
+            Geometry::Box(edges) => plain(Solid::Box(edges)),
+            Geometry::Cylinder { radius, length } => plain(Solid::Cylinder { radius, length }),
+            Geometry::Sphere(radius) => plain(Solid::Capsule { radius, length: 0.0 }),
+            Geometry::Mesh { file, scale } => self.mesh(&name, &file, &scale)?,
         };
-        self.shapes.push(LinkShape { shape: Shape { name, attached, solid, pose }, file });
+        if let Some(Form { solid, middle, file }) = form {
+            let shape = Shape { name, attached, solid, pose: pose.then(&middle) };
+            self.shapes.push(LinkShape { shape, file });
+        }
         Ok(())
     }
 
@@ -110,14 +118,8 @@ impl Reading<'_> {
         std::iter::once(plain.clone()).chain(numbered).find(is_free).unwrap_or_default()
     }
 
-    /// The form that a mesh file makes, where it is in its frame, and the file; nothing for a file that is not read.
-    #[allow(clippy::type_complexity, reason = "the three parts of a shape that is being made")]
-    fn mesh(
-        &mut self,
-        name: &str,
-        file: &str,
-        scale: &Vector3<f64>,
-    ) -> Result<Option<(Solid, Pose<f64>, Option<(PathBuf, MeshUnit)>)>, InputError> {
+    /// The form that a mesh file makes; nothing for a file that is not read.
+    fn mesh(&mut self, name: &str, file: &str, scale: &Vector3<f64>) -> Result<Option<Form>, InputError> {
         let here = Pose::identity();
         let is_read = |ending: &str| Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
         if !is_read("stl") && !is_read("obj") {
@@ -140,17 +142,17 @@ impl Reading<'_> {
                 quoted(file),
                 scale.as_slice()
             ));
-            return Ok(Some((Solid::Box((high - low).abs()), middle, None)));
+            return Ok(Some(Form { solid: Solid::Box((high - low).abs()), middle, file: None }));
         };
         let mesh = Arc::new(read_mesh(&path, &bytes, unit)?);
-        if is_convex(&mesh) && Collider::new(&Solid::Hull(mesh.clone()), &here).is_some() {
-            return Ok(Some((Solid::Hull(mesh), here, Some((path, unit)))));
+        if mesh.is_closed() && is_convex(&mesh) && Collider::new(&Solid::Hull(mesh.clone()), &here).is_some() {
+            return Ok(Some(Form { solid: Solid::Hull(mesh), middle: here, file: Some((path, unit)) }));
         }
-        let closed = if mesh.is_closed() { "" } else { " and not closed, so that it has no inside" };
+        let reason = if mesh.is_closed() { "not convex" } else { "not closed, so that it has no inside" };
         self.notes.push(format!(
-            "the mesh of {name:?} is not convex{closed}: it is taken as it is; a hull would be faster and refuse more"
+            "the mesh of {name:?} is {reason}: it is taken as it is; a hull would be faster and refuse more"
         ));
-        Ok(Some((Solid::Mesh(mesh), here, Some((path, unit)))))
+        Ok(Some(Form { solid: Solid::Mesh(mesh), middle: here, file: Some((path, unit)) }))
     }
 }
 
