@@ -33,6 +33,7 @@ mod study;
 pub use arm_view::{arm_alone, arm_of_run};
 pub use cell::{cell, cell_with};
 pub use circularity_map::circularity_map;
+pub(crate) use colour::of_deflection;
 pub use compensation::compensation;
 pub use convergence::convergence;
 pub use cutting::cutting;
