@@ -338,7 +338,7 @@ pub(super) struct CircularityOptions {
     /// Exclude points from angle A to B in degrees about the least-squares centre; may be repeated
     #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]
     pub exclude_deg: Vec<Sector>,
-    /// Folder for circularity.json, deviations.csv and polar.svg [default: nothing is written]
+    /// Folder for circularity.json, deviations.csv, polar.svg and report.html [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table

@@ -152,7 +152,7 @@ Files written to the folder of the study:
   study-front.{csv,svg}              layouts that no other is better than in every column of the front
   study-effects.{csv,svg}            what each axis does to the column of the ranking
   study-map.svg                      that column over two axes
-  study-report.json                  what --json prints
+  study-report.json, report.html     what --json prints; a page with all of it, which leads to the pages of kept cases
 
 Exit codes:
   0  done
@@ -172,7 +172,7 @@ Files written to the results folder:
   accuracy.csv, selection.csv        with forces and accuracies: which robots reach which accuracy
   indicators.svg                     accuracy, reach, payload and price side by side
   cutting.svg, cutting-*.csv         with a cutter and a cut: force and torque over a turn
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -203,7 +203,7 @@ Files written to the results folder:
   robot-identified.toml              the robot file with the identified values and their covariance
   compliances.csv                    every estimate with standard deviation and 95 % interval
   residuals.csv, deflections.svg     every reading beside what the identified arm gives
-  report.json                        all of it for programs
+  report.json, report.html           all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -233,7 +233,7 @@ Examples:
 Files written with --out:
   circularity.json                   the four reference circles with their circularity
   deviations.csv                     angle, radii and deviations of every point
-  polar.svg                          the profile between its zone circles
+  polar.svg, report.html             the profile between its zone circles; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -250,7 +250,7 @@ Files written to the results folder:
   series.csv                         forces and tool positions over time
   wall.csv, wall.svg                 profile of the wall that is left, and its roughness
   forces.svg, turns.svg              forces over the pass, and over three turns of the spindle
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done; an unstable cut is a result, too

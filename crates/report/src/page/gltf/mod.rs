@@ -10,23 +10,25 @@ mod path;
 
 pub use motion::{Motion, Stop};
 
-use super::shapes::{BodyFrame, BodyMesh, bodies, shaded};
+use super::shapes::{BodyFrame, BodyMesh, block_under_path, bodies, shaded};
 use buffer::Buffer;
 use document::{Animation, Asset, Channel, Document, Extras, Material, Mesh, Node, Primitive, Sampler, Scene, Target};
 use motion::{quaternion, turn_about_z};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
-use stead_model::robot::{Pose, Robot, Spindle};
+use stead_model::robot::Pose;
 use stead_placement::outcome::Case;
 use stead_placement::problem::Problem;
 
 /// What a scene shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell<'a> {
-    /// The arm.
-    pub robot: &'a Robot,
-    /// The spindle as mounted.
-    pub spindle: &'a Spindle,
+    /// Its name.
+    pub name: &'a str,
+    /// The frame of each row at joint angle zero in that before it.
+    pub rows: [Pose<f64>; 6],
+    /// The tool frame in frame 6.
+    pub flange_from_tool: Pose<f64>,
     /// The workpiece frame in the base frame.
     pub base_from_workpiece: Pose<f64>,
     /// All shapes.
@@ -37,11 +39,14 @@ pub struct Cell<'a> {
 
 /// The scene of a case with the shapes that its problem has, as the bytes of a `.glb` file.
 pub fn cell_glb(problem: &Problem, case: &Case) -> Vec<u8> {
+    let mut shapes = bodies(problem);
+    shapes.push(block_under_path(&problem.task));
     let cell = Cell {
-        robot: &problem.robot,
-        spindle: &problem.spindle,
+        name: problem.robot.name(),
+        rows: *problem.robot.rows(),
+        flange_from_tool: problem.spindle.flange_from_tool,
         base_from_workpiece: case.placement.base_from_workpiece(),
-        bodies: &bodies(problem),
+        bodies: &shapes,
         motion: &Motion::of(problem, case),
     };
     glb(&cell)
@@ -55,9 +60,9 @@ pub fn glb(cell: &Cell) -> Vec<u8> {
         rotation: Some(turn_about_x(-FRAC_PI_2)),
         ..Node::default()
     });
-    writer.document.scenes.push(Scene { name: cell.robot.name().to_owned(), nodes: vec![base] });
-    let joints = writer.add_arm(cell.robot, base);
-    let tool = writer.add_frame("tool", &cell.spindle.flange_from_tool, joints[5]);
+    writer.document.scenes.push(Scene { name: cell.name.to_owned(), nodes: vec![base] });
+    let joints = writer.add_arm(&cell.rows, base);
+    let tool = writer.add_frame("tool", &cell.flange_from_tool, joints[5]);
     let workpiece = writer.add_frame("workpiece", &cell.base_from_workpiece, base);
     for body in cell.bodies {
         let parent = match body.frame {
@@ -109,10 +114,10 @@ impl Writer {
     }
 
     /// The nodes of the rows; returns those of the joints.
-    fn add_arm(&mut self, robot: &Robot, base: usize) -> [usize; 6] {
+    fn add_arm(&mut self, rows: &[Pose<f64>; 6], base: usize) -> [usize; 6] {
         let mut parent = base;
         std::array::from_fn(|j| {
-            let row = self.add_frame(&format!("row {}", j + 1), &robot.rows()[j], parent);
+            let row = self.add_frame(&format!("row {}", j + 1), &rows[j], parent);
             // Animated nodes state their rotation, else viewers show what a node is at rest differently.
             let rest = Some([0.0, 0.0, 0.0, 1.0]);
             parent = self.add_child(Node { name: format!("joint {}", j + 1), rotation: rest, ..Node::default() }, row);

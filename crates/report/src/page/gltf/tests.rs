@@ -189,5 +189,5 @@ fn scenes_are_consistent() {
     // Only the path has colours of its own.
     assert_eq!(attributes.iter().filter(|count| **count == 3).count(), 1);
     let illustrations = read.nodes().iter().filter(|node| node["extras"]["is_illustration"] == true);
-    assert_eq!(illustrations.count(), bodies(problem()).len());
+    assert_eq!(illustrations.count(), bodies(problem()).len() + 1);
 }

@@ -24,7 +24,7 @@ pub(super) fn flange_face(robot: &Robot, spindle: &Spindle) -> f64 {
 /// The bodies of base and links, base first.
 pub fn arm_bodies(robot: &Robot, spindle: &Spindle) -> Vec<BodyMesh> {
     let arm = Arm { robot, size: scale(robot) };
-    let mut bodies = arm.base();
+    let mut bodies = arm.base().to_vec();
     bodies.extend(arm.carousel());
     bodies.extend(arm.upper_arm());
     bodies.extend(arm.forearm());

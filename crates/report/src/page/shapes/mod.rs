@@ -45,11 +45,10 @@ pub struct BodyMesh {
     pub is_illustration: bool,
 }
 
-/// Everything of a problem that has a shape: the arm base first, the spindle, the block under the path.
+/// The bodies of the arm, its base first, and of its spindle. What it works on is [`block_under_path`].
 pub fn bodies(problem: &Problem) -> Vec<BodyMesh> {
     let mut bodies = arm_bodies(&problem.robot, &problem.spindle);
     bodies.extend(spindle_bodies(&problem.robot, &problem.spindle));
-    bodies.push(block_under_path(&problem.task));
     bodies
 }
 

@@ -47,7 +47,8 @@ fn volumes(body: &BodyMesh) -> Vec<f64> {
 fn bodies_are_closed_and_face_outward() {
     for robot in arms() {
         let name = robot.name().to_owned();
-        let bodies = bodies(&with(robot));
+        let mut bodies = bodies(&with(robot));
+        bodies.push(block_under_path(&problem().task));
         assert!(bodies.len() > 15 && bodies.iter().all(|body| body.is_illustration));
         for body in bodies {
             let what = format!("{name}: {}", body.name);
