@@ -288,7 +288,10 @@ impl Placements {
 impl Report for Placements {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
-        files.extend(self.write_certificate_in(folder)?);
+        // The page is written again, with the certificate in it.
+        let more = self.write_certificate_in(folder)?;
+        files.retain(|path| !more.contains(path));
+        files.extend(more);
         Ok(files)
     }
 

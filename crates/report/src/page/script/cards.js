@@ -27,9 +27,9 @@ function boundsCard() {
   const held = CASES.filter((of) => of.plan === 0 && of.entry.active_bounds?.length);
   if (!held.length) return null;
   const rows = held.flatMap((of) =>
-    of.entry.active_bounds.map((/** @type {any} */ bound) => [of.name, bound.bound, bound.side, figures(bound.gain), bound.unit]),
+    of.entry.active_bounds.map((/** @type {any} */ bound) => [of.place ? 'Worst' : 'Best', bound.bound, bound.side, `${figures(bound.gain)} ${bound.unit}`]),
   );
-  return card('What holds the placements', 'what moving a bound would gain', smallTable(['Placement', 'Bound', 'Side', 'Gain', ''], rows));
+  return card('What holds the placements', 'what moving a bound would gain', smallTable(['Placement', 'Bound', 'Side', 'Gain'], rows));
 }
 
 /** The genetic searches, generation by generation. */
@@ -79,13 +79,13 @@ function certificateCard() {
 /** How the mean answers to the stiffness of each joint, and what force errors would do. */
 function sensitivityCard() {
   const rows = CASES.filter((of) => of.entry.mean_by_stiffness?.length).map((of) => [
-    of.name,
+    SHORT_NAMES[of.number - 1],
     ...of.entry.mean_by_stiffness.map((/** @type {any} */ joint) => fixed(joint.percent_per_percent, 3)),
   ]);
   const force = RAW.document.sensitivity;
   if (!rows.length && !force) return null;
   const parts = [];
-  if (rows.length) parts.push(smallTable(['% of the mean per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
+  if (rows.length) parts.push(smallTable(['% of mean per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
   if (force) {
     const share_ = fixed(force.force_uncertainty * 100, 0);
     parts.push(el('p.sub', {}, `With force errors of ${share_} % the best placement moves by ${fixed(force.distance_mm, 1)} mm and ${fixed(force.turn_deg, 1)}°.`));

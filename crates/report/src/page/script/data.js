@@ -110,6 +110,9 @@ const CASE_NAMES = IS_SCORE
   ? ['This placement', 'This placement, worst plan']
   : ['Best placement', 'Best placement, worst plan', 'Worst placement', 'Worst placement, worst plan'];
 
+/** The same where there is little room. */
+const SHORT_NAMES = IS_SCORE ? ['Best plan', 'Worst plan'] : ['Best', 'Best, worst plan', 'Worst', 'Worst, worst plan'];
+
 /** @type {Row[]} */
 const ROWS = RAW.robot.rows.map((/** @type {any} */ row) => ({
   alpha: row.alpha_deg,

@@ -20,7 +20,7 @@ function tiles() {
     const map = currentMap();
     const chosen = state.chosen && map ? mapState(map, state.chosen) : null;
     if (!chosen) {
-      const more = `axis ${fixed(columns.axial_mm[i], 2)}, total ${fixed(columns.total_mm[i], 2)}`;
+      const more = `total ${fixed(columns.total_mm[i], 2)} mm`;
       here.show(fixed(columns.score_mm[i]), 'mm', more);
       kappa.show(fixed(columns.inverse_condition[i]), '', `limit ${LIMITS.inverse}`);
     } else {

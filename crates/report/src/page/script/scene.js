@@ -70,7 +70,7 @@ function sceneIn(host) {
 
   // Software draws four samples of a pixel too slowly while things move: one then, four at rest.
   let isSlow = /swiftshader|llvmpipe|softpipe|basic render/i.test(rendererOf(gl));
-  let isCoarse = false;
+  let isCoarse = isSlow;
   let [restTimer, lastFrame, slowFrames] = [0, 0, 0];
 
   const resize = () => {
@@ -88,6 +88,7 @@ function sceneIn(host) {
     resize();
     draw();
   };
+  if (isSlow) restTimer = window.setTimeout(() => settle(), 800);
   const keepUp = () => {
     const now = performance.now();
     const since = now - lastFrame;
@@ -234,7 +235,7 @@ function sceneIn(host) {
       set({ scene: true });
     },
     picture: () => {
-      draw();
+      settle();
       return canvas.toDataURL('image/png');
     },
   };
@@ -245,6 +246,9 @@ function rendererOf(gl) {
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   return info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
 }
+
+/** The view as it is now, as the address of a picture; the card of the scene puts it in. */
+let viewPicture = () => '';
 
 /** The card with the view, its switches and its words. */
 function sceneCard() {
@@ -257,6 +261,7 @@ function sceneCard() {
     el('div.tl', {}, title, where),
   );
   const scene = sceneIn(view);
+  viewPicture = scene.picture;
   const views = [['cell', '3-D'], ['top', 'Top'], ['front', 'Front'], ['tool', 'Tool']].map(([name, text]) =>
     el('button.chip', { type: 'button', 'data-view': name, onclick: () => scene.view(name) }, text),
   );
@@ -293,7 +298,7 @@ function sceneCard() {
   const still = /** @type {HTMLImageElement} */ (el('img.still', { alt: '' }));
   view.append(still);
   addEventListener('beforeprint', () => {
-    still.src = scene.picture();
+    still.src = viewPicture();
   });
   return host;
 }
