@@ -18,9 +18,7 @@ use stead_placement::settings::CertificateSettings;
 use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
 use stead_report::document::Timing;
 use stead_report::page::put_page;
-use stead_report::placement::{
-    Context, evaluation, place_json, placement_files, placement_text, write_placement,
-};
+use stead_report::placement::{Context, evaluation, place_json, placement_files, placement_text, write_placement};
 use stead_report::{Files, Folder};
 use stead_study::{self as study, Placed, Scored};
 

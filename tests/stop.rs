@@ -71,10 +71,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
 
     let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(
-        bench.names("scored"),
-        SCORE_FILES
-    );
+    assert_eq!(bench.names("scored"), SCORE_FILES);
 }
 
 #[test]
@@ -290,9 +287,6 @@ mod interrupt {
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
-        assert_eq!(
-            bench.names("out"),
-            SCORE_FILES
-        );
+        assert_eq!(bench.names("out"), SCORE_FILES);
     }
 }

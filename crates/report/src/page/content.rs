@@ -61,8 +61,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     let points = data["task"]["points"].as_u64().unwrap_or(0) as usize;
     for table in &tables {
         if table.len() != points {
-            let problem =
-                format!("has {} points and {DATA} {points}: they are of two runs, or not whole", table.len());
+            let problem = format!("has {} points and {DATA} {points}: they are of two runs, or not whole", table.len());
             return Err(table.error(&problem));
         }
     }
@@ -96,8 +95,14 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         "document": document,
         "plans": plans,
         "thinned": chosen.as_ref().map(|chosen| json!({ "points": points, "shown": chosen.len() })),
-        "chosen": chosen,
     });
+    let mut data = data;
+    if let Some(chosen) = &chosen {
+        for key in ["position_mm", "feed", "axis"] {
+            let all = data["task"][key].as_str().unwrap_or_default();
+            data["task"][key] = json!(vectors(all, chosen));
+        }
+    }
     if let (Value::Object(page), Value::Object(data)) = (&mut page, data) {
         page.extend(data);
         page.extend(optional);
@@ -106,9 +111,14 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     Ok(page)
 }
 
+/// Those chosen of a list of vectors in Base64: three singles are sixteen characters.
+fn vectors(all: &str, chosen: &[usize]) -> String {
+    chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
+}
+
 fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
-    let value: Value =
-        serde_json::from_slice(bytes).map_err(|cause| PageError::file(name, format!("is no JSON document: {cause}")))?;
+    let value: Value = serde_json::from_slice(bytes)
+        .map_err(|cause| PageError::file(name, format!("is no JSON document: {cause}")))?;
     match value["format"].as_u64() {
         Some(format) if format == u64::from(crate::document::FORMAT) => Ok(value),
         found => {

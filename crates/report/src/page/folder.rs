@@ -1,8 +1,8 @@
 //! The page of a results folder, written again from its files alone.
 
 use super::{DATA, PAGE, PageError, content, page};
-use crate::output::{Folder, ReportError};
 use crate::Files;
+use crate::output::{Folder, ReportError};
 use std::path::{Path, PathBuf};
 use stead_format::input::InputError;
 use stead_format::manifest::{self, Found, MANIFEST, Manifest, Unlisted};

@@ -90,7 +90,8 @@ fn files_of_two_runs_or_of_another_format_make_no_page() {
     assert_eq!(message, "page-data.json: is of format 7, where this stead reads format 1");
     let message = with(DATA, &edit("command", json!("assess")));
     assert!(message.contains("command names no command"), "{message}");
-    let message = with("best.csv", &|bytes| bytes.split_inclusive(|byte| *byte == b'\n').take(9).flatten().copied().collect());
+    let message =
+        with("best.csv", &|bytes| bytes.split_inclusive(|byte| *byte == b'\n').take(9).flatten().copied().collect());
     assert!(message.contains("best.csv: has 8 points and page-data.json 105"), "{message}");
     let message = with("deflection-map-worst.csv", &|bytes| bytes[..2000 - 1].to_vec());
     assert!(message.starts_with("deflection-map-worst.csv: "), "{message}");

@@ -148,17 +148,17 @@ const CASES = caseEntries().map((entry, k) => {
 /** How many path points are drawn. */
 const COUNT = CASES[0].joints.length;
 
-/** @template T @param {ArrayLike<T>} all @param {number} width of one point @returns {T[][]} of the points that are drawn */
-function drawn(all, width) {
-  const chosen = RAW.chosen || Array.from({ length: COUNT }, (_, i) => i);
-  return chosen.map((/** @type {number} */ i) => Array.from({ length: width }, (_, k) => all[width * i + k]));
+/** @param {string} text @returns {number[][]} */
+function vectorsOf(text) {
+  const all = singlesOf(text);
+  return Array.from({ length: all.length / 3 }, (_, i) => [all[3 * i], all[3 * i + 1], all[3 * i + 2]]);
 }
 
-/** The task in the workpiece frame. */
+/** The task in the workpiece frame; `steps` are those of all points, also where fewer are drawn. */
 const TASK = {
-  position: drawn(singlesOf(RAW.task.position_mm), 3),
-  feed: drawn(singlesOf(RAW.task.feed), 3),
-  axis: drawn(singlesOf(RAW.task.axis), 3),
+  position: vectorsOf(RAW.task.position_mm),
+  feed: vectorsOf(RAW.task.feed),
+  axis: vectorsOf(RAW.task.axis),
   steps: singlesOf(RAW.task.step_s),
 };
 
