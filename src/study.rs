@@ -11,8 +11,7 @@ use stead_format::input::{InputFile, input_file};
 use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
 use stead_report::certificate::write_certificate;
-use stead_report::document::bytes;
-use stead_report::placement::{Context, summary_json, write_placement};
+use stead_report::placement::{Context, placement_files, write_placement};
 use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
 use stead_report::{Files, Folder};
 use stead_study::Placed;
@@ -246,8 +245,8 @@ impl Keeping for StudyFolder<'_> {
         let folder = Folder::create(&self.of_case(case)).map_err(|error| error.to_string())?;
         write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;
         if let Some(certificate) = &certificate {
-            let summary = bytes(&summary_json(&run.problem, &outcome, &context));
-            write_certificate(&folder, &run.problem, certificate, &run.inputs, &summary)
+            let files = placement_files(&run.problem, &outcome, &context).map_err(|error| error.to_string())?;
+            write_certificate(&folder, &run.problem, certificate, &run.inputs, files)
                 .map_err(|error| error.to_string())?;
         }
         Ok(())

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 16] = [
+pub const FILES: [&str; 18] = [
     "best-worst-plan.csv",
     "best.csv",
     "cell.svg",
@@ -18,8 +18,10 @@ pub const FILES: [&str; 16] = [
     "deflection-map-worst.csv",
     "deflection-map-worst.svg",
     "manifest.json",
+    "page-data.json",
     "placements.csv",
     "refinements.csv",
+    "report.html",
     "summary.json",
     "transfers.csv",
     "worst-worst-plan.csv",

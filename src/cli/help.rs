@@ -3,7 +3,7 @@
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
 const GROUPS: [(&str, &[&str]); 8] = [
-    ("Where to put the workpiece", &["place", "score", "explain"]),
+    ("Where to put the workpiece", &["place", "score", "explain", "page"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
@@ -57,6 +57,7 @@ Files written to the results folder:
                                      deflection over path point and spindle angle, unless [output] maps = false
   convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
   summary.json                       all of it for programs
+  report.html, page-data.json        a page for the browser, and what `stead page` makes it of; not with --no-page
   stability-{best,worst}.csv, stability.svg
                                      with a table [stability]: critical depth along the path
   certificate.json, open-region.{csv,svg}, open-region-worst.svg
@@ -78,6 +79,7 @@ Files written with --out:
   best-plan.csv, worst-plan.csv      the two plans, point by point
   deflection-map.{csv,svg}           deflection over path point and spindle angle, unless [output] maps = false
   placement.svg                      the cell from above with the placement
+  report.html, page-data.json        as of `stead place`
   score.json                         what --json prints
   stability-{best,worst}-plan.csv, stability.svg
                                      with a table [stability]: critical depth along the path

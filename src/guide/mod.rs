@@ -8,6 +8,7 @@
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
+//! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
 //! | How good is a robot for machining? | [`assess`] |
@@ -61,6 +62,8 @@ pub mod library {}
 pub mod method {}
 #[doc = include_str!("objective.md")]
 pub mod objective {}
+#[doc = include_str!("page.md")]
+pub mod page {}
 #[doc = include_str!("place.md")]
 pub mod place {}
 #[doc = include_str!("python.md")]

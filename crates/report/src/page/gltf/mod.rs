@@ -1,24 +1,27 @@
-//! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along a plan.
+//! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along its best plan.
 //!
 //! glTF has y upwards: the node of the base is turned by -90 deg about x, and everything below it is in the robot's own frames, in m.
 //! Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated.
 
 mod buffer;
 mod document;
+mod kept;
 mod motion;
 mod path;
 
+pub(crate) use kept::scene;
 pub use motion::{Motion, Stop};
 
-use super::shapes::{BodyFrame, BodyMesh, block_under_path, bodies, shaded};
+use super::shapes::{BodyFrame, BodyMesh, shaded};
 use buffer::Buffer;
 use document::{Animation, Asset, Channel, Document, Extras, Material, Mesh, Node, Primitive, Sampler, Scene, Target};
 use motion::{quaternion, turn_about_z};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 use stead_model::robot::Pose;
-use stead_placement::outcome::Case;
-use stead_placement::problem::Problem;
+
+/// `cell.glb`.
+pub(crate) const SCENE: &str = "cell.glb";
 
 /// What a scene shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,21 +38,6 @@ pub struct Cell<'a> {
     pub bodies: &'a [BodyMesh],
     /// What the arm does.
     pub motion: &'a Motion,
-}
-
-/// The scene of a case with the shapes that its problem has, as the bytes of a `.glb` file.
-pub fn cell_glb(problem: &Problem, case: &Case) -> Vec<u8> {
-    let mut shapes = bodies(problem);
-    shapes.push(block_under_path(&problem.task));
-    let cell = Cell {
-        name: problem.robot.name(),
-        rows: *problem.robot.rows(),
-        flange_from_tool: problem.spindle.flange_from_tool,
-        base_from_workpiece: case.placement.base_from_workpiece(),
-        bodies: &shapes,
-        motion: &Motion::of(problem, case),
-    };
-    glb(&cell)
 }
 
 /// A scene as the bytes of a `.glb` file.

@@ -1,15 +1,12 @@
 //! What the arm does: a plan with its times, and the keys of its animation.
 
-use crate::names;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
-use stead_placement::outcome::Case;
-use stead_placement::problem::Problem;
 
 /// Time of a move, or of a turn in place, whose time is not known. s
-const UNKNOWN_MOVE: f64 = 1.0;
+pub(super) const UNKNOWN_MOVE: f64 = 1.0;
 /// Shortest time that a move between segments is shown in. s
-const SHORTEST_MOVE: f64 = 0.15;
+pub(super) const SHORTEST_MOVE: f64 = 0.15;
 /// Keys of a move between segments at least: it starts and ends at rest.
 const KEYS_OF_MOVE: usize = 16;
 /// Points of a plan that an animation has at most; of more, so many are left out that these remain.
@@ -47,29 +44,6 @@ pub(super) struct Key {
 }
 
 impl Motion {
-    /// The plan of a case at the feed that the arm holds, with the times of its moves between segments.
-    pub fn of(problem: &Problem, case: &Case) -> Self {
-        let points = &case.plan.points;
-        let mut time = 0.0;
-        let stops = points.iter().enumerate().map(|(index, point)| {
-            if let Some(before) = index.checked_sub(1).map(|before| &points[before]) {
-                let known = if before.segment == point.segment {
-                    let (segment, time) = (point.segment - 1, problem.step_time(point.point));
-                    Some(time * (problem.programmed_feed(segment) / case.cycle.feed.held(segment)).max(1.0))
-                } else {
-                    let mut transfers = case.cycle.transfers.iter();
-                    let transfer = transfers.find(|transfer| transfer.after_segment == before.segment);
-                    transfer.and_then(|transfer| transfer.duration).map(|duration| duration.max(SHORTEST_MOVE))
-                };
-                time += known.filter(|time| time.is_finite()).unwrap_or(UNKNOWN_MOVE);
-            }
-            Stop { joints: point.joints, position: point.position, segment: point.segment, score: point.score, time }
-        });
-        let [placement, plan] = [case.placement_sense, case.plan_sense].map(names::sense);
-        let name = format!("case {}: {placement} placement, {plan} plan", case.number());
-        Self { name, stops: stops.collect() }
-    }
-
     /// The stops that are shown: all, or of a long path every so-manieth of each segment and the ends.
     pub(super) fn shown(&self) -> Vec<Stop> {
         let stride = self.stops.len().div_ceil(MAX_STOPS).max(1);

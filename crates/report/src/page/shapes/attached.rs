@@ -5,7 +5,6 @@ use super::loft::{Section, Solid};
 use super::{BodyFrame, BodyMesh, Paint, illustration};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
-use stead_model::task::Task;
 
 /// Distance of the tool centre point from the flange that the sizes of the spindle belong to: that of Caro 2013, eq. 9. mm
 const NOMINAL_MM: f64 = 684.0;
@@ -53,14 +52,14 @@ pub fn spindle_bodies(robot: &Robot, spindle: &Spindle) -> Vec<BodyMesh> {
     ]
 }
 
-/// A block that the path may lie on, in the workpiece frame: its extent with a margin, on the side of it away from the tool.
-pub fn block_under_path(task: &Task) -> BodyMesh {
-    let points = task.points();
+/// A block that a path may lie on, in the workpiece frame: its extent with a margin, on the side of it away from the tool; from
+/// the path points (m) and the tool axes there.
+pub fn block_of(points: &[Vector3<f64>], axes: &[Vector3<f64>]) -> BodyMesh {
     let extreme = |start: f64, choose: fn(f64, f64) -> f64| {
-        points.iter().fold(Vector3::repeat(start), |bound, point| bound.zip_map(&point.position, choose))
+        points.iter().fold(Vector3::repeat(start), |bound, point| bound.zip_map(point, choose))
     };
     let (mut low, mut high) = (extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max));
-    let axis: Vector3<f64> = points.iter().map(|point| point.axis).sum();
+    let axis: Vector3<f64> = axes.iter().sum();
     let side = axis.iamax();
     for other in (0..3).filter(|other| *other != side) {
         low[other] -= MARGIN;

@@ -20,6 +20,12 @@ fn point(position: [f32; 3]) -> Vector3<f64> {
     Vector3::from(position.map(f64::from))
 }
 
+fn block() -> BodyMesh {
+    let points = problem().task.points();
+    let all = |of: fn(&stead_model::task::PathPoint) -> Vector3<f64>| points.iter().map(of).collect::<Vec<_>>();
+    block_of(&all(|point| point.position), &all(|point| point.axis))
+}
+
 /// Volume that the triangles enclose, of each connected part. m^3
 fn volumes(body: &BodyMesh) -> Vec<f64> {
     let mut root: Vec<usize> = (0..body.positions.len()).collect();
@@ -48,7 +54,7 @@ fn bodies_are_closed_and_face_outward() {
     for robot in arms() {
         let name = robot.name().to_owned();
         let mut bodies = bodies(&with(robot));
-        bodies.push(block_under_path(&problem().task));
+        bodies.push(block());
         assert!(bodies.len() > 15 && bodies.iter().all(|body| body.is_illustration));
         for body in bodies {
             let what = format!("{name}: {}", body.name);
@@ -127,8 +133,7 @@ fn spindles_join_flange_and_tool() {
 /// The block is on the far side of the path from the tool.
 #[test]
 fn the_block_is_under_the_path() {
-    let task = &problem().task;
-    let block = block_under_path(task);
+    let (task, block) = (&problem().task, block());
     let top = block.positions.iter().map(|p| f64::from(p[2])).fold(f64::NEG_INFINITY, f64::max);
     assert!(task.points().iter().all(|p| p.axis.z > 0.99 && p.position.z > top));
     let low = |axis: usize| block.positions.iter().map(|p| f64::from(p[axis])).fold(f64::INFINITY, f64::min);
