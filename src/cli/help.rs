@@ -57,7 +57,8 @@ Files written to the results folder:
                                      deflection over path point and spindle angle, unless [output] maps = false
   convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
   summary.json                       all of it for programs
-  report.html, page-data.json        a page for the browser, and what `stead page` makes it of; not with --no-page
+  report.html, cell.glb, page-data.json
+                                     page for the browser, moving 3-D scene, what `stead page` makes both of; not with --no-page
   stability-{best,worst}.csv, stability.svg
                                      with a table [stability]: critical depth along the path
   certificate.json, open-region.{csv,svg}, open-region-worst.svg
@@ -79,7 +80,8 @@ Files written with --out:
   best-plan.csv, worst-plan.csv      the two plans, point by point
   deflection-map.{csv,svg}           deflection over path point and spindle angle, unless [output] maps = false
   placement.svg                      the cell from above with the placement
-  report.html, page-data.json        as of `stead place`
+  report.html, cell.glb, page-data.json
+                                     as of `stead place`
   score.json                         what --json prints
   stability-{best,worst}-plan.csv, stability.svg
                                      with a table [stability]: critical depth along the path

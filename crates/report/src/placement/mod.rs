@@ -113,8 +113,8 @@ fn map_files(
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
 /// `placement.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
-/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json` and
-/// `report.html`. Returns the paths.
+/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json`,
+/// `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -162,8 +162,8 @@ pub fn score_files(
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does without, `page-data.json` and `report.html`. Where there are no maps, those of an
-/// earlier run are removed. Returns the paths of the files written.
+/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
+/// without, `page-data.json`, `report.html` and `cell.glb`. Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
