@@ -146,7 +146,7 @@ impl Study {
         let results = self.folder(folder);
         let page = |case: &PlannedCase| {
             let name = results.name_of_case(case);
-            let is_there = results.is_kept(case) && results.of_case(case).join("report.html").is_file();
+            let is_there = results.of_case(case).join("report.html").is_file() && results.is_kept(case);
             is_there.then(|| (case.case.number as i64, format!("{CASES}/{name}/report.html")))
         };
         self.plan.cases.iter().filter_map(page).collect()

@@ -25,7 +25,10 @@ fn a_run_leaves_a_page_unless_it_is_not_wanted_and_it_can_be_made_again() {
     // Without a page none of the run before stays.
     assert_eq!(place(&["--no-page"]).code, Some(0));
     let names = bench.names("out");
-    assert!(["report.html", "cell.glb", "page-data.json"].iter().all(|page| names.iter().all(|name| name != page)), "{names:?}");
+    assert!(
+        ["report.html", "cell.glb", "page-data.json"].iter().all(|page| names.iter().all(|name| name != page)),
+        "{names:?}"
+    );
     let refused = bench.stead(&["page", "out"]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("out: manifest.json lists no page-data.json; allowed: "), "{}", refused.stderr);

@@ -154,7 +154,7 @@ fn wall(title: &str, profile: &Profile, color: usize) -> Card {
 
 fn modes(found: &Simulation) -> Card {
     let row = |(number, mode): (usize, &stead_simulation::modes::Mode)| {
-        let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio(), 5)];
+        let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio, 5)];
         std::iter::once(Cell::Number((number + 1).to_string())).chain(numbers.map(Cell::Number)).collect()
     };
     Card::Table(Table {

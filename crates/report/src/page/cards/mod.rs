@@ -7,7 +7,7 @@ mod chart;
 mod html;
 mod table;
 
-pub use chart::{Axis, Chart, HeatMap, Mark, Outline, Polar, Series, Style};
+pub use chart::{Axis, Chart, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style};
 pub use table::{Cell, Column, Table};
 
 use serde::Serialize;
@@ -95,7 +95,6 @@ impl Page {
 
     /// Adds warnings and notes, where there are any: they come first on every page.
     pub fn messages(mut self, warnings: &[impl ToString], notes: &[impl ToString]) -> Self {
-        let sentences = |list: &[_]| list.iter().map(ToString::to_string).collect::<Vec<String>>();
         let text = |title: &str, sentences: Vec<String>, is_warning| {
             Card::Text(Text { title: title.to_owned(), sentences, is_warning })
         };
@@ -103,7 +102,7 @@ impl Page {
             self.cards.push(text("Warnings", warnings.iter().map(ToString::to_string).collect(), true));
         }
         if !notes.is_empty() {
-            self.cards.push(text("Notes", sentences(notes), false));
+            self.cards.push(text("Notes", notes.iter().map(ToString::to_string).collect(), false));
         }
         self
     }

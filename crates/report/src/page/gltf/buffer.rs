@@ -79,7 +79,7 @@ impl Buffer {
         let corners = triangles.iter().flatten();
         let count = triangles.len() * 3;
         // The largest number of a type is reserved.
-        if let (true, Ok(_)) = (largest < u32::from(u16::MAX), u16::try_from(largest)) {
+        if largest < u32::from(u16::MAX) {
             let bytes = corners.flat_map(|k| (*k as u16).to_le_bytes()).collect();
             return self.put(bytes, UNSIGNED_SHORT, count, "SCALAR", Some(INDICES), None, false);
         }

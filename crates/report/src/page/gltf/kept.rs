@@ -150,7 +150,7 @@ pub(super) fn motion(plan: &Table, driven: &Value, steps: &[f64]) -> Result<Moti
             let step = steps.get(point).copied().filter(|step| *step > 0.0);
             time += step.map_or(UNKNOWN_MOVE, |step| step * scale);
         } else if point > 0 {
-            let duration = driven["transfers"][segments[point - 1] as usize - 1]["duration_s"].as_f64();
+            let duration = driven["transfers"][(segments[point - 1] as usize).saturating_sub(1)]["duration_s"].as_f64();
             time += duration.unwrap_or(UNKNOWN_MOVE).max(SHORTEST_MOVE);
         }
         Stop {

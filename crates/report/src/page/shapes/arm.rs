@@ -196,7 +196,13 @@ impl Arm<'_> {
             }),
             self.part("wrist", 4, Paint::Body, |solid| {
                 let radii = [0.068 * size, 0.06 * size];
-                solid.bar([back * 0.13, back * 0.0], radii, [0.0, 0.03 * size], 0.008 * size, Section::squarish(3.0));
+                solid.bar(
+                    [back * 0.13, Vector3::zeros()],
+                    radii,
+                    [0.0, 0.03 * size],
+                    0.008 * size,
+                    Section::squarish(3.0),
+                );
             }),
             self.part("hub 5", 5, Paint::Dark, |solid| {
                 solid.bar(
