@@ -20,6 +20,7 @@
 //! | [`Run`] | [`place`](Run::place) | [`Placements`] | `stead place` |
 //! | [`Run`] | [`score`](Run::score) | [`PlacementScore`] | `stead score` |
 //! | [`Run`] | [`explain`](Run::explain) | [`Explanations`] | `stead explain` |
+//! | | [`write_page`] | | `stead page` |
 //! | [`Run`] | [`export`](Run::export) | [`ExportedProgram`] | `stead export` |
 //! | [`Run`] | [`check_program`](Run::check_program) | [`CheckedProgram`] | `stead export --check` |
 //! | [`Study`] | [`run`](Study::run) | [`Finished`] | `stead study run` |
@@ -54,6 +55,7 @@ mod error;
 mod export;
 pub mod guide;
 mod identification;
+mod page;
 mod result;
 mod robot;
 mod run;
@@ -68,6 +70,7 @@ pub use compensation::{CompensatedPath, CompensationRun};
 pub use error::Error;
 pub use export::{CheckedProgram, ExportedProgram};
 pub use identification::{DesignRun, FitRun, IdentifiedRobot, MeasurementPlan};
+pub use page::write_page;
 pub use robot::{Arm, PoseOfArm, ShippedArms};
 pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};

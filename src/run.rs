@@ -17,10 +17,9 @@ use stead_placement::problem::{Placement, Problem};
 use stead_placement::settings::CertificateSettings;
 use stead_placement::setup::Setup;
 use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
-use stead_report::document::{Timing, bytes};
-use stead_report::placement::{
-    Context, evaluation, place_json, placement_files, placement_text, summary_json, write_placement,
-};
+use stead_report::document::Timing;
+use stead_report::page::put_page;
+use stead_report::placement::{Context, evaluation, place_json, placement_files, placement_text, write_placement};
 use stead_report::{Files, Folder};
 use stead_study::{self as study, Placed, Scored};
 
@@ -153,6 +152,13 @@ impl Run {
         }
         let problem = problem.in_setup(&setup_at(problem, placement, monitor)).into_owned();
         Arc::new(format::Run { problem, ..(*self.run).clone() })
+    }
+
+    /// The same run without a page among its files, whatever the file says of one.
+    #[must_use]
+    pub fn without_page(mut self) -> Self {
+        Arc::make_mut(&mut self.run).page = false;
+        self
     }
 
     /// What is to be solved.
@@ -316,8 +322,8 @@ impl Placements {
     pub fn write_certificate_in(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let Some(certificate) = &self.certificate else { return Ok(Vec::new()) };
         let problem = &self.run.problem;
-        let summary = bytes(&summary_json(problem, &self.outcome, &self.context));
-        Ok(write_certificate(folder, problem, certificate, &self.run.inputs, &summary)?)
+        let files = placement_files(problem, &self.outcome, &self.context)?;
+        Ok(write_certificate(folder, problem, certificate, &self.run.inputs, files)?)
     }
 
     /// How far from the best and the worst possible these placements are, where that was asked for.
@@ -329,7 +335,10 @@ impl Placements {
 impl Report for Placements {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
-        files.extend(self.write_certificate_in(folder)?);
+        // The page is written again, with the certificate in it.
+        let more = self.write_certificate_in(folder)?;
+        files.retain(|path| !more.contains(path));
+        files.extend(more);
         Ok(files)
     }
 
@@ -337,6 +346,7 @@ impl Report for Placements {
         let mut files = placement_files(&self.run.problem, &self.outcome, &self.context)?;
         if let Some(certificate) = &self.certificate {
             files.extend(certificate_files(&self.run.problem, certificate, &self.run.inputs)?);
+            put_page(&mut files)?;
         }
         Ok(files)
     }

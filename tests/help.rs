@@ -47,7 +47,8 @@ fn the_overview_groups_every_command_by_its_question() {
     let listed = bench.stead(&["nonsense"]).stderr;
     assert!(listed.contains("unrecognized subcommand"), "{listed}");
     let names = commands(&bench);
-    let expected = ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability"];
+    let expected =
+        ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability", "page"];
     for name in expected.into_iter().chain([
         "circularity",
         "export",

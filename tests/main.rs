@@ -22,6 +22,7 @@ mod import_path;
 mod import_robot;
 mod looks_wrong;
 mod opw_oracle;
+mod page;
 mod place;
 mod results_folder;
 mod robots;

@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 16] = [
+pub const FILES: [&str; 19] = [
     "best-worst-plan.csv",
     "best.csv",
+    "cell.glb",
     "cell.svg",
     "convergence.csv",
     "convergence.svg",
@@ -18,8 +19,10 @@ pub const FILES: [&str; 16] = [
     "deflection-map-worst.csv",
     "deflection-map-worst.svg",
     "manifest.json",
+    "page-data.json",
     "placements.csv",
     "refinements.csv",
+    "report.html",
     "summary.json",
     "transfers.csv",
     "worst-worst-plan.csv",

@@ -8,6 +8,18 @@ use std::fmt::Write;
 const MAPS: [&str; 4] =
     ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
 
+/// What a score leaves, its map apart.
+const SCORE_FILES: [&str; 8] = [
+    "best-plan.csv",
+    "cell.glb",
+    "manifest.json",
+    "page-data.json",
+    "placement.svg",
+    "report.html",
+    "score.json",
+    "worst-plan.csv",
+];
+
 /// What a placement leaves, maps apart.
 fn files_without_maps() -> Vec<&'static str> {
     FILES.into_iter().filter(|file| !MAPS.contains(file)).collect()
@@ -52,17 +64,15 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(bench.names("out"), files_without_maps());
     for (name, bytes) in bench.tree("out") {
-        // These state the run file's digest.
-        assert!(["manifest.json", "summary.json"].contains(&name.as_str()) || bytes == before[&name], "{name}");
+        // These state the run file's digest, or have the maps in them.
+        let differs = ["manifest.json", "page-data.json", "report.html", "summary.json"];
+        assert!(differs.contains(&name.as_str()) || bytes == before[&name], "{name}");
     }
     assert!(MAPS.iter().all(|map| before.contains_key(*map)));
 
     let ended = bench.stead(&["score", RUN, "--placement-of", "out", "--out", "scored"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
-    assert_eq!(
-        bench.names("scored"),
-        ["best-plan.csv", "manifest.json", "placement.svg", "score.json", "worst-plan.csv"]
-    );
+    assert_eq!(bench.names("scored"), SCORE_FILES);
 }
 
 #[test]
@@ -81,10 +91,13 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
     let scored = with(&["--out", "scored"]);
     let files = [
         "best-plan.csv",
+        "cell.glb",
         "deflection-map.csv",
         "deflection-map.svg",
         "manifest.json",
+        "page-data.json",
         "placement.svg",
+        "report.html",
         "score.json",
         "worst-plan.csv",
     ];
@@ -276,9 +289,6 @@ mod interrupt {
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
-        assert_eq!(
-            bench.names("out"),
-            ["best-plan.csv", "manifest.json", "placement.svg", "score.json", "worst-plan.csv"]
-        );
+        assert_eq!(bench.names("out"), SCORE_FILES);
     }
 }

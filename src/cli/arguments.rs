@@ -6,6 +6,7 @@ use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
 use super::help;
 use super::import::ImportCommand;
 use super::init::InitOptions;
+use super::page::PageOptions;
 use super::pose::PoseOptions;
 use super::robots::RobotsOptions;
 use super::values::{field, finite, gap, noise, point, positive, sector, seed, shard, shards, threads};
@@ -36,6 +37,9 @@ pub(super) enum Command {
     /// Show which constraints each posture satisfies at one path point of a given placement
     #[command(after_long_help = help::EXPLAIN)]
     Explain(ExplainOptions),
+    /// Write the page of a results folder again, from its files alone
+    #[command(after_long_help = super::page::HELP)]
+    Page(PageOptions),
     /// Place many variants of a run, cell layouts by the thousand: one file, one table, resumable
     #[command(subcommand)]
     Study(StudyCommand),
@@ -125,6 +129,9 @@ pub(super) struct PlaceOptions {
     /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
     #[arg(long)]
     pub sensitivity: bool,
+    /// Leave no page for the browser, whatever the run file says
+    #[arg(long)]
+    pub no_page: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -344,7 +351,7 @@ pub(super) struct CircularityOptions {
     /// Exclude points from angle A to B in degrees about the least-squares centre; may be repeated
     #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]
     pub exclude_deg: Vec<Sector>,
-    /// Folder for circularity.json, deviations.csv and polar.svg [default: nothing is written]
+    /// Folder for circularity.json, deviations.csv, polar.svg and report.html [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table

@@ -3,7 +3,7 @@
 
 /// The commands by the question that they answer. Commands that stand in no group are listed last.
 const GROUPS: [(&str, &[&str]); 8] = [
-    ("Where to put the workpiece", &["place", "score", "explain"]),
+    ("Where to put the workpiece", &["place", "score", "explain", "page"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the loaded tool does", &["compensate", "simulate", "stability"]),
@@ -57,6 +57,8 @@ Files written to the results folder:
                                      deflection over path point and spindle angle, unless [output] maps = false
   convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
   summary.json                       all of it for programs
+  report.html, cell.glb, page-data.json
+                                     page for the browser, moving 3-D scene, what `stead page` makes both of; not with --no-page
   stability-{best,worst}.csv, stability.svg
                                      with a table [stability]: critical depth along the path
   certificate.json, open-region.{csv,svg}, open-region-worst.svg
@@ -79,6 +81,8 @@ Files written with --out:
   best-plan.csv, worst-plan.csv      the two plans, point by point
   deflection-map.{csv,svg}           deflection over path point and spindle angle, unless [output] maps = false
   placement.svg                      the cell from above with the placement
+  report.html, cell.glb, page-data.json
+                                     as of `stead place`
   score.json                         what --json prints
   stability-{best,worst}-plan.csv, stability.svg
                                      with a table [stability]: critical depth along the path
@@ -153,7 +157,7 @@ Files written to the folder of the study:
   study-front.{csv,svg}              layouts that no other is better than in every column of the front
   study-effects.{csv,svg}            what each axis does to the column of the ranking
   study-map.svg                      that column over two axes
-  study-report.json                  what --json prints
+  study-report.json, report.html     what --json prints; a page with all of it, which leads to the pages of kept cases
 
 Exit codes:
   0  done
@@ -173,7 +177,7 @@ Files written to the results folder:
   accuracy.csv, selection.csv        with forces and accuracies: which robots reach which accuracy
   indicators.svg                     accuracy, reach, payload and price side by side
   cutting.svg, cutting-*.csv         with a cutter and a cut: force and torque over a turn
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -204,7 +208,7 @@ Files written to the results folder:
   robot-identified.toml              the robot file with the identified values and their covariance
   compliances.csv                    every estimate with standard deviation and 95 % interval
   residuals.csv, deflections.svg     every reading beside what the identified arm gives
-  report.json                        all of it for programs
+  report.json, report.html           all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -234,7 +238,7 @@ Examples:
 Files written with --out:
   circularity.json                   the four reference circles with their circularity
   deviations.csv                     angle, radii and deviations of every point
-  polar.svg                          the profile between its zone circles
+  polar.svg, report.html             the profile between its zone circles; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -251,7 +255,7 @@ Files written to the results folder:
   series.csv                         forces and tool positions over time
   wall.csv, wall.svg                 profile of the wall that is left, and its roughness
   forces.svg, turns.svg              forces over the pass, and over three turns of the spindle
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done; an unstable cut is a result, too

@@ -18,6 +18,7 @@ mod identify;
 mod import;
 mod init;
 mod man;
+mod page;
 mod place;
 mod pose;
 mod progress;
@@ -100,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
         Command::Export(options) => export::run(&options),
+        Command::Page(options) => page::run(&options),
         Command::Study(command) => study::run(&command),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),

@@ -16,6 +16,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.sensitivity {
         run = run.with_sensitivity(Run::FORCE_ERROR);
     }
+    if options.no_page {
+        run = run.without_page();
+    }
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());

@@ -10,6 +10,7 @@
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
+//! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
 //! | How good is a robot for machining? | [`assess`] |
@@ -65,6 +66,8 @@ pub mod library {}
 pub mod method {}
 #[doc = include_str!("objective.md")]
 pub mod objective {}
+#[doc = include_str!("page.md")]
+pub mod page {}
 #[doc = include_str!("place.md")]
 pub mod place {}
 #[doc = include_str!("python.md")]

@@ -14,6 +14,7 @@ pub mod document;
 pub mod identification;
 pub mod names;
 pub mod output;
+pub mod page;
 pub mod picture;
 pub mod placement;
 pub mod program;

@@ -88,6 +88,7 @@ pub fn context() -> Context {
             figures: [0.083, 0.35, 0.82, 1.2],
         }),
         stability: None,
+        page: true,
     }
 }
 

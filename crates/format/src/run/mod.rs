@@ -120,6 +120,8 @@ pub struct Run {
     pub certificate: Option<CertificateSettings>,
     /// Whether deflection maps are made.
     pub maps: bool,
+    /// Whether a page is left with the files.
+    pub page: bool,
     /// The files that were read, in the order config, robot, task, and others that they name.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
@@ -173,7 +175,8 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let search_table = run.search.unwrap_or_default();
     let search = search_table.settings();
     let transfer = run.transfer.unwrap_or_default().settings();
-    let maps = run.output.unwrap_or_default().maps();
+    let output = run.output.unwrap_or_default();
+    let (maps, page) = (output.maps(), output.page());
     let certificate = run.certificate.map(|table| table.settings());
     let with_gap = |gap| CertificateSettings { gap, ..certificate.unwrap_or(CertificateSettings::new(gap)) };
     let certificate = gap.map(with_gap).or(certificate);
@@ -249,5 +252,5 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, maps, inputs, reference, path_stability, notes })
+    Ok(Run { problem, search, transfer, certificate, maps, page, inputs, reference, path_stability, notes })
 }

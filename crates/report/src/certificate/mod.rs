@@ -13,6 +13,7 @@ pub use text::certificate_text;
 use super::output::{Folder, ReportError};
 use super::{Files, named, picture};
 use crate::document::bytes;
+use crate::page::{PAGE, put_page};
 use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
 use stead_format::input::InputFile;
@@ -21,7 +22,7 @@ use stead_placement::problem::Problem;
 
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
 /// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. They join the results of
-/// the run whose `summary.json` has the content `summary`. Returns the paths in that order.
+/// the run that has left the files `run`, and its page, if it has one, is made again with them. Returns the paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, or where results of another run are; no file is ever left half
@@ -31,11 +32,17 @@ pub fn write_certificate(
     problem: &Problem,
     certificate: &Certificate,
     inputs: &[InputFile],
-    summary: &[u8],
+    run: Files,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let files = certificate_files(problem, certificate, inputs)?;
+    let mut files = certificate_files(problem, certificate, inputs)?;
+    let mut all = run;
+    all.extend(files.iter().cloned());
+    put_page(&mut all)?;
+    let find = |name: &str| all.iter().find(|(file, _)| file == name).cloned();
+    files.extend(find(PAGE));
+    let summary = find(SUMMARY).map(|(_, bytes)| bytes).unwrap_or_default();
     let outdated = proofs(certificate).into_iter().filter(|(_, proof)| proof.is_err()).map(|(name, _)| name);
-    folder.results(PLACE, inputs).joining(SUMMARY, summary).without(outdated).write(&files)
+    folder.results(PLACE, inputs).joining(SUMMARY, &summary).without(outdated).write(&files)
 }
 
 /// The pictures of the proofs with what they show.

@@ -96,7 +96,11 @@ impl<'a> Transaction<'a> {
         for (name, bytes) in files {
             puts.push(self.staged(name.as_ref(), bytes)?);
         }
-        let set = self.set(files, kept);
+        let mut set = self.set(files, kept);
+        if let (Some(_), Some(former)) = (self.anchor, &former_set) {
+            // They join the results of that run.
+            (set.version, set.inputs) = (former.version.clone(), former.inputs.clone());
+        }
         let has_changed = former_set.as_ref().is_none_or(|former| former.files != set.files);
         let derived = self.derived.and_then(|command| former.of(command)).filter(|_| has_changed).cloned();
         let is_outdated = |name: &str| set.file(name).is_none();

@@ -14,6 +14,8 @@ pub use text::placement_text;
 
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
+use crate::page;
+use crate::page::data::{MapOf, page_data};
 use crate::{Files, named, picture};
 use std::path::PathBuf;
 use stead_format::Run;
@@ -44,6 +46,8 @@ pub struct Context {
     pub reference: Option<Published<[f64; 4]>>,
     /// How deep may be cut along the path, where that was asked for.
     pub stability: Option<PathStability>,
+    /// Whether a page is left with the files.
+    pub page: bool,
 }
 
 impl Context {
@@ -57,6 +61,7 @@ impl Context {
             transfer: run.transfer,
             reference: run.reference.clone(),
             stability: None,
+            page: run.page,
         }
     }
 
@@ -64,10 +69,28 @@ impl Context {
     pub fn document(&self) -> Document {
         Document::new(&self.inputs).notes(&self.notes).warnings(&self.warnings)
     }
+
+    /// The files with a page of them, where one is wanted.
+    fn with_page(
+        &self,
+        mut files: Files,
+        command: &str,
+        problem: &Problem,
+        maps: &[MapOf<'_>],
+    ) -> Result<Files, ReportError> {
+        if self.page {
+            let data = page_data(self.document(), command, problem, maps);
+            files.push((page::DATA.to_owned(), bytes(&data)));
+            page::put_page(&mut files)?;
+        }
+        Ok(files)
+    }
 }
 
 /// The command under which the manifest lists the files of a placement job and of its certificate.
 pub(crate) const PLACE: &str = "place";
+/// The command under which it lists those of a given placement.
+const SCORE: &str = "score";
 /// The file by which a certificate knows the run that it is about.
 pub(crate) const SUMMARY: &str = "summary.json";
 
@@ -92,7 +115,8 @@ fn map_files(
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
 /// `placement.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
-/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`. Returns the paths.
+/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json`,
+/// `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -105,7 +129,7 @@ pub fn write_score(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = score_files(problem, score, map, context)?;
     let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
-    folder.results("score", &context.inputs).without(outdated.iter().copied()).write(&files)
+    folder.results(SCORE, &context.inputs).without(outdated.iter().copied()).write(&files)
 }
 
 /// The files that [`write_score`] writes.
@@ -133,15 +157,16 @@ pub fn score_files(
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
         files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
     }
-    Ok(named(files))
+    let maps: Vec<MapOf<'_>> = map.iter().map(|map| (&score.placement, *map, SCORE_MAP[0])).collect();
+    context.with_page(named(files), SCORE, problem, &maps)
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`. Where there are no maps, those of an
-/// earlier run are removed. Returns the paths of the files written.
+/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
+/// without, `page-data.json`, `report.html` and `cell.glb`. Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -186,5 +211,8 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
         files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
     }
-    Ok(named(files))
+    let maps = outcome.maps.iter().flat_map(|[map_best, map_worst]| {
+        [(&best.placement, map_best, MAPS[0][0]), (&worst.placement, map_worst, MAPS[1][0])]
+    });
+    context.with_page(named(files), PLACE, problem, &maps.collect::<Vec<_>>())
 }

@@ -1,0 +1,151 @@
+//! What is in a page: `page-data.json` and the other files of a run, as the script reads them.
+
+use super::table::Table;
+use super::{PageError, map_data};
+use crate::Files;
+use serde_json::{Map, Value, json};
+
+/// `page-data.json`.
+pub(super) const DATA: &str = "page-data.json";
+/// Longer paths are thinned for drawing.
+const MAX_POINTS: usize = 6000;
+
+/// A kind of results folder: its document and the tables of its plans.
+struct Kind {
+    command: &'static str,
+    document: &'static str,
+    plans: &'static [&'static str],
+    stability: &'static [&'static str],
+}
+
+const KINDS: [Kind; 2] = [
+    Kind {
+        command: "place",
+        document: "summary.json",
+        plans: &["best.csv", "best-worst-plan.csv", "worst.csv", "worst-worst-plan.csv"],
+        stability: &["stability-best.csv", "stability-worst.csv"],
+    },
+    Kind {
+        command: "score",
+        document: "score.json",
+        plans: &["best-plan.csv", "worst-plan.csv"],
+        stability: &["stability-best-plan.csv", "stability-worst-plan.csv"],
+    },
+];
+
+/// The files that the page of a command is made of, `page-data.json` and its document first; those that it must have are told.
+pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
+    let Some(kind) = KINDS.iter().find(|kind| kind.command == command) else { return Vec::new() };
+    let mut names = vec![(DATA, true), (kind.document, true)];
+    names.extend(kind.plans.iter().map(|name| (*name, true)));
+    let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
+    names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
+    names.extend(["convergence.csv", "certificate.json"].map(|name| (name, false)));
+    names
+}
+
+/// The document and the first plan of a command, which the scene is made of beside `page-data.json`.
+pub(super) fn scene_files(command: &str) -> Option<[&'static str; 2]> {
+    let kind = KINDS.iter().find(|kind| kind.command == command)?;
+    Some([kind.document, kind.plans.first()?])
+}
+
+/// Everything that the script reads, as one JSON object.
+pub(super) fn content(files: &Files) -> Result<Value, PageError> {
+    let bytes = |name: &str| files.iter().find(|(file, _)| file == name).map(|(_, bytes)| bytes.as_slice());
+    let needed = |name: &str| bytes(name).ok_or_else(|| PageError::file(name, "is missing"));
+    let table = |name: &str| Table::read(name, needed(name)?);
+    let data = json_file(DATA, needed(DATA)?)?;
+    let command = data["command"].as_str().unwrap_or_default();
+    let kind = KINDS.iter().find(|kind| kind.command == command);
+    let kind = kind.ok_or_else(|| PageError::data("command", "names no command that leaves a page"))?;
+    let document = json_file(kind.document, needed(kind.document)?)?;
+    if document["inputs"] != data["inputs"] {
+        return Err(PageError::data("inputs", &format!("are not those of {}: they are of two runs", kind.document)));
+    }
+    let tables = kind.plans.iter().map(|name| table(name)).collect::<Result<Vec<_>, _>>()?;
+    let points = data["task"]["points"].as_u64().unwrap_or(0) as usize;
+    for table in &tables {
+        if table.len() != points {
+            let problem = format!("has {} points and {DATA} {points}: they are of two runs, or not whole", table.len());
+            return Err(table.error(&problem));
+        }
+    }
+    let chosen = thinned(&tables)?;
+    let plans = tables.iter().map(|table| table.content(&[], chosen.as_deref())).collect::<Result<Vec<_>, _>>()?;
+    let mut maps = Vec::new();
+    for entry in data["maps"].as_array().into_iter().flatten() {
+        let name = entry["table"].as_str().unwrap_or_default();
+        maps.push(map_data::content(entry, &table(name)?)?);
+    }
+    let mut optional = Map::new();
+    if let Some(found) = bytes("convergence.csv") {
+        let table = Table::read("convergence.csv", found)?;
+        optional.insert("convergence".to_owned(), table.content(&["search"], None)?);
+    }
+    let depths: Vec<&str> = kind.stability.iter().copied().filter(|name| bytes(name).is_some()).collect();
+    if !depths.is_empty() {
+        let words = ["stable", "kind"];
+        let columns = depths.iter().map(|name| table(name)?.content(&words, chosen.as_deref()));
+        optional.insert("depths".to_owned(), columns.collect::<Result<_, _>>()?);
+    }
+    if let Some(found) = bytes("certificate.json") {
+        let mut certificate = json_file("certificate.json", found)?;
+        // The same run gives the same page, however long it took.
+        if let Value::Object(entries) = &mut certificate {
+            entries.remove("wall_s");
+        }
+        optional.insert("certificate".to_owned(), certificate);
+    }
+    let mut page = json!({
+        "document": document,
+        "plans": plans,
+        "thinned": chosen.as_ref().map(|chosen| json!({ "points": points, "shown": chosen.len() })),
+    });
+    let mut data = data;
+    if let Some(chosen) = &chosen {
+        for key in ["position_mm", "feed", "axis"] {
+            let all = data["task"][key].as_str().unwrap_or_default();
+            data["task"][key] = json!(vectors(all, chosen));
+        }
+    }
+    if let (Value::Object(page), Value::Object(data)) = (&mut page, data) {
+        page.extend(data);
+        page.extend(optional);
+        page.insert("maps".to_owned(), Value::Array(maps));
+    }
+    Ok(page)
+}
+
+/// Those chosen of a list of vectors in Base64: three singles are sixteen characters.
+fn vectors(all: &str, chosen: &[usize]) -> String {
+    chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
+}
+
+pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
+    let value: Value = serde_json::from_slice(bytes)
+        .map_err(|cause| PageError::file(name, format!("is no JSON document: {cause}")))?;
+    match value["format"].as_u64() {
+        Some(format) if format == u64::from(crate::document::FORMAT) => Ok(value),
+        found => {
+            let found = found.map_or_else(|| "none".to_owned(), |format| format.to_string());
+            let problem = format!("is of format {found}, where this stead reads format {}", crate::document::FORMAT);
+            Err(PageError::file(name, problem))
+        }
+    }
+}
+
+/// Of a long path evenly chosen points, with both ends of every segment and the point of every plan that deflects most.
+fn thinned(plans: &[Table]) -> Result<Option<Vec<usize>>, PageError> {
+    let Some(first) = plans.first().filter(|plan| plan.len() > MAX_POINTS) else { return Ok(None) };
+    let step = first.len().div_ceil(MAX_POINTS);
+    let segments = first.numbers("segment")?;
+    let last = first.len() - 1;
+    let is_end = |k: usize| k == 0 || k == last || segments[k - 1] != segments[k] || segments[k + 1] != segments[k];
+    let mut highest = Vec::new();
+    for plan in plans {
+        let scores = plan.numbers("score_mm")?;
+        highest.extend((0..scores.len()).max_by(|a, b| scores[*a].total_cmp(&scores[*b])));
+    }
+    Ok(Some((0..=last).filter(|&k| k % step == 0 || is_end(k) || highest.contains(&k)).collect()))
+}

@@ -1,0 +1,101 @@
+//! The deflection map in the page: joint angles of its states, from the problem, and scores and reasons, from its table.
+
+use super::PageError;
+use super::packed::{SecondDifferences, Varints};
+use super::table::Table;
+use serde_json::{Value, json};
+use stead_model::robot::Posture;
+use stead_model::robot::turns::Range;
+use stead_placement::feasibility::DeflectionMap;
+use stead_placement::problem::{Placement, Problem};
+
+/// Joint angles in the page are multiples of this. deg
+const ANGLE_STEP_DEG: f64 = 0.02;
+/// Scores are multiples of this: the last digit that the page shows. mm
+const SCORE_STEP_MM: f64 = 1e-4;
+/// A map shows at most about so many path points: more are no wider than a pixel.
+const COLUMNS: usize = 400;
+
+/// The path points that a map in the page shows: all, or evenly chosen ones.
+fn columns(points: usize) -> Vec<usize> {
+    let step = points.div_ceil(COLUMNS).max(1);
+    (0..points).step_by(step).collect()
+}
+
+/// The entry of a map in `page-data.json`: `points` that it shows, `beta_count`, and the `joints` of its allowed states: for each joint
+/// the second differences along beta, in steps of `angle_step_deg`, begun anew behind a state that is not allowed or has another posture.
+pub(super) fn joints(problem: &Problem, placement: &Placement, map: &DeflectionMap, table: &str) -> Value {
+    let points = columns(map.rows.len());
+    let mut packed = Varints::default();
+    for &point in &points {
+        let mut last: Option<Posture> = None;
+        let mut sequences = [SecondDifferences::default(); 6];
+        for (k, cell) in map.rows[point].iter().enumerate() {
+            let posture = cell.as_ref().ok().map(|cell| cell.posture);
+            if posture != last {
+                sequences.iter_mut().for_each(SecondDifferences::restart);
+            }
+            last = posture;
+            let Some(posture) = posture else { continue };
+            let angles = state(problem, placement, point, problem.redundancy.beta(k), posture);
+            for (sequence, angle) in sequences.iter_mut().zip(angles) {
+                packed.push(sequence.next((angle.to_degrees() / ANGLE_STEP_DEG).round() as i64));
+            }
+        }
+    }
+    json!({
+        "table": table,
+        "points": points,
+        "beta_count": map.beta_count,
+        "angle_step_deg": ANGLE_STEP_DEG,
+        "joints": packed.text(),
+    })
+}
+
+/// The joint angles of an allowed state, in the turn nearest to their ranges. rad
+fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, posture: Posture) -> [f64; 6] {
+    let flange = problem.base_from_flange(point, placement, beta);
+    let mut angles = problem.robot.inverse(&flange, posture).unwrap_or_default();
+    for (angle, joint) in angles.iter_mut().zip(problem.robot.joints()) {
+        *angle = Range::of(joint).nearest(*angle).0;
+    }
+    angles
+}
+
+/// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for each (the posture,
+/// or 16 and the number of its reason), and the `scores` of the allowed ones.
+pub(super) fn content(entry: &Value, table: &Table) -> Result<Value, PageError> {
+    let wrong = || PageError::data("maps", "is no description of a deflection map");
+    let points = entry["points"].as_array().ok_or_else(wrong)?;
+    let beta_count = entry["beta_count"].as_u64().filter(|count| *count > 0).ok_or_else(wrong)? as usize;
+    let (scores, postures) = (table.numbers("score_mm")?, table.numbers("posture")?);
+    let reasons = table.texts("reason")?;
+    let (mut names, mut codes, mut packed) = (Vec::new(), Vec::new(), Varints::default());
+    for point in points {
+        let point = point.as_u64().ok_or_else(wrong)? as usize;
+        let mut sequence = SecondDifferences::default();
+        for row in point * beta_count..(point + 1) * beta_count {
+            let (Some(score), Some(posture), Some(reason)) = (scores.get(row), postures.get(row), reasons.get(row))
+            else {
+                return Err(table.error("has fewer states than page-data.json says: they are of two runs"));
+            };
+            if reason.is_empty() {
+                codes.push(*posture as u8);
+                packed.push(sequence.next((score / SCORE_STEP_MM).round() as i64));
+                continue;
+            }
+            let known = names.iter().position(|name| name == reason).unwrap_or(names.len());
+            if known == names.len() {
+                names.push(reason.clone());
+            }
+            codes.push(16 + known as u8);
+            sequence.restart();
+        }
+    }
+    let mut value = entry.clone();
+    value["codes"] = json!(super::base64::base64(&codes));
+    value["reasons"] = json!(names);
+    value["score_step_mm"] = json!(SCORE_STEP_MM);
+    value["scores"] = json!(packed.text());
+    Ok(value)
+}

@@ -1,0 +1,87 @@
+//! The page: a run in one HTML file that needs no network, with the cell in three dimensions.
+//!
+//! `page-data.json` ([`data`]) holds what the tables of a run do not: robot, task, the joint angles of the maps, the bodies. The page is
+//! made of that and of the other files of the run, by [`page`], so that its numbers are theirs and `stead page` makes the same page of a
+//! folder ([`folder`]). Its script is plain JavaScript in `script/`, a thought a file, in one scope.
+
+mod base64;
+pub mod cards;
+mod content;
+pub(crate) mod data;
+mod folder;
+pub mod gltf;
+mod html;
+mod map_data;
+mod packed;
+pub mod shapes;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use folder::{RewriteError, rewrite};
+pub use shapes::{BodyFrame, BodyMesh, bodies};
+
+use crate::Files;
+use crate::output::ReportError;
+use serde_json::Value;
+
+/// `report.html`.
+pub(crate) const PAGE: &str = "report.html";
+/// `page-data.json`.
+pub(crate) const DATA: &str = content::DATA;
+
+/// Why files make no page.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {problem}")]
+pub(crate) struct PageError {
+    file: String,
+    problem: String,
+}
+
+impl PageError {
+    fn file(file: &str, problem: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), problem: problem.into() }
+    }
+
+    /// An entry of `page-data.json`.
+    fn data(key: &str, problem: &str) -> Self {
+        Self::file(DATA, format!("{key} {problem}"))
+    }
+}
+
+impl From<PageError> for ReportError {
+    fn from(error: PageError) -> Self {
+        Self::Format { what: PAGE, cause: error.to_string() }
+    }
+}
+
+/// The page of the files of a run, which `page-data.json` is among.
+pub(crate) fn page(files: &Files) -> Result<Vec<u8>, PageError> {
+    let content = content::content(files)?;
+    Ok(html::html(&title(&content), &content).into_bytes())
+}
+
+/// Page and scene of the files of a run, which `page-data.json` is among.
+pub(crate) fn made_of(files: &Files) -> Result<Files, PageError> {
+    Ok(vec![(PAGE.to_owned(), page(files)?), (gltf::SCENE.to_owned(), gltf::scene(files)?)])
+}
+
+/// Makes page and scene of files that hold `page-data.json`, in place of those among them; does nothing where they do not.
+///
+/// # Errors
+/// [`ReportError::Format`]: they make none.
+pub fn put_page(files: &mut Files) -> Result<(), ReportError> {
+    if files.iter().any(|(name, _)| name == DATA) {
+        files.retain(|(name, _)| name != PAGE && name != gltf::SCENE);
+        let made = made_of(files)?;
+        files.extend(made);
+    }
+    Ok(())
+}
+
+/// The name of the run file, without its ending.
+fn title(content: &Value) -> String {
+    let inputs = content["inputs"].as_array().map_or(&[][..], Vec::as_slice);
+    let config = inputs.iter().find(|input| input["role"] == "config").and_then(|input| input["name"].as_str());
+    config.map_or("run", |name| name.strip_suffix(".toml").unwrap_or(name)).to_owned()
+}

@@ -1,0 +1,76 @@
+//! Lists of numbers in few characters: what the page's script unpacks in `data.js`.
+
+use super::base64::base64;
+
+/// Numbers in single precision, little endian, as Base64.
+pub(super) fn singles(values: impl IntoIterator<Item = f64>) -> String {
+    base64(&values.into_iter().flat_map(|value| (value as f32).to_le_bytes()).collect::<Vec<u8>>())
+}
+
+/// Whole numbers that change little from one to the next: each as seven bits a byte, the lowest first, the sign in bit 0.
+#[derive(Debug, Default)]
+pub(super) struct Varints(Vec<u8>);
+
+impl Varints {
+    /// Adds a number.
+    pub(super) fn push(&mut self, value: i64) {
+        let mut rest = (value << 1 ^ value >> 63) as u64;
+        while rest >= 128 {
+            self.0.push(rest as u8 & 127 | 128);
+            rest >>= 7;
+        }
+        self.0.push(rest as u8);
+    }
+
+    /// All of them as Base64.
+    pub(super) fn text(&self) -> String {
+        base64(&self.0)
+    }
+}
+
+/// The second differences of a sequence, which are small where it is smooth; [`SecondDifferences::restart`] begins a new one.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct SecondDifferences {
+    last: Option<(i64, i64)>,
+}
+
+impl SecondDifferences {
+    /// The difference of the next value to what the last two lead to expect.
+    pub(super) fn next(&mut self, value: i64) -> i64 {
+        let (last, step) = self.last.unwrap_or((0, 0));
+        let surprise = value - last - step;
+        let new_step = if self.last.is_some() { value - last } else { 0 };
+        self.last = Some((value, new_step));
+        surprise
+    }
+
+    /// Forgets the sequence so far.
+    pub(super) fn restart(&mut self) {
+        self.last = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_numbers_take_one_byte() {
+        let mut packed = Varints::default();
+        [0, -1, 1, 63, -64, 64, -300].into_iter().for_each(|value| packed.push(value));
+        assert_eq!(packed.0, [0, 1, 2, 126, 127, 128, 1, 215, 4]);
+    }
+
+    #[test]
+    fn a_straight_line_has_no_second_differences() {
+        let mut line = SecondDifferences::default();
+        assert_eq!([5, 8, 11, 14, 16].map(|value| line.next(value)), [5, 3, 0, 0, -1]);
+        line.restart();
+        assert_eq!(line.next(16), 16);
+    }
+
+    #[test]
+    fn singles_are_little_endian() {
+        assert_eq!(singles([1.0, -2.0]), "AACAPwAAAMA=");
+    }
+}

@@ -1,0 +1,45 @@
+// The table of cases: a row selects its case.
+
+/** Postures in a few characters: repeated ones are counted. @param {string[]} postures */
+function posturesText(postures) {
+  /** @type {[string, number][]} */
+  const runs = [];
+  for (const posture of postures) {
+    const last = runs[runs.length - 1];
+    if (last && last[0] === posture) last[1]++;
+    else runs.push([posture, 1]);
+  }
+  const text = runs.map(([posture, count]) => (count > 2 ? `${posture}×${count}` : Array(count).fill(posture).join(' '))).join(' ');
+  return text.length > 40 ? `${postures.length} segments` : text;
+}
+
+function casesCard() {
+  const worst = CASES.reduce((most, of) => Math.max(most, of.mean), 0) || 1;
+  const figures_ = RAW.document.reference?.case_mm;
+  const heads = ['Case', 'Mean', 'Largest', 'Ratio', ...(figures_ ? ['Published'] : []), 'x, y, z mm', 'Yaw', 'Postures', 'Cycle'];
+  const rows = CASES.map((of, k) => {
+    const bar = el('span.bar2');
+    bar.style.width = `${(of.mean / worst) * 60}px`;
+    bar.style.background = cssOf(colourOf(of.mean));
+    const { x, y, z, yaw } = of.at;
+    const ratio = CASES[0].mean > 1e-6 ? fixed(of.mean / CASES[0].mean, 2) : '–';
+    const cells = [
+      el('td.words', {}, el('button', { type: 'button', onclick: () => set({ case: k }) }, of.name)),
+      el('td.words', {}, bar, `${fixed(of.mean, 4)} mm`),
+      el('td', {}, fixed(of.max)),
+      el('td', {}, ratio),
+      ...(figures_ ? [el('td', {}, String(figures_[k]))] : []),
+      el('td', {}, [x, y, z].map((value) => fixed(value, 1)).join(', ')),
+      el('td', {}, `${fixed(yaw, 1)}°`),
+      el('td', {}, posturesText(of.postures)),
+      el('td', {}, of.cycle === null ? '–' : `${fixed(of.cycle, 1)} s`),
+    ];
+    return el('tr', { 'data-case': k + 1, onclick: () => set({ case: k }) }, ...cells);
+  });
+  onChange(({ case: isOther }) => {
+    if (isOther) rows.forEach((row, k) => row.setAttribute('aria-selected', String(k === state.case)));
+  });
+  const head = el('thead', {}, el('tr', {}, ...heads.map((name, k) => el(k < 2 ? 'th.words' : 'th', { scope: 'col' }, name))));
+  const table = el('table', { id: 'cases' }, el('caption.sr', {}, 'The cases'), head, el('tbody', {}, ...rows));
+  return el('section.card.scroll', { 'aria-label': 'Cases', tabindex: 0 }, table);
+}

@@ -1,0 +1,120 @@
+// Along the path: play in real time, slider, keys.
+
+const SPEEDS = [1, 2, 4, 8, 0.5];
+let speed = 0;
+let isPlaying = false;
+let lastTick = 0;
+
+/** Times of the points of the case that is shown. */
+const clock = remembered(() => timesOf(current()));
+
+/** Shows whether it plays; the transport puts its button in. */
+let showPlaying = () => {};
+
+function pause() {
+  if (!isPlaying) return;
+  isPlaying = false;
+  showPlaying();
+}
+
+function play() {
+  isPlaying = true;
+  showPlaying();
+  if (state.t >= COUNT - 1) set({ t: 0 });
+  lastTick = 0;
+  requestAnimationFrame(tick);
+}
+
+const playOrPause = () => (isPlaying ? pause() : play());
+
+/** The time at a fractional point. @param {number[]} times @param {number} t */
+function timeAt(times, t) {
+  const i = Math.min(Math.floor(t), COUNT - 1);
+  return times[i] + (t - i) * ((times[i + 1] ?? times[i]) - times[i]);
+}
+
+/** @param {number} now ms */
+function tick(now) {
+  if (!isPlaying) return;
+  if (lastTick) {
+    const times = clock();
+    const time = timeAt(times, state.t) + ((now - lastTick) / 1000) * SPEEDS[speed];
+    let [low, high] = [0, COUNT - 1];
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    const isOver = low >= COUNT - 1;
+    set({ t: isOver ? COUNT - 1 : low + (time - times[low]) / (times[low + 1] - times[low] || 1) }, true);
+    if (isOver) return pause();
+  }
+  lastTick = now;
+  requestAnimationFrame(tick);
+}
+
+function transport() {
+  const button = el('button.play', { type: 'button', id: 'play', 'aria-label': 'Play', onclick: playOrPause }, '▶');
+  showPlaying = () => {
+    button.textContent = isPlaying ? '❚❚' : '▶';
+    button.setAttribute('aria-label', isPlaying ? 'Pause' : 'Play');
+  };
+  const pace = el('button.chip', { type: 'button', id: 'speed', 'aria-label': 'Speed' }, '1×');
+  pace.addEventListener('click', () => {
+    speed = (speed + 1) % SPEEDS.length;
+    pace.textContent = SPEEDS[speed] === 0.5 ? '½×' : `${SPEEDS[speed]}×`;
+  });
+  const slider = /** @type {HTMLInputElement} */ (
+    el('input', { type: 'range', id: 'slider', min: 0, max: COUNT - 1, step: 1, value: 0, 'aria-label': 'Path point' })
+  );
+  slider.addEventListener('input', () => {
+    pause();
+    set({ t: +slider.value });
+  });
+  const strip = /** @type {HTMLCanvasElement} */ (el('canvas.strip', { height: 6, 'aria-hidden': 'true' }));
+  const now = el('div.now', { id: 'now' });
+  onChange(({ case: isOther }) => {
+    const of = current();
+    const i = currentPoint();
+    slider.value = String(state.t);
+    slider.setAttribute('aria-valuetext', `point ${pathPoint(i)}, segment ${SEGMENT[i]}, ${fixed(of.columns.score_mm[i])} mm`);
+    const low = Math.floor(state.t);
+    const isBetween = state.t > low && isMove(low);
+    const words = isBetween ? 'moving over' : `segment ${SEGMENT[i]}`;
+    const parts = [`point ${pathPoint(i)} of ${RAW.task.points - 1}`, words, `posture ${of.columns.posture[i]}`, `β ${fixed(of.columns.beta_deg[i], 1)}°`, `${fixed(timeAt(clock(), state.t), 1)} s`];
+    now.textContent = parts.join(' · ');
+    if (!isOther) return;
+    const wide = Math.min(COUNT, 2000);
+    strip.width = wide;
+    const g = /** @type {CanvasRenderingContext2D} */ (strip.getContext('2d'));
+    for (let x = 0; x < wide; x++) {
+      g.fillStyle = cssOf(colourOf(of.columns.score_mm[Math.floor((x / wide) * COUNT)]));
+      g.fillRect(x, 0, 1, 6);
+    }
+  });
+  return el('section.card.bar', { 'aria-label': 'Position along the tool path' }, button, pace, el('div.track', {}, slider, strip), now);
+}
+
+/** Keys that work wherever nothing else takes them. @param {KeyboardEvent} event */
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const target = /** @type {HTMLElement} */ (event.target);
+  const isOnControl = ['BUTTON', 'SUMMARY', 'A'].includes(target.tagName) || /** @type {any} */ (target).type === 'checkbox';
+  const { key } = event;
+  const i = currentPoint();
+  if (key === 'ArrowRight' || key === 'ArrowLeft') {
+    const step = key === 'ArrowRight' ? 1 : -1;
+    const starts = RUNS.map(([first]) => first);
+    const far = step > 0 ? starts.find((first) => first > i) ?? COUNT - 1 : starts.filter((first) => first < i).pop() ?? 0;
+    pause();
+    set({ t: event.shiftKey ? far : i + step });
+  } else if (key === ' ' && !isOnControl) playOrPause();
+  else if (key >= '1' && key <= String(CASES.length)) set({ case: +key - 1 });
+  else if (key === 'd' || key === 'D') toggleTheme();
+  else if (key === 'Home' || key === 'End') {
+    pause();
+    set({ t: key === 'Home' ? 0 : COUNT - 1 });
+  } else if (key === 'Escape') set({ chosen: null });
+  else return;
+  event.preventDefault();
+}

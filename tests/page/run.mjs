@@ -1,0 +1,132 @@
+// The page in Debian's Chromium: the suite on the shipped page, on one without WebGL, with names that look like markup, in several widths;
+// and on three pages broken on purpose, which must fail.
+//
+//   node run.mjs [FOLDER [OTHER ..]]     FOLDER has report.html; the others further plans of the same arm and spindle
+import { chromium } from 'playwright-core';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import assert from 'node:assert/strict';
+import { open, tests } from './suite.mjs';
+
+const results = fileURLToPath(new URL('../../results/', import.meta.url));
+const [folder = join(results, 'caro-2013'), ...others] = process.argv.slice(2).map((name) => resolve(name));
+if (!process.argv[2]) others.push(join(results, 'caro-2013-k1-0.8'));
+const file = join(folder, 'report.html');
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: [
+    '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync', '--no-first-run',
+  ],
+});
+const scratch = mkdtempSync(join(tmpdir(), 'stead-page-'));
+const html = readFileSync(file, 'utf8');
+let failures = 0;
+
+/** The suite on a page; returns what failed. With `firstOnly` it stops there. */
+async function suite(address, { firstOnly = false } = {}) {
+  const failed = [];
+  const { page, seen, close } = await open(browser, address);
+  for (const [name, test] of Object.entries(tests(folder, others))) {
+    const begun = Date.now();
+    try {
+      const said = await test(page);
+      if (!firstOnly) console.log(`ok    ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)${said ? `: ${said}` : ''}`);
+    } catch (error) {
+      failed.push(`${name}: ${String(error.message).split('\n')[0]}`);
+      if (firstOnly) break;
+      console.log(`FAIL  ${failed.at(-1)}`);
+    }
+  }
+  if (seen.requests.length) failed.push(`asks the network for ${seen.requests}`);
+  if (seen.complaints.length) failed.push(`complains: ${seen.complaints}`);
+  await close();
+  return failed;
+}
+
+/** One more check on its own page. */
+async function check(name, options, address, test) {
+  try {
+    const opened = await open(browser, address, options);
+    await test(opened.page);
+    assert.deepEqual(opened.seen, { requests: [], complaints: [] });
+    await opened.close();
+    console.log(`ok    ${name}`);
+  } catch (error) {
+    failures++;
+    console.log(`FAIL  ${name}: ${String(error.message).split('\n')[0]}`);
+  }
+}
+
+/** The page with another script, which its policy allows. */
+function withScript(change) {
+  const [, script] = html.match(/<script>([^]*?)<\/script>/);
+  const changed = change(script);
+  assert.notEqual(changed, script, 'nothing to break was found');
+  const digest = (text) => createHash('sha256').update(text).digest('base64');
+  return html.replace(script, () => changed).replace(digest(script), () => digest(changed));
+}
+
+function saved(name, text) {
+  const path = join(scratch, name);
+  writeFileSync(path, text);
+  return pathToFileURL(path).href;
+}
+
+const address = pathToFileURL(file).href;
+const found = await suite(address);
+failures += found.length;
+found.filter((one) => !/^[^:]+: /.test(one)).forEach((one) => console.log(`FAIL  ${one}`));
+
+await check('without WebGL it says so and the rest works', {
+  before: () => {
+    const original = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === 'webgl2' ? null : original.call(this, kind, ...rest);
+    };
+  },
+}, address, async (page) => {
+  assert.match(await page.locator('.view').textContent(), /no WebGL2/);
+  await page.keyboard.press('End');
+  await page.waitForFunction(() => document.getElementById('now').textContent.startsWith('point 104 '));
+  assert.equal(await page.locator('#cases tbody tr').count(), 4);
+});
+
+const evil = '<script>window.owned = 1</script><img src=x onerror="window.owned = 1">';
+const data = JSON.parse(html.match(/id="data">([^]*?)<\/script>/)[1]);
+data.robot.name = evil;
+data.inputs.forEach((input) => (input.name = evil));
+data.document.notes = [evil];
+data.document.warnings = [evil];
+const named = html.replace(/id="data">[^]*?<\/script>/, () => `id="data">${JSON.stringify(data).replaceAll('<', '\\u003c')}</script>`);
+await check('names that look like markup are text', {}, saved('names.html', named), async (page) => {
+  assert.ok((await page.locator('h1').textContent()).includes(evil));
+  assert.ok((await page.locator('#messages').textContent()).includes(evil));
+  assert.deepEqual(await page.evaluate(() => [window.owned, document.scripts.length, document.querySelectorAll('img').length]), [undefined, 2, 1]);
+});
+
+for (const width of [380, 800, 1024, 2200]) {
+  await check(`nothing is wider than a window of ${width}`, { width, height: 900, scheme: 'dark' }, address, async (page) => {
+    const [is, may] = await page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
+    assert.ok(is <= may, `${is} pixels in ${may}`);
+  });
+}
+
+const broken = {
+  robot: (script) => script.replace('framesOf(currentJoints(), baseFrame());\n    const part', 'framesOf(CASES[0].joints[0], baseFrame());\n    const part'),
+  map: (script) => script.replace('across_ * map.points.length', 'across_ * map.points.length * 0.9'),
+  play: (script) => script.replace('onclick: playOrPause', 'onclick: pause'),
+};
+for (const [name, change] of Object.entries(broken)) {
+  const [first] = await suite(saved(`${name}.html`, withScript(change)), { firstOnly: true });
+  console.log(first ? `ok    with the ${name} broken it fails: ${first}` : `FAIL  with the ${name} broken nothing fails`);
+  failures += first ? 0 : 1;
+}
+
+await browser.close();
+rmSync(scratch, { recursive: true });
+console.log(failures ? `${failures} failed` : 'all passed');
+process.exit(failures ? 1 : 0);

@@ -1,0 +1,286 @@
+// What must hold of a page in a browser. Each test acts as a user does and compares what is shown with the tables beside the page.
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import assert from 'node:assert/strict';
+
+/** A CSV file as rows by the names of its columns. */
+export function table(file) {
+  const [head, ...lines] = readFileSync(file, 'utf8').trimEnd().split('\n').map((line) => line.split(','));
+  return lines.map((line) => Object.fromEntries(head.map((name, k) => [name, line[k]])));
+}
+
+export const PLANS = ['best.csv', 'best-worst-plan.csv', 'worst.csv', 'worst-worst-plan.csv'];
+const REASONS = { reach: 'out of reach', conditioning: 'near a singularity', deflection: 'deflection above its limit' };
+const reasonText = (code) => REASONS[code] ?? `limit of joint ${code.replace('joint_', '')}`;
+
+/** Opens a page with the network denied; what it asks for and complains of is collected. */
+export async function open(browser, address, { width = 1400, height = 1000, before, scheme = 'light' } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, offline: true });
+  const page = await context.newPage();
+  const seen = { requests: [], complaints: [] };
+  page.on('request', (request) => request.url() !== address && seen.requests.push(request.url()));
+  page.on('console', (message) => message.type() === 'error' && seen.complaints.push(message.text()));
+  page.on('pageerror', (error) => seen.complaints.push(String(error)));
+  if (before) await page.addInitScript(before);
+  await page.goto(address);
+  await page.waitForFunction(() => window.stead?.first > 0, null, { timeout: 20000 });
+  return { page, seen, close: () => context.close() };
+}
+
+const text = (page, id) => page.locator(`#${id}`).textContent();
+/** The view as drawn now, at rest: software draws coarsely while things move. */
+const view = async (page) => Buffer.from(await page.evaluate(() => window.stead.picture()));
+const setSlider = (page, value) =>
+  page.locator('#slider').evaluate((slider, to) => {
+    slider.value = String(to);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  }, value);
+const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+async function shows(page, rows, point) {
+  await frame(page);
+  const row = rows[point];
+  assert.match(await text(page, 'now'), new RegExp(`^point ${point} of ${rows.length - 1} · segment ${row.segment} · posture ${row.posture} `));
+  assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3), `error at point ${point}`);
+  assert.equal(await text(page, 'kappa'), (+row.inverse_condition).toFixed(3), `conditioning at point ${point}`);
+  for (let j = 1; j <= 6; j++) {
+    assert.ok(Math.abs(parseFloat(await text(page, `joint-${j}`)) - row[`theta${j}_deg`]) < 0.051, `joint ${j} at point ${point}`);
+  }
+}
+
+/** The tests by name. `folder` holds the tables of the page, `others` are further folders with plans of the same arm and spindle. */
+export function tests(folder, others) {
+  const plans = PLANS.map((name) => table(join(folder, name)));
+  const placements = table(join(folder, 'placements.csv'));
+  return {
+    'forward kinematics agrees with every plan': async (page) => {
+      let farthest = 0;
+      for (const from of [folder, ...others]) {
+        for (const name of PLANS) {
+          const rows = table(join(from, name));
+          const joints = rows.map((row) => [1, 2, 3, 4, 5, 6].map((j) => +row[`theta${j}_deg`]));
+          const tips = await page.evaluate((all) => all.map((one) => window.stead.framesOf(one)[7].slice(12, 15)), joints);
+          rows.forEach((row, k) => {
+            const off = Math.hypot(tips[k][0] - row.x_mm, tips[k][1] - row.y_mm, tips[k][2] - row.z_mm);
+            farthest = Math.max(farthest, off);
+          });
+        }
+      }
+      assert.ok(farthest < 0.005, `${farthest} mm off`);
+      return `${farthest.toFixed(4)} mm at most`;
+    },
+
+    'the numbers of the page are those of the tables': async (page) => {
+      for (let k = 0; k < 4; k++) {
+        const shown = await page.evaluate((k) => {
+          const of = window.stead.cases[k];
+          return { mean: of.mean, max: of.max, columns: Object.fromEntries(Object.entries(of.columns).map(([n, c]) => [n, [...c]])) };
+        }, k);
+        assert.equal(shown.mean, +placements[k].mean_mm);
+        for (const [name, values] of Object.entries(shown.columns)) {
+          plans[k].forEach((row, i) => assert.equal(values[i], Math.fround(row[name]), `${name} of point ${i}`));
+        }
+        const cells = await page.locator(`#cases tbody tr:nth-child(${k + 1}) td`).allTextContents();
+        assert.equal(cells[1], `${(+placements[k].mean_mm).toFixed(4)} mm`);
+        assert.equal(cells[2], (+placements[k].max_mm).toFixed(3));
+      }
+    },
+
+    'the slider moves robot and figures': async (page) => {
+      await setSlider(page, 0);
+      const first = await view(page);
+      for (const point of [58, 104]) {
+        await setSlider(page, point);
+        await shows(page, plans[0], point);
+      }
+      assert.ok(!first.equals(await view(page)), 'the view stays as it is: the robot does not follow');
+    },
+
+    'keys move along the path and between cases': async (page) => {
+      await page.locator('body').click({ position: { x: 3, y: 3 } });
+      await page.keyboard.press('Home');
+      await shows(page, plans[0], 0);
+      for (let k = 0; k < 3; k++) await page.keyboard.press('ArrowRight');
+      await page.keyboard.press('ArrowLeft');
+      await shows(page, plans[0], 2);
+      await page.keyboard.press('Shift+ArrowRight');
+      const second = plans[0].findIndex((row) => row.segment === '2');
+      await shows(page, plans[0], second);
+      for (const k of [3, 2, 1, 0]) {
+        await page.keyboard.press(String(k + 1));
+        await shows(page, plans[k], second);
+        assert.equal(await text(page, 'mean'), (+placements[k].mean_mm).toFixed(3));
+      }
+      await page.keyboard.press('End');
+      await shows(page, plans[0], plans[0].length - 1);
+      const before = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+      await page.keyboard.press('d');
+      assert.notEqual(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), before);
+      await page.keyboard.press('d');
+    },
+
+    'play runs in real time and stops': async (page) => {
+      await setSlider(page, 0);
+      const first = await view(page);
+      const seconds = async () => parseFloat((await text(page, 'now')).match(/([\d.]+) s$/)[1]);
+      // Between two clicks in the page, however long the browser takes for a frame.
+      const played = await page.evaluate(async () => {
+        const button = document.getElementById('play');
+        button.click();
+        const begun = performance.now();
+        await new Promise((done) => setTimeout(done, 3000));
+        button.click();
+        return (performance.now() - begun) / 1000;
+      });
+      const at = await seconds();
+      assert.ok(at > 0.5 * played - 0.5 && at < 1.1 * played, `after ${played} s of play it is at ${at} s`);
+      assert.ok(!first.equals(await view(page)), 'the view stays as it is');
+      assert.equal(await seconds(), at, 'it goes on after the pause');
+      await page.locator('body').click({ position: { x: 3, y: 3 } });
+      await page.keyboard.press('Space');
+      assert.equal(await page.locator('#play').getAttribute('aria-label'), 'Pause');
+      await page.keyboard.press('ArrowRight');
+      assert.equal(await page.locator('#play').getAttribute('aria-label'), 'Play');
+    },
+
+    'any state of the map can be chosen': async (page) => {
+      await page.keyboard.press('1');
+      await page.evaluate(() => scrollTo(0, 0));
+      const states = table(join(folder, 'deflection-map-best.csv'));
+      const count = states.filter((row) => row.point === '0').length;
+      const points = states.length / count;
+      const surface = page.locator('#map canvas').nth(1);
+      const box = await surface.boundingBox();
+      const [left, right, top, bottom] = [42, 8, 8, 26];
+      const place = (point, k) => [
+        box.x + left + ((point + 0.5) / points) * (box.width - left - right),
+        box.y + top + (1 - k / count) * (box.height - top - bottom),
+      ];
+      const check = async (point, k) => {
+        const row = states[point * count + k];
+        const beta = `β ${(+row.beta_deg).toFixed(1)}°`;
+        const what = row.reason ? reasonText(row.reason) : `${(+row.score_mm).toFixed(4)} mm, posture ${row.posture}`;
+        await frame(page);
+        assert.equal(await text(page, 'map-reading'), `point ${point}, ${beta}: ${what}`);
+        if (row.reason) return;
+        assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3));
+        // The joints shown bring the tool to the point, but for their rounding to 0.02 deg.
+        const off = await page.evaluate(([column, beta, at]) => {
+          const map = window.stead.maps[0];
+          const row = 6 * (column * map.betaCount + beta);
+          const tip = window.stead.framesOf([...map.joints.subarray(row, row + 6)])[7];
+          return Math.hypot(tip[12] - at[0], tip[13] - at[1], tip[14] - at[2]);
+        }, [point, k, ['x_mm', 'y_mm', 'z_mm'].map((name) => +plans[0][point][name])]);
+        assert.ok(off < 1.5, `the robot is ${off} mm off the point`);
+      };
+      await page.mouse.move(...place(3, 60));
+      const allowed = states.findIndex((row) => row.point === '30' && !row.reason) % count;
+      await page.mouse.click(...place(30, allowed));
+      await check(30, allowed);
+      const first = await view(page);
+      const pixel = await page.evaluate(([x, y]) => {
+        const canvas = document.querySelector('#map canvas');
+        const box = canvas.getBoundingClientRect();
+        const ratio = canvas.width / box.width;
+        return [...canvas.getContext('2d').getImageData((x - box.x) * ratio, (y - box.y) * ratio, 1, 1).data];
+      }, place(90, allowed));
+      assert.equal(pixel[3], 255, 'the map is not drawn');
+      // Dragging goes from state to state.
+      await page.mouse.move(...place(30, allowed));
+      await page.mouse.down();
+      await page.mouse.move(...place(70, 100), { steps: 4 });
+      await page.mouse.up();
+      await check(70, 100);
+      assert.ok(!first.equals(await view(page)), 'the robot does not take the state');
+      const blocked = states.findIndex((row) => row.reason);
+      await page.mouse.click(...place(Math.floor(blocked / count), blocked % count));
+      await check(Math.floor(blocked / count), blocked % count);
+      // And with keys.
+      await page.mouse.click(...place(70, 100));
+      await page.locator('#map').focus();
+      await page.keyboard.press('ArrowUp');
+      await check(70, 101);
+      await page.keyboard.press('ArrowLeft');
+      await check(69, 101);
+      await page.keyboard.press('Escape');
+      await shows(page, plans[0], 69);
+    },
+
+    'a row of the table selects its case': async (page) => {
+      await page.locator('#cases tbody tr').nth(2).click();
+      await frame(page);
+      assert.equal(await page.locator('#scene h2').textContent(), 'Worst placement');
+      assert.equal(await text(page, 'mean'), (+placements[2].mean_mm).toFixed(3));
+      assert.equal(await page.locator('#cases tr[aria-selected=true]').getAttribute('data-case'), '3');
+      await page.locator('#cases tbody tr button').first().press('Enter');
+      await frame(page);
+      assert.equal(await page.locator('#scene h2').textContent(), 'Best placement');
+    },
+
+    'the view turns, zooms, and leaves layers out': async (page) => {
+      await page.evaluate(() => scrollTo(0, 0));
+      const box = await page.locator('.view').boundingBox();
+      const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+      let last = await view(page);
+      const differs = async (what) => {
+        const now = await view(page);
+        assert.ok(!last.equals(now), `${what} changes nothing in the view`);
+        last = now;
+      };
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move(x + 120, y - 30, { steps: 4 });
+      await page.mouse.up();
+      await differs('dragging');
+      await page.mouse.wheel(0, -300);
+      await differs('the wheel');
+      await page.locator('.view').focus();
+      await page.keyboard.press('ArrowLeft');
+      await differs('an arrow key');
+      for (const name of ['top', 'front', 'tool', 'cell']) {
+        await page.locator(`[data-view=${name}]`).click();
+        await differs(`the view ${name}`);
+      }
+      for (const name of ['curtain', 'cell', 'reach', 'ghost']) {
+        await page.locator(`[data-layer=${name}]`).click();
+        await differs(`the layer ${name}`);
+        await page.locator(`[data-layer=${name}]`).click();
+      }
+    },
+
+    'a lost context comes back': async (page) => {
+      const before = await view(page);
+      await page.evaluate(async () => {
+        const lose = document.querySelector('.view canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+        lose.loseContext();
+        await new Promise((done) => setTimeout(done, 200));
+        lose.restoreContext();
+        await new Promise((done) => setTimeout(done, 200));
+      });
+      assert.ok(before.equals(await view(page)), 'the view is another one');
+    },
+
+    'everything that takes the focus has a name and shows it': async (page) => {
+      const nameless = await page.evaluate(() =>
+        [...document.querySelectorAll('button, input, [tabindex="0"], canvas:not([aria-hidden])')]
+          .filter((one) => !(one.getAttribute('aria-label') || one.closest('label')?.textContent || one.textContent))
+          .map((one) => one.outerHTML),
+      );
+      assert.deepEqual(nameless, []);
+      await page.locator('body').click({ position: { x: 3, y: 3 } });
+      for (let k = 0; k < 12; k++) {
+        await page.keyboard.press('Tab');
+        const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+        assert.equal(outline, 'solid', await page.evaluate(() => document.activeElement.outerHTML.slice(0, 120)));
+      }
+    },
+
+    'it prints with the view': async (page) => {
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      await page.emulateMedia({ media: 'print' });
+      const still = await page.locator('.still').evaluate((image) => [image.naturalWidth, getComputedStyle(image).display]);
+      await page.emulateMedia({ media: 'screen' });
+      assert.ok(still[0] > 300 && still[1] === 'block', String(still));
+    },
+  };
+}
