@@ -18,8 +18,13 @@ const file = join(folder, 'report.html');
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
   args: [
-    '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
-    '--disable-component-update', '--disable-sync', '--no-first-run',
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+    '--no-first-run',
   ],
 });
 const scratch = mkdtempSync(join(tmpdir(), 'stead-page-'));
@@ -34,7 +39,8 @@ async function suite(address, { firstOnly = false } = {}) {
     const begun = Date.now();
     try {
       const said = await test(page);
-      if (!firstOnly) console.log(`ok    ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)${said ? `: ${said}` : ''}`);
+      if (!firstOnly)
+        console.log(`ok    ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)${said ? `: ${said}` : ''}`);
     } catch (error) {
       failed.push(`${name}: ${String(error.message).split('\n')[0]}`);
       if (firstOnly) break;
@@ -81,19 +87,24 @@ const found = await suite(address);
 failures += found.length;
 found.filter((one) => !/^[^:]+: /.test(one)).forEach((one) => console.log(`FAIL  ${one}`));
 
-await check('without WebGL it says so and the rest works', {
-  before: () => {
-    const original = HTMLCanvasElement.prototype.getContext;
-    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
-      return kind === 'webgl2' ? null : original.call(this, kind, ...rest);
-    };
+await check(
+  'without WebGL it says so and the rest works',
+  {
+    before: () => {
+      const original = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind === 'webgl2' ? null : original.call(this, kind, ...rest);
+      };
+    },
   },
-}, address, async (page) => {
-  assert.match(await page.locator('.view').textContent(), /no WebGL2/);
-  await page.keyboard.press('End');
-  await page.waitForFunction(() => document.getElementById('now').textContent.startsWith('point 104 '));
-  assert.equal(await page.locator('#cases tbody tr').count(), 4);
-});
+  address,
+  async (page) => {
+    assert.match(await page.locator('.view').textContent(), /no WebGL2/);
+    await page.keyboard.press('End');
+    await page.waitForFunction(() => document.getElementById('now').textContent.startsWith('point 104 '));
+    assert.equal(await page.locator('#cases tbody tr').count(), 4);
+  },
+);
 
 const evil = '<script>window.owned = 1</script><img src=x onerror="window.owned = 1">';
 const data = JSON.parse(html.match(/id="data">([^]*?)<\/script>/)[1]);
@@ -101,28 +112,45 @@ data.robot.name = evil;
 data.inputs.forEach((input) => (input.name = evil));
 data.document.notes = [evil];
 data.document.warnings = [evil];
-const named = html.replace(/id="data">[^]*?<\/script>/, () => `id="data">${JSON.stringify(data).replaceAll('<', '\\u003c')}</script>`);
+const named = html.replace(
+  /id="data">[^]*?<\/script>/,
+  () => `id="data">${JSON.stringify(data).replaceAll('<', '\\u003c')}</script>`,
+);
 await check('names that look like markup are text', {}, saved('names.html', named), async (page) => {
   assert.ok((await page.locator('h1').textContent()).includes(evil));
   assert.ok((await page.locator('#messages').textContent()).includes(evil));
-  assert.deepEqual(await page.evaluate(() => [window.owned, document.scripts.length, document.querySelectorAll('img').length]), [undefined, 2, 1]);
+  assert.deepEqual(
+    await page.evaluate(() => [window.owned, document.scripts.length, document.querySelectorAll('img').length]),
+    [undefined, 2, 1],
+  );
 });
 
 for (const width of [380, 800, 1024, 2200]) {
-  await check(`nothing is wider than a window of ${width}`, { width, height: 900, scheme: 'dark' }, address, async (page) => {
-    const [is, may] = await page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
-    assert.ok(is <= may, `${is} pixels in ${may}`);
-  });
+  await check(
+    `nothing is wider than a window of ${width}`,
+    { width, height: 900, scheme: 'dark' },
+    address,
+    async (page) => {
+      const [is, may] = await page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
+      assert.ok(is <= may, `${is} pixels in ${may}`);
+    },
+  );
 }
 
 const broken = {
-  robot: (script) => script.replace('framesOf(currentJoints(), baseFrame());\n    const part', 'framesOf(CASES[0].joints[0], baseFrame());\n    const part'),
+  robot: (script) =>
+    script.replace(
+      'framesOf(currentJoints(), baseFrame());\n    const part',
+      'framesOf(CASES[0].joints[0], baseFrame());\n    const part',
+    ),
   map: (script) => script.replace('across_ * map.points.length', 'across_ * map.points.length * 0.9'),
   play: (script) => script.replace('onclick: playOrPause', 'onclick: pause'),
 };
 for (const [name, change] of Object.entries(broken)) {
   const [first] = await suite(saved(`${name}.html`, withScript(change)), { firstOnly: true });
-  console.log(first ? `ok    with the ${name} broken it fails: ${first}` : `FAIL  with the ${name} broken nothing fails`);
+  console.log(
+    first ? `ok    with the ${name} broken it fails: ${first}` : `FAIL  with the ${name} broken nothing fails`,
+  );
   failures += first ? 0 : 1;
 }
 

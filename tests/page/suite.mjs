@@ -5,7 +5,10 @@ import assert from 'node:assert/strict';
 
 /** A CSV file as rows by the names of its columns. */
 export function table(file) {
-  const [head, ...lines] = readFileSync(file, 'utf8').trimEnd().split('\n').map((line) => line.split(','));
+  const [head, ...lines] = readFileSync(file, 'utf8')
+    .trimEnd()
+    .split('\n')
+    .map((line) => line.split(','));
   return lines.map((line) => Object.fromEntries(head.map((name, k) => [name, line[k]])));
 }
 
@@ -35,16 +38,23 @@ const setSlider = (page, value) =>
     slider.value = String(to);
     slider.dispatchEvent(new Event('input', { bubbles: true }));
   }, value);
-const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+const frame = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 async function shows(page, rows, point) {
   await frame(page);
   const row = rows[point];
-  assert.match(await text(page, 'now'), new RegExp(`^point ${point} of ${rows.length - 1} · segment ${row.segment} · posture ${row.posture} `));
+  assert.match(
+    await text(page, 'now'),
+    new RegExp(`^point ${point} of ${rows.length - 1} · segment ${row.segment} · posture ${row.posture} `),
+  );
   assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3), `error at point ${point}`);
   assert.equal(await text(page, 'kappa'), (+row.inverse_condition).toFixed(3), `conditioning at point ${point}`);
   for (let j = 1; j <= 6; j++) {
-    assert.ok(Math.abs(parseFloat(await text(page, `joint-${j}`)) - row[`theta${j}_deg`]) < 0.051, `joint ${j} at point ${point}`);
+    assert.ok(
+      Math.abs(parseFloat(await text(page, `joint-${j}`)) - row[`theta${j}_deg`]) < 0.051,
+      `joint ${j} at point ${point}`,
+    );
   }
 }
 
@@ -59,7 +69,10 @@ export function tests(folder, others) {
         for (const name of PLANS) {
           const rows = table(join(from, name));
           const joints = rows.map((row) => [1, 2, 3, 4, 5, 6].map((j) => +row[`theta${j}_deg`]));
-          const tips = await page.evaluate((all) => all.map((one) => window.stead.framesOf(one)[7].slice(12, 15)), joints);
+          const tips = await page.evaluate(
+            (all) => all.map((one) => window.stead.framesOf(one)[7].slice(12, 15)),
+            joints,
+          );
           rows.forEach((row, k) => {
             const off = Math.hypot(tips[k][0] - row.x_mm, tips[k][1] - row.y_mm, tips[k][2] - row.z_mm);
             farthest = Math.max(farthest, off);
@@ -74,7 +87,11 @@ export function tests(folder, others) {
       for (let k = 0; k < 4; k++) {
         const shown = await page.evaluate((k) => {
           const of = window.stead.cases[k];
-          return { mean: of.mean, max: of.max, columns: Object.fromEntries(Object.entries(of.columns).map(([n, c]) => [n, [...c]])) };
+          return {
+            mean: of.mean,
+            max: of.max,
+            columns: Object.fromEntries(Object.entries(of.columns).map(([n, c]) => [n, [...c]])),
+          };
         }, k);
         assert.equal(shown.mean, +placements[k].mean_mm);
         for (const [name, values] of Object.entries(shown.columns)) {
@@ -165,12 +182,15 @@ export function tests(folder, others) {
         if (row.reason) return;
         assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3));
         // The joints shown bring the tool to the point, but for their rounding to 0.02 deg.
-        const off = await page.evaluate(([column, beta, at]) => {
-          const map = window.stead.maps[0];
-          const row = 6 * (column * map.betaCount + beta);
-          const tip = window.stead.framesOf([...map.joints.subarray(row, row + 6)])[7];
-          return Math.hypot(tip[12] - at[0], tip[13] - at[1], tip[14] - at[2]);
-        }, [point, k, ['x_mm', 'y_mm', 'z_mm'].map((name) => +plans[0][point][name])]);
+        const off = await page.evaluate(
+          ([column, beta, at]) => {
+            const map = window.stead.maps[0];
+            const row = 6 * (column * map.betaCount + beta);
+            const tip = window.stead.framesOf([...map.joints.subarray(row, row + 6)])[7];
+            return Math.hypot(tip[12] - at[0], tip[13] - at[1], tip[14] - at[2]);
+          },
+          [point, k, ['x_mm', 'y_mm', 'z_mm'].map((name) => +plans[0][point][name])],
+        );
         assert.ok(off < 1.5, `the robot is ${off} mm off the point`);
       };
       await page.mouse.move(...place(3, 60));
@@ -178,12 +198,15 @@ export function tests(folder, others) {
       await page.mouse.click(...place(30, allowed));
       await check(30, allowed);
       const first = await view(page);
-      const pixel = await page.evaluate(([x, y]) => {
-        const canvas = document.querySelector('#map canvas');
-        const box = canvas.getBoundingClientRect();
-        const ratio = canvas.width / box.width;
-        return [...canvas.getContext('2d').getImageData((x - box.x) * ratio, (y - box.y) * ratio, 1, 1).data];
-      }, place(90, allowed));
+      const pixel = await page.evaluate(
+        ([x, y]) => {
+          const canvas = document.querySelector('#map canvas');
+          const box = canvas.getBoundingClientRect();
+          const ratio = canvas.width / box.width;
+          return [...canvas.getContext('2d').getImageData((x - box.x) * ratio, (y - box.y) * ratio, 1, 1).data];
+        },
+        place(90, allowed),
+      );
       assert.equal(pixel[3], 255, 'the map is not drawn');
       // Dragging goes from state to state.
       await page.mouse.move(...place(30, allowed));
@@ -278,7 +301,9 @@ export function tests(folder, others) {
     'it prints with the view': async (page) => {
       await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
       await page.emulateMedia({ media: 'print' });
-      const still = await page.locator('.still').evaluate((image) => [image.naturalWidth, getComputedStyle(image).display]);
+      const still = await page
+        .locator('.still')
+        .evaluate((image) => [image.naturalWidth, getComputedStyle(image).display]);
       await page.emulateMedia({ media: 'screen' });
       assert.ok(still[0] > 300 && still[1] === 'block', String(still));
     },

@@ -9,7 +9,12 @@ const BODIES = RAW.bodies.map((/** @type {any} */ body) => {
   const bytes = bytesOf(body.triangles).buffer;
   const triangles = body.wide ? new Uint32Array(bytes) : new Uint16Array(bytes);
   const colour = body.color.map((/** @type {number} */ part) => Math.round(part * 255));
-  return { name: body.name, frame: body.frame, isIllustration: body.is_illustration, mesh: smoothed(corners, triangles, colour) };
+  return {
+    name: body.name,
+    frame: body.frame,
+    isIllustration: body.is_illustration,
+    mesh: smoothed(corners, triangles, colour),
+  };
 });
 
 /** Bodies that move together, as one mesh. @param {string} frame @returns {Mesh} */
@@ -37,7 +42,8 @@ const HAS_ILLUSTRATIONS = BODIES.some((body) => body.isIllustration);
 const FLOOR = (() => {
   let lowest = Infinity;
   for (const body of BODIES) {
-    if (body.frame === 'base') for (let k = 2; k < body.mesh.p.length; k += 3) lowest = Math.min(lowest, body.mesh.p[k]);
+    if (body.frame === 'base')
+      for (let k = 2; k < body.mesh.p.length; k += 3) lowest = Math.min(lowest, body.mesh.p[k]);
   }
   return Number.isFinite(lowest) ? lowest : Math.min(...CASES.map((of) => of.at.z), 0) - 300;
 })();

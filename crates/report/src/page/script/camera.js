@@ -11,15 +11,52 @@ function lookAt(eye, target, up) {
 /** @param {number} angle @param {number} aspect @param {number} near @param {number} far @returns {Mat} */
 function perspective(angle, aspect, near, far) {
   const s = 1 / Math.tan(angle / 2);
-  return [s / aspect, 0, 0, 0, 0, s, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
+  return [
+    s / aspect,
+    0,
+    0,
+    0,
+    0,
+    s,
+    0,
+    0,
+    0,
+    0,
+    (far + near) / (near - far),
+    -1,
+    0,
+    0,
+    (2 * far * near) / (near - far),
+    0,
+  ];
 }
 
 /** @param {number} half @param {number} near @param {number} far @returns {Mat} */
-const parallel = (half, near, far) =>
-  [1 / half, 0, 0, 0, 0, 1 / half, 0, 0, 0, 0, -2 / (far - near), 0, 0, 0, -(far + near) / (far - near), 1];
+const parallel = (half, near, far) => [
+  1 / half,
+  0,
+  0,
+  0,
+  0,
+  1 / half,
+  0,
+  0,
+  0,
+  0,
+  -2 / (far - near),
+  0,
+  0,
+  0,
+  -(far + near) / (far - near),
+  1,
+];
 
 /** The middle of the path as placed. @param {Case} of @returns {Vec} */
-const middleOf = (of) => moved(workpieceFrame(of), EXTENT.map(([low, high]) => (low + high) / 2));
+const middleOf = (of) =>
+  moved(
+    workpieceFrame(of),
+    EXTENT.map(([low, high]) => (low + high) / 2),
+  );
 
 /** Where the scene looks to: between the robot and the places of the workpiece. */
 const WORK = CASES.reduce((sum, of) => add(sum, times(middleOf(of), 1 / CASES.length)), [0, 0, 0]);
@@ -30,8 +67,10 @@ const WORK_SIDE = Math.atan2(WORK[1], WORK[0]);
 /** The eye of a named view. @param {string} name @returns {Eye} */
 function viewOf(name) {
   const [far, middle] = [FARTHEST, [WORK[0] * 0.52, WORK[1] * 0.52, 0.05 * FARTHEST]];
-  if (name === 'top') return { around: WORK_SIDE, up: 1.5, distance: 2.6 * far, target: [middle[0], middle[1], -0.1 * far] };
-  if (name === 'front') return { around: WORK_SIDE, up: 0.06, distance: 2.4 * far, target: [middle[0], middle[1], 0.08 * far] };
+  if (name === 'top')
+    return { around: WORK_SIDE, up: 1.5, distance: 2.6 * far, target: [middle[0], middle[1], -0.1 * far] };
+  if (name === 'front')
+    return { around: WORK_SIDE, up: 0.06, distance: 2.4 * far, target: [middle[0], middle[1], 0.08 * far] };
   if (name === 'tool') {
     const tip = moved(framesOf(currentJoints(), baseFrame())[7], [0, 0, 0]);
     return { around: WORK_SIDE + 0.6, up: 0.42, distance: clamp(2.6 * PATH_SIZE, 0.25 * far, 0.8 * far), target: tip };
@@ -41,7 +80,13 @@ function viewOf(name) {
 
 /** @param {Eye} eye @returns {Vec} */
 const placeOf = (eye) =>
-  add(eye.target, times([Math.cos(eye.up) * Math.cos(eye.around), Math.cos(eye.up) * Math.sin(eye.around), Math.sin(eye.up)], eye.distance));
+  add(
+    eye.target,
+    times(
+      [Math.cos(eye.up) * Math.cos(eye.around), Math.cos(eye.up) * Math.sin(eye.around), Math.sin(eye.up)],
+      eye.distance,
+    ),
+  );
 
 /** Moves the eye by hand. @param {HTMLElement} surface @param {Eye} eye @param {() => void} changed */
 function steer(surface, eye, changed) {

@@ -2,8 +2,13 @@
 
 /** @param {string[]} heads @param {(string | number | Node)[][]} rows */
 function smallTable(heads, rows) {
-  const cell = (/** @type {string | number | Node} */ value, /** @type {number} */ k) => el(k ? 'td' : 'td.words', {}, value);
-  const head = el('thead', {}, el('tr', {}, ...heads.map((name, k) => el(k ? 'th' : 'th.words', { scope: 'col' }, name))));
+  const cell = (/** @type {string | number | Node} */ value, /** @type {number} */ k) =>
+    el(k ? 'td' : 'td.words', {}, value);
+  const head = el(
+    'thead',
+    {},
+    el('tr', {}, ...heads.map((name, k) => el(k ? 'th' : 'th.words', { scope: 'col' }, name))),
+  );
   return el('table', {}, head, el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map(cell)))));
 }
 
@@ -14,12 +19,27 @@ function messages() {
   const certificate = RAW.certificate?.warnings || [];
   const all = [...warnings, ...certificate.filter((/** @type {string} */ text) => !warnings.includes(text))];
   const parts = [];
-  if (all.length) parts.push(el('div.warnings', { role: 'note' }, el('b', {}, all.length === 1 ? 'Warning' : `${all.length} warnings`), list(all)));
+  if (all.length)
+    parts.push(
+      el(
+        'div.warnings',
+        { role: 'note' },
+        el('b', {}, all.length === 1 ? 'Warning' : `${all.length} warnings`),
+        list(all),
+      ),
+    );
   if (notes.length) {
-    const summary = el('summary', {}, notes.length === 1 ? '1 note' : `${notes.length} notes`, ' on what the result rests on');
+    const summary = el(
+      'summary',
+      {},
+      notes.length === 1 ? '1 note' : `${notes.length} notes`,
+      ' on what the result rests on',
+    );
     parts.push(el('details', { open: notes.length <= 3 }, summary, list(notes)));
   }
-  return parts.length ? el('section.card.messages', { 'aria-label': 'Notes and warnings', id: 'messages' }, ...parts) : null;
+  return parts.length
+    ? el('section.card.messages', { 'aria-label': 'Notes and warnings', id: 'messages' }, ...parts)
+    : null;
 }
 
 /** What holds the best and the worst placement. */
@@ -27,9 +47,18 @@ function boundsCard() {
   const held = CASES.filter((of) => of.plan === 0 && of.entry.active_bounds?.length);
   if (!held.length) return null;
   const rows = held.flatMap((of) =>
-    of.entry.active_bounds.map((/** @type {any} */ bound) => [of.place ? 'Worst' : 'Best', bound.bound, bound.side, `${figures(bound.gain)} ${bound.unit}`]),
+    of.entry.active_bounds.map((/** @type {any} */ bound) => [
+      of.place ? 'Worst' : 'Best',
+      bound.bound,
+      bound.side,
+      `${figures(bound.gain)} ${bound.unit}`,
+    ]),
   );
-  return card('What holds the placements', 'what moving a bound would gain', smallTable(['Placement', 'Bound', 'Side', 'Gain'], rows));
+  return card(
+    'What holds the placements',
+    'what moving a bound would gain',
+    smallTable(['Placement', 'Bound', 'Side', 'Gain'], rows),
+  );
 }
 
 /** The genetic searches, generation by generation. */
@@ -37,7 +66,10 @@ function convergenceCard() {
   if (!RAW.convergence) return null;
   const columns = RAW.convergence;
   const [generation, best] = [singlesOf(columns.generation), singlesOf(columns.best_mm)];
-  const of = (/** @type {string} */ search) => columns.search.map((/** @type {string} */ name, /** @type {number} */ k) => (name === search ? k : -1)).filter((/** @type {number} */ k) => k >= 0);
+  const of = (/** @type {string} */ search) =>
+    columns.search
+      .map((/** @type {string} */ name, /** @type {number} */ k) => (name === search ? k : -1))
+      .filter((/** @type {number} */ k) => k >= 0);
   const line = (/** @type {string} */ search, /** @type {string} */ colour) => ({
     name: `${search} so far`,
     x: of(search).map((/** @type {number} */ k) => generation[k]),
@@ -51,10 +83,19 @@ function convergenceCard() {
   const range = /** @type {[number, number]} */ ([0, Math.max(...values) * 1.05]);
   const last = generation.reduce((a, b) => Math.max(a, b), 1);
   const chart = lineChart({
-    label: 'Convergence of the search', lines: () => lines, range: () => range, xRange: () => [0, last],
-    xText: (x) => `${Math.round(x)}`, digits: 4, zoomable: true,
+    label: 'Convergence of the search',
+    lines: () => lines,
+    range: () => range,
+    xRange: () => [0, last],
+    xText: (x) => `${Math.round(x)}`,
+    digits: 4,
+    zoomable: true,
   });
-  return card('Search', 'best and worst objective in mm over generations; drag to zoom, double click to reset', chart.host);
+  return card(
+    'Search',
+    'best and worst objective in mm over generations; drag to zoom, double click to reset',
+    chart.host,
+  );
 }
 
 /** How far the placements can be from the best and the worst possible. */
@@ -63,12 +104,22 @@ function certificateCard() {
   if (!found) return null;
   const rows = [];
   const relaxed = [];
-  for (const [name, side, reason] of [['Best', found.best, found.best_reason], ['Worst', found.worst, found.worst_reason]]) {
+  for (const [name, side, reason] of [
+    ['Best', found.best, found.best_reason],
+    ['Worst', found.worst, found.worst_reason],
+  ]) {
     if (!side) {
       rows.push([name, '–', '–', '–', '–', reason || '']);
       continue;
     }
-    rows.push([name, fixed(side.value_mm, 4), fixed(side.bound_mm, 4), `${fixed(side.gap_percent, 3)} %`, String(side.open_boxes), reason || '']);
+    rows.push([
+      name,
+      fixed(side.value_mm, 4),
+      fixed(side.bound_mm, 4),
+      `${fixed(side.gap_percent, 3)} %`,
+      String(side.open_boxes),
+      reason || '',
+    ]);
     relaxed.push(`${name}: ${side.limits_relaxed.join(', ') || 'none'}`);
   }
   const heads = ['Placement', 'Found mm', 'Bound mm', 'Gap', 'Open boxes', 'Short of what was asked'];
@@ -88,7 +139,13 @@ function sensitivityCard() {
   if (rows.length) parts.push(smallTable(['% of mean per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
   if (force) {
     const share_ = fixed(force.force_uncertainty * 100, 0);
-    parts.push(el('p.sub', {}, `With force errors of ${share_} % the best placement moves by ${fixed(force.distance_mm, 1)} mm and ${fixed(force.turn_deg, 1)}°.`));
+    parts.push(
+      el(
+        'p.sub',
+        {},
+        `With force errors of ${share_} % the best placement moves by ${fixed(force.distance_mm, 1)} mm and ${fixed(force.turn_deg, 1)}°.`,
+      ),
+    );
   }
   return card('Sensitivity', 'to the stiffness of the joints and to the force', ...parts);
 }
@@ -97,8 +154,17 @@ function sensitivityCard() {
 function setsCard() {
   const sets = RAW.document.stiffness_sets;
   if (!sets) return null;
-  const rows = sets.sets.map((/** @type {any} */ one) => [one.robot, fixed(one.mean_mm, 4), fixed(one.best_alone_mm, 4), one.regret === null ? '–' : `${fixed(one.regret * 100, 2)} %`]);
-  return card('Stiffness sets', 'the best placement under each', smallTable(['Robot file', 'Mean mm', 'Best alone mm', 'Regret'], rows));
+  const rows = sets.sets.map((/** @type {any} */ one) => [
+    one.robot,
+    fixed(one.mean_mm, 4),
+    fixed(one.best_alone_mm, 4),
+    one.regret === null ? '–' : `${fixed(one.regret * 100, 2)} %`,
+  ]);
+  return card(
+    'Stiffness sets',
+    'the best placement under each',
+    smallTable(['Robot file', 'Mean mm', 'Best alone mm', 'Regret'], rows),
+  );
 }
 
 /** Critical depth of cut along the path. */
@@ -108,16 +174,38 @@ function stabilityCard() {
   const depths = RAW.depths.map((/** @type {any} */ columns) => singlesOf(columns.critical_depth_mm));
   const most = Math.max(said.max_depth_mm || 0, said.axial_depth_mm) * 1.1;
   const names = IS_SCORE ? ['best plan', 'worst plan'] : ['best placement', 'worst placement'];
-  const lines = depths.map((/** @type {Float32Array} */ y, /** @type {number} */ k) => ({ name: names[k], y, colour: k ? '--bad' : '--good', width: 2 }));
-  const chart = alongPath('Critical depth', { lines: () => lines, range: () => [0, most], limits: () => [said.axial_depth_mm], xTicks: pointTicks, xText: pointText });
+  const lines = depths.map((/** @type {Float32Array} */ y, /** @type {number} */ k) => ({
+    name: names[k],
+    y,
+    colour: k ? '--bad' : '--good',
+    width: 2,
+  }));
+  const chart = alongPath('Critical depth', {
+    lines: () => lines,
+    range: () => [0, most],
+    limits: () => [said.axial_depth_mm],
+    xTicks: pointTicks,
+    xText: pointText,
+  });
   const words = names.map((name, k) => {
     const one = k ? said.worst : said.best;
     return `${name}: ${one.stable ? 'stable at every point' : `chatters at ${one.points_that_chatter} points`}`;
   });
-  return card('Critical depth of cut', `mm; the cut is ${said.axial_depth_mm} mm deep. ${words.join('; ')}`, chart.host);
+  return card(
+    'Critical depth of cut',
+    `mm; the cut is ${said.axial_depth_mm} mm deep. ${words.join('; ')}`,
+    chart.host,
+  );
 }
 
 function furtherCards() {
-  const cards = [boundsCard(), sensitivityCard(), setsCard(), certificateCard(), stabilityCard(), convergenceCard()].filter(Boolean);
+  const cards = [
+    boundsCard(),
+    sensitivityCard(),
+    setsCard(),
+    certificateCard(),
+    stabilityCard(),
+    convergenceCard(),
+  ].filter(Boolean);
   return cards.length ? el('div.further', {}, .../** @type {HTMLElement[]} */ (cards)) : null;
 }

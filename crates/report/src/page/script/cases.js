@@ -9,14 +9,26 @@ function posturesText(postures) {
     if (last && last[0] === posture) last[1]++;
     else runs.push([posture, 1]);
   }
-  const text = runs.map(([posture, count]) => (count > 2 ? `${posture}×${count}` : Array(count).fill(posture).join(' '))).join(' ');
+  const text = runs
+    .map(([posture, count]) => (count > 2 ? `${posture}×${count}` : Array(count).fill(posture).join(' ')))
+    .join(' ');
   return text.length > 40 ? `${postures.length} segments` : text;
 }
 
 function casesCard() {
   const worst = CASES.reduce((most, of) => Math.max(most, of.mean), 0) || 1;
   const figures_ = RAW.document.reference?.case_mm;
-  const heads = ['Case', 'Mean', 'Largest', 'Ratio', ...(figures_ ? ['Published'] : []), 'x, y, z mm', 'Yaw', 'Postures', 'Cycle'];
+  const heads = [
+    'Case',
+    'Mean',
+    'Largest',
+    'Ratio',
+    ...(figures_ ? ['Published'] : []),
+    'x, y, z mm',
+    'Yaw',
+    'Postures',
+    'Cycle',
+  ];
   const rows = CASES.map((of, k) => {
     const bar = el('span.bar2');
     bar.style.width = `${(of.mean / worst) * 60}px`;
@@ -39,7 +51,11 @@ function casesCard() {
   onChange(({ case: isOther }) => {
     if (isOther) rows.forEach((row, k) => row.setAttribute('aria-selected', String(k === state.case)));
   });
-  const head = el('thead', {}, el('tr', {}, ...heads.map((name, k) => el(k < 2 ? 'th.words' : 'th', { scope: 'col' }, name))));
+  const head = el(
+    'thead',
+    {},
+    el('tr', {}, ...heads.map((name, k) => el(k < 2 ? 'th.words' : 'th', { scope: 'col' }, name))),
+  );
   const table = el('table', { id: 'cases' }, el('caption.sr', {}, 'The cases'), head, el('tbody', {}, ...rows));
   return el('section.card.scroll', { 'aria-label': 'Cases', tabindex: 0 }, table);
 }

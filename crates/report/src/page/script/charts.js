@@ -7,7 +7,10 @@ const DEFLECTIONS = /** @type {[string, string][]} */ ([
   ['axis', 'axial_mm'],
   ['total', 'total_mm'],
 ]).filter(([, column]) => column in CASES[0].columns);
-let deflection = Math.max(0, DEFLECTIONS.findIndex(([name]) => name === DIRECTION));
+let deflection = Math.max(
+  0,
+  DEFLECTIONS.findIndex(([name]) => name === DIRECTION),
+);
 
 /** Pointing to a chart moves the tool there. @param {number} x */
 const moveTo = (x) => {
@@ -30,7 +33,8 @@ const alongPath = (label, wants) =>
 /** The case with the same plan at the other placement, and that with the other plan here. @returns {[Case | undefined, Case]} */
 function beside() {
   const of = current();
-  const find = (/** @type {number} */ place, /** @type {number} */ plan) => CASES.find((one) => one.place === place && one.plan === plan);
+  const find = (/** @type {number} */ place, /** @type {number} */ plan) =>
+    CASES.find((one) => one.place === place && one.plan === plan);
   return [find(1 - of.place, of.plan), /** @type {Case} */ (find(of.place, 1 - of.plan))];
 }
 
@@ -49,17 +53,30 @@ function linesBeside(column, withPlan) {
 const pointTicks = (low, high) => ticksBetween(low, high, 5).filter((x) => Number.isInteger(x) && x < COUNT);
 
 function deflectionCard() {
-  const absolute = (/** @type {Case} */ of) => of.columns[DEFLECTIONS[deflection][1]].map((mm) => Math.max(Math.abs(mm), SCALE[0] / 100));
+  const absolute = (/** @type {Case} */ of) =>
+    of.columns[DEFLECTIONS[deflection][1]].map((mm) => Math.max(Math.abs(mm), SCALE[0] / 100));
   const range = () => {
     const most = CASES.reduce((sum, of) => absolute(of).reduce((a, b) => Math.max(a, b), sum), 0);
     return /** @type {[number, number]} */ ([Math.min(SCALE[0], most / 100), Math.max(SCALE[1], most)]);
   };
-  const chart = alongPath('Deflection', { lines: () => linesBeside(absolute, true), range, log: true, xTicks: pointTicks, xText: pointText, digits: 4 });
-  const parts = choice('Direction of the deflection', DEFLECTIONS.map(([name]) => name), () => deflection, (k) => {
-    deflection = k;
-    chart.refresh();
-    set({});
+  const chart = alongPath('Deflection', {
+    lines: () => linesBeside(absolute, true),
+    range,
+    log: true,
+    xTicks: pointTicks,
+    xText: pointText,
+    digits: 4,
   });
+  const parts = choice(
+    'Direction of the deflection',
+    DEFLECTIONS.map(([name]) => name),
+    () => deflection,
+    (k) => {
+      deflection = k;
+      chart.refresh();
+      set({});
+    },
+  );
   const out = card('Deflection', 'mm, logarithmic', chart.host);
   /** @type {HTMLElement} */ (out.firstChild).append(parts);
   return out;
@@ -73,8 +90,19 @@ const share = (j, angle) => ((angle - ROWS[j].min) / (ROWS[j].max - ROWS[j].min)
 
 function jointsCard() {
   const lines = () =>
-    ROWS.map((_, j) => ({ name: `A${j + 1}`, y: current().joints.map((angles) => share(j, angles[j])), colour: JOINT_COLOURS[j] }));
-  const chart = alongPath('Joints', { lines: remembered(lines), range: () => [0, 100], xTicks: pointTicks, xText: pointText, digits: 0, endNames: true });
+    ROWS.map((_, j) => ({
+      name: `A${j + 1}`,
+      y: current().joints.map((angles) => share(j, angles[j])),
+      colour: JOINT_COLOURS[j],
+    }));
+  const chart = alongPath('Joints', {
+    lines: remembered(lines),
+    range: () => [0, 100],
+    xTicks: pointTicks,
+    xText: pointText,
+    digits: 0,
+    endNames: true,
+  });
   return card('Joints within their limits', '% of range', chart.host);
 }
 
@@ -97,7 +125,11 @@ function conditioningCard() {
   const most = CASES.reduce((sum, of) => column(of).reduce((a, b) => Math.max(a, b), sum), LIMITS.inverse);
   const range = () => /** @type {[number, number]} */ ([0, Math.ceil(most * 10) / 10]);
   const chart = alongPath('Conditioning', {
-    lines: () => linesBeside(column, false), range, limits: () => [LIMITS.inverse], xTicks: pointTicks, xText: pointText,
+    lines: () => linesBeside(column, false),
+    range,
+    limits: () => [LIMITS.inverse],
+    xTicks: pointTicks,
+    xText: pointText,
   });
   return card('Conditioning 1/κ', `limit ${LIMITS.inverse}`, chart.host);
 }
@@ -107,7 +139,13 @@ function clearanceCard() {
   if (!('clearance_mm' in CASES[0].columns)) return null;
   const column = (/** @type {Case} */ of) => of.columns.clearance_mm;
   const most = CASES.reduce((sum, of) => column(of).reduce((a, b) => (b > a ? b : a), sum), 1);
-  const chart = alongPath('Clearance', { lines: () => linesBeside(column, false), range: () => [0, most], xTicks: pointTicks, xText: pointText, digits: 1 });
+  const chart = alongPath('Clearance', {
+    lines: () => linesBeside(column, false),
+    range: () => [0, most],
+    xTicks: pointTicks,
+    xText: pointText,
+    digits: 1,
+  });
   return card('Clearance', 'mm', chart.host);
 }
 

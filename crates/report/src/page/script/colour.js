@@ -54,6 +54,7 @@ function themeColour(name) {
 }
 
 /** The same as numbers to 1. @param {string} name @returns {number[]} */
-const themeRgb = (name) => (themeColour(name).match(/[\d.]+/g) || ['0', '0', '0']).slice(0, 3).map((part) => +part / 255);
+const themeRgb = (name) =>
+  (themeColour(name).match(/[\d.]+/g) || ['0', '0', '0']).slice(0, 3).map((part) => +part / 255);
 
 const JOINT_COLOURS = ['--j1', '--j2', '--j3', '--j4', '--j5', '--j6'];

@@ -13,7 +13,8 @@ function el(name, attributes = {}, ...children) {
   if (classes.length) made.className = classes.join(' ');
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith('on')) made.addEventListener(key.slice(2), value);
-    else if (value !== null && value !== undefined && value !== false) made.setAttribute(key, value === true ? '' : String(value));
+    else if (value !== null && value !== undefined && value !== false)
+      made.setAttribute(key, value === true ? '' : String(value));
   }
   for (const child of children) {
     if (child !== null && child !== undefined) made.append(child instanceof Node ? child : String(child));
@@ -27,11 +28,17 @@ function fixed(value, digits = 3) {
 }
 
 /** A number by its three leading figures. @param {number} value */
-const figures = (value) => (value === 0 ? '0' : Math.abs(value) >= 1e-3 ? String(+value.toPrecision(3)) : value.toExponential(2));
+const figures = (value) =>
+  value === 0 ? '0' : Math.abs(value) >= 1e-3 ? String(+value.toPrecision(3)) : value.toExponential(2);
 
 /** A card with a heading. @param {string} title @param {string} hint @param {...(Node | string)} children */
 const card = (title, hint, ...children) =>
-  el('section.card', { 'aria-label': title }, el('div.head', {}, el('h2', {}, title), el('span.sub', {}, hint)), ...children);
+  el(
+    'section.card',
+    { 'aria-label': title },
+    el('div.head', {}, el('h2', {}, title), el('span.sub', {}, hint)),
+    ...children,
+  );
 
 /** Buttons of which one is chosen. @param {string} label @param {string[]} names @param {() => number} get @param {(k: number) => void} put */
 function choice(label, names, get, put) {

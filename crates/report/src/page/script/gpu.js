@@ -6,7 +6,10 @@
 /** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {Program} */
 function programOf(gl, vertex, fragment) {
   const program = gl.createProgram();
-  for (const [type, source] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+  for (const [type, source] of /** @type {[number, string][]} */ ([
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ])) {
     const shader = /** @type {WebGLShader} */ (gl.createShader(type));
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
@@ -30,7 +33,9 @@ function programOf(gl, vertex, fragment) {
 function buffersOf(gl, mesh, form = gl.TRIANGLES) {
   const array = gl.createVertexArray();
   gl.bindVertexArray(array);
-  const colours = mesh.c.length ? Float32Array.from(mesh.c, (part) => part / 255) : new Float32Array(mesh.p.length).fill(1);
+  const colours = mesh.c.length
+    ? Float32Array.from(mesh.c, (part) => part / 255)
+    : new Float32Array(mesh.p.length).fill(1);
   const normals = mesh.n.length ? mesh.n : new Float32Array(mesh.p.length);
   const buffers = [mesh.p, normals, colours].map((data, k) => {
     const buffer = gl.createBuffer();
@@ -70,7 +75,8 @@ function shadowTarget(gl, pixels) {
     [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
     [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
     [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
-  ]) gl.texParameteri(gl.TEXTURE_2D, key, value);
+  ])
+    gl.texParameteri(gl.TEXTURE_2D, key, value);
   const target = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, target);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture, 0);

@@ -9,11 +9,31 @@ function verdict() {
   const times_ = (/** @type {number} */ k) =>
     CASES[0].mean > 1e-6 ? [': ', strong(`${fixed(CASES[k].mean / CASES[0].mean, 1)} times`), ' as much'] : [''];
   const out = IS_SCORE
-    ? el('p', {}, `At this placement the ${SCORED} is off by `, mm(0), ' in the mean with the best plan of the spindle angle, by ', mm(1), ' with the worst', ...times_(1), '.')
-    : el('p', {}, `At the best placement in the cell the ${SCORED} is off by `, mm(0), ' in the mean, at the worst by ', mm(2), ...times_(2), ' for the same robot, tool and cut.');
+    ? el(
+        'p',
+        {},
+        `At this placement the ${SCORED} is off by `,
+        mm(0),
+        ' in the mean with the best plan of the spindle angle, by ',
+        mm(1),
+        ' with the worst',
+        ...times_(1),
+        '.',
+      )
+    : el(
+        'p',
+        {},
+        `At the best placement in the cell the ${SCORED} is off by `,
+        mm(0),
+        ' in the mean, at the worst by ',
+        mm(2),
+        ...times_(2),
+        ' for the same robot, tool and cut.',
+      );
   const { document: said } = RAW;
   if (said.interrupted) out.append(' The search was stopped before its end: this is the best result so far.');
-  if (RAW.thinned) out.append(` Drawn with ${RAW.thinned.shown} of ${RAW.thinned.points} path points; the figures are of all.`);
+  if (RAW.thinned)
+    out.append(` Drawn with ${RAW.thinned.shown} of ${RAW.thinned.points} path points; the figures are of all.`);
   return out;
 }
 
@@ -25,8 +45,18 @@ function toggleTheme() {
 function header() {
   const pick = (/** @type {number} */ place, /** @type {number} */ plan) =>
     set({ case: CASES.findIndex((one) => one.place === place && one.plan === plan) });
-  const places = choice('Placement', ['Best place', 'Worst place'], () => current().place, (k) => pick(k, current().plan));
-  const plans = choice('Plan of the spindle angle', ['Best plan', 'Worst plan'], () => current().plan, (k) => pick(current().place, k));
+  const places = choice(
+    'Placement',
+    ['Best place', 'Worst place'],
+    () => current().place,
+    (k) => pick(k, current().plan),
+  );
+  const plans = choice(
+    'Plan of the spindle angle',
+    ['Best plan', 'Worst plan'],
+    () => current().plan,
+    (k) => pick(current().place, k),
+  );
   const count = RAW.task.points;
   const segments = RAW.task.segments;
   const what = `${RAW.robot.name} · ${count} path point${count === 1 ? '' : 's'}, ${segments} segment${segments === 1 ? '' : 's'}`;
@@ -40,7 +70,17 @@ function header() {
       {},
       CASES.length > 2 ? places : null,
       plans,
-      el('button.icon', { type: 'button', id: 'theme', 'aria-label': 'Light or dark', title: 'Light or dark (D)', onclick: toggleTheme }, '◐'),
+      el(
+        'button.icon',
+        {
+          type: 'button',
+          id: 'theme',
+          'aria-label': 'Light or dark',
+          title: 'Light or dark (D)',
+          onclick: toggleTheme,
+        },
+        '◐',
+      ),
     ),
   );
 }

@@ -42,7 +42,10 @@ function lineChart(wants) {
     g.textAlign = 'right';
     for (const tick of wants.log ? decadesBetween(low, high) : ticksBetween(low, high)) {
       g.strokeStyle = themeColour('--grid');
-      stroke(g, [[margins.left, Math.round(yOf(tick)) + 0.5], [plot.width - margins.right, Math.round(yOf(tick)) + 0.5]]);
+      stroke(g, [
+        [margins.left, Math.round(yOf(tick)) + 0.5],
+        [plot.width - margins.right, Math.round(yOf(tick)) + 0.5],
+      ]);
       g.fillStyle = themeColour('--soft');
       g.fillText(String(tick), margins.left - 7, yOf(tick));
     }
@@ -56,11 +59,19 @@ function lineChart(wants) {
     g.rect(margins.left, 0, plot.width - margins.left - margins.right, plot.height);
     g.clip();
     g.strokeStyle = themeColour('--line');
-    for (const x of wants.breaks ? wants.breaks() : []) stroke(g, [[xOf(x), margins.top], [xOf(x), bottom]]);
+    for (const x of wants.breaks ? wants.breaks() : [])
+      stroke(g, [
+        [xOf(x), margins.top],
+        [xOf(x), bottom],
+      ]);
     g.strokeStyle = themeColour('--bad');
     g.setLineDash([5, 4]);
     g.lineWidth = 1.2;
-    for (const y of wants.limits ? wants.limits() : []) stroke(g, [[margins.left, yOf(y)], [plot.width, yOf(y)]]);
+    for (const y of wants.limits ? wants.limits() : [])
+      stroke(g, [
+        [margins.left, yOf(y)],
+        [plot.width, yOf(y)],
+      ]);
     const lines = wants.lines();
     for (const line of lines) {
       g.strokeStyle = themeColour(line.colour);
@@ -117,7 +128,10 @@ function lineChart(wants) {
     const at = wants.cursor ? wants.cursor() : null;
     if (at !== null) {
       g.strokeStyle = themeColour('--ink');
-      stroke(g, [[xOf(at), margins.top], [xOf(at), plot.height - margins.bottom]]);
+      stroke(g, [
+        [xOf(at), margins.top],
+        [xOf(at), plot.height - margins.bottom],
+      ]);
       for (const line of wants.lines()) {
         const y = line.y[Math.round(at)];
         if (line.dash || line.x || !Number.isFinite(y)) continue;
@@ -134,7 +148,12 @@ function lineChart(wants) {
     if (drag) {
       g.fillStyle = themeColour('--accent');
       g.globalAlpha = 0.15;
-      g.fillRect(Math.min(...drag), margins.top, Math.abs(drag[1] - drag[0]), plot.height - margins.top - margins.bottom);
+      g.fillRect(
+        Math.min(...drag),
+        margins.top,
+        Math.abs(drag[1] - drag[0]),
+        plot.height - margins.top - margins.bottom,
+      );
     }
   };
 
@@ -176,7 +195,11 @@ function lineChart(wants) {
   surface.addEventListener('pointerdown', (event) => {
     surface.setPointerCapture(event.pointerId);
     if (wants.zoomable) {
-      const pixel = clamp(event.clientX - surface.getBoundingClientRect().left, margins.left, plot.width - margins.right);
+      const pixel = clamp(
+        event.clientX - surface.getBoundingClientRect().left,
+        margins.left,
+        plot.width - margins.right,
+      );
       drag = [pixel, pixel];
     } else pointed(event);
   });

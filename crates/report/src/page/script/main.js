@@ -4,10 +4,16 @@ function footer() {
   const key = (/** @type {string[]} */ names, /** @type {string} */ words) =>
     el('span', {}, ...names.flatMap((name) => [el('kbd', {}, name), ' ']), words);
   const { document: said } = RAW;
-  const count = (/** @type {number | undefined} */ n, /** @type {string} */ words) => (n ? `, ${n.toLocaleString('en')} ${words}` : '');
+  const count = (/** @type {number | undefined} */ n, /** @type {string} */ words) =>
+    n ? `, ${n.toLocaleString('en')} ${words}` : '';
   const run = `stead ${RAW.version}${said.seed === undefined ? '' : `, seed ${said.seed}`}${count(said.evaluations, 'placements')}${count(said.states, 'states')}`;
   const inputs = RAW.inputs.map((/** @type {any} */ input) =>
-    el('span', {}, `${input.name.replace(/^(\.\.\/)+/, '')} `, el('code', { title: input.sha256 }, input.sha256.slice(0, 8))),
+    el(
+      'span',
+      {},
+      `${input.name.replace(/^(\.\.\/)+/, '')} `,
+      el('code', { title: input.sha256 }, input.sha256.slice(0, 8)),
+    ),
   );
   const reference = said.reference?.source ? el('span', {}, `reference: ${said.reference.source}`) : null;
   return el(
@@ -46,9 +52,11 @@ function main() {
   document.querySelectorAll('.plot, .view').forEach((host) => observer.observe(host));
   // For measurements and tests: what is shown, and when it first was.
   const shown = { state, set, steps, cases: CASES, maps: MAPS, framesOf, picture: viewPicture, first: 0 };
-  requestAnimationFrame(() => requestAnimationFrame(() => {
-    shown.first = performance.now();
-  }));
+  requestAnimationFrame(() =>
+    requestAnimationFrame(() => {
+      shown.first = performance.now();
+    }),
+  );
   Object.assign(window, { stead: shown });
 }
 

@@ -9,7 +9,16 @@ function reasonText(reason) {
 }
 
 /** Reasons are told apart by how they are hatched: the slope of the lines and their distance. */
-const HATCHES = [[1, 6], [-1, 6], [1, 3], [-1, 3], [0, 5], [2, 5], [-2, 5], [0, 3]];
+const HATCHES = [
+  [1, 6],
+  [-1, 6],
+  [1, 3],
+  [-1, 3],
+  [0, 5],
+  [2, 5],
+  [-2, 5],
+  [0, 3],
+];
 
 /** @param {CanvasRenderingContext2D} g @param {number} k number of the reason @param {number} width @param {number} height */
 function hatch(g, k, width, height) {
@@ -58,7 +67,9 @@ function mapCard() {
   // Places along the map in its columns: its points are evenly chosen of the path's.
   const columnOf = (/** @type {number} */ i) => {
     const map = currentMap();
-    return map ? nearestColumn(map, pathPoint(i)) + (Math.abs(map.points.length - COUNT) < 1 ? i - Math.round(i) : 0) : i;
+    return map
+      ? nearestColumn(map, pathPoint(i)) + (Math.abs(map.points.length - COUNT) < 1 ? i - Math.round(i) : 0)
+      : i;
   };
   const xOf = (/** @type {number} */ column) => margins.left + ((column + 0.5) / columns()) * inner()[0];
   const yOf = (/** @type {number} */ beta) => margins.top + ((180 - beta) / 360) * inner()[1];
@@ -73,7 +84,8 @@ function mapCard() {
     for (let column = 0; column < wide; column++) {
       for (let k = 0; k < high; k++) {
         const row = column * high + k;
-        if (map.codes[row] < 16) image.data.set([...colourOf(map.scores[row]), 255], ((high - 1 - k) * wide + column) * 4);
+        if (map.codes[row] < 16)
+          image.data.set([...colourOf(map.scores[row]), 255], ((high - 1 - k) * wide + column) * 4);
         else refused[map.codes[row] - 16].push([column, k]);
       }
     }
@@ -86,7 +98,8 @@ function mapCard() {
     refused.forEach((cells, k) => {
       g.save();
       g.beginPath();
-      for (const [column, row] of cells) g.rect(margins.left + column * w, margins.top + (high - 1 - row) * h, w + 0.3, h + 0.3);
+      for (const [column, row] of cells)
+        g.rect(margins.left + column * w, margins.top + (high - 1 - row) * h, w + 0.3, h + 0.3);
       g.clip();
       hatch(g, k, plot.width, plot.height);
       g.restore();
@@ -112,7 +125,10 @@ function mapCard() {
       const edge = (from + xOf(columnOf(RUNS[k - 1][1]))) / 2;
       g.strokeStyle = themeColour('--card');
       g.lineWidth = 2;
-      stroke(g, [[edge, margins.top], [edge, plot.height - margins.bottom]]);
+      stroke(g, [
+        [edge, margins.top],
+        [edge, plot.height - margins.bottom],
+      ]);
     });
     g.strokeStyle = themeColour('--line');
     g.lineWidth = 1;
@@ -157,7 +173,9 @@ function mapCard() {
     }
     const swatch = (/** @type {string} */ kind) => el(`i.swatch.${kind}`);
     const reasons = (map ? map.reasons : []).map((reason, k) => {
-      const sample = /** @type {HTMLCanvasElement} */ (el('canvas.reason', { width: 18, height: 9, 'aria-hidden': 'true' }));
+      const sample = /** @type {HTMLCanvasElement} */ (
+        el('canvas.reason', { width: 18, height: 9, 'aria-hidden': 'true' })
+      );
       hatch(/** @type {CanvasRenderingContext2D} */ (sample.getContext('2d')), k, 18, 9);
       return el('span', {}, sample, reasonText(reason));
     });
@@ -182,7 +200,10 @@ function mapCard() {
     if (state.chosen && map) [column, beta] = [state.chosen.column, mapState(map, state.chosen).beta];
     g.strokeStyle = themeColour('--ink');
     g.globalAlpha = 0.8;
-    stroke(g, [[xOf(column), margins.top], [xOf(column), plot.height - margins.bottom]]);
+    stroke(g, [
+      [xOf(column), margins.top],
+      [xOf(column), plot.height - margins.bottom],
+    ]);
     g.globalAlpha = 1;
     const dot = (/** @type {number} */ radius, /** @type {string} */ colour) => {
       g.fillStyle = colour;
@@ -205,7 +226,8 @@ function mapCard() {
     if (changed.case || changed.theme) explain();
     drawTop();
     const map = currentMap();
-    reading.textContent = state.chosen && map ? stateText(map, state.chosen) : 'spindle angle β over path point; drag to choose a state';
+    reading.textContent =
+      state.chosen && map ? stateText(map, state.chosen) : 'spindle angle β over path point; drag to choose a state';
   });
 
   /** The state under the pointer. @param {PointerEvent} event @returns {Chosen | null} */
@@ -216,7 +238,10 @@ function mapCard() {
     const across_ = (event.clientX - box.left - margins.left) / width;
     const down = (event.clientY - box.top - margins.top) / height;
     if (!map || across_ < 0 || across_ >= 1 || down < 0 || down > 1) return null;
-    return { column: Math.floor(across_ * map.points.length), beta: Math.round((1 - down) * map.betaCount) % map.betaCount };
+    return {
+      column: Math.floor(across_ * map.points.length),
+      beta: Math.round((1 - down) * map.betaCount) % map.betaCount,
+    };
   };
   const choose = (/** @type {Chosen} */ chosen) => {
     const map = currentMap();

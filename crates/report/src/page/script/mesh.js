@@ -43,7 +43,18 @@ function tubes(pairs, radius, colour = [255, 255, 255]) {
   const out = mesh();
   for (let k = 0; k < pairs.length; k += 2) {
     const length = size(less(pairs[k + 1], pairs[k]));
-    if (length > 0) lathe(out, pairs[k], pairs[k + 1], [[0, radius], [length, radius]], 6, colour);
+    if (length > 0)
+      lathe(
+        out,
+        pairs[k],
+        pairs[k + 1],
+        [
+          [0, radius],
+          [length, radius],
+        ],
+        6,
+        colour,
+      );
   }
   return out;
 }
@@ -52,10 +63,26 @@ function tubes(pairs, radius, colour = [255, 255, 255]) {
 function arrows(frame, length) {
   const out = mesh();
   const from = [frame[12], frame[13], frame[14]];
-  [[222, 60, 60], [46, 160, 80], [50, 110, 230]].forEach((colour, k) => {
+  [
+    [222, 60, 60],
+    [46, 160, 80],
+    [50, 110, 230],
+  ].forEach((colour, k) => {
     const to = add(from, times([frame[4 * k], frame[4 * k + 1], frame[4 * k + 2]], length));
     const [thin, thick, neck] = [length * 0.016, length * 0.045, length * 0.84];
-    lathe(out, from, to, [[0, thin], [neck, thin], [neck, thick], [length, 0]], 10, colour);
+    lathe(
+      out,
+      from,
+      to,
+      [
+        [0, thin],
+        [neck, thin],
+        [neck, thick],
+        [length, 0],
+      ],
+      10,
+      colour,
+    );
   });
   return out;
 }

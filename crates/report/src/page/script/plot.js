@@ -2,7 +2,10 @@
 
 /**
  * @typedef {{ left: number, right: number, top: number, bottom: number }} Margins
- * @typedef {{ host: HTMLElement, still: CanvasRenderingContext2D, top: CanvasRenderingContext2D, surface: HTMLCanvasElement, tip: HTMLElement, width: number, height: number, margins: Margins }} Plot
+ * @typedef {{
+ *   host: HTMLElement, still: CanvasRenderingContext2D, top: CanvasRenderingContext2D, surface: HTMLCanvasElement,
+ *   tip: HTMLElement, width: number, height: number, margins: Margins
+ * }} Plot
  */
 
 /** @param {string} label @param {Margins} margins @param {string} [classes] @returns {Plot} */
@@ -10,7 +13,8 @@ function plotWith(label, margins, classes = 'plot') {
   const [below, above] = [0, 1].map(() => /** @type {HTMLCanvasElement} */ (el('canvas', { 'aria-hidden': 'true' })));
   const tip = el('div.tip', { role: 'status' });
   const host = el(`div.${classes}`, { role: 'img', 'aria-label': label }, below, above, tip);
-  const context = (/** @type {HTMLCanvasElement} */ canvas) => /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+  const context = (/** @type {HTMLCanvasElement} */ canvas) =>
+    /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   return { host, still: context(below), top: context(above), surface: above, tip, width: 0, height: 0, margins };
 }
 

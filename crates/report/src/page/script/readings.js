@@ -24,7 +24,11 @@ function tiles() {
       here.show(fixed(columns.score_mm[i]), 'mm', more);
       kappa.show(fixed(columns.inverse_condition[i]), '', `limit ${LIMITS.inverse}`);
     } else {
-      here.show(chosen.isAllowed ? fixed(chosen.score) : '–', 'mm', chosen.isAllowed ? 'state chosen in the map' : reasonText(chosen.reason));
+      here.show(
+        chosen.isAllowed ? fixed(chosen.score) : '–',
+        'mm',
+        chosen.isAllowed ? 'state chosen in the map' : reasonText(chosen.reason),
+      );
       kappa.show('–', '', 'known along the plans');
     }
     mean.show(fixed(of.mean), 'mm', `largest ${fixed(of.max)} mm`);
@@ -40,7 +44,15 @@ function gauges() {
   const rows = ROWS.map((row, j) => {
     const [range, pin, value] = [el('div.rng'), el('div.pin'), el('b', { id: `joint-${j + 1}` })];
     range.style.background = pin.style.background = `var(${JOINT_COLOURS[j]})`;
-    const host = el('div.g', {}, el('b', {}, `A${j + 1}`), el('span', {}, fixed(row.min, 0)), el('div.rail', {}, range, pin), el('span', {}, fixed(row.max, 0)), value);
+    const host = el(
+      'div.g',
+      {},
+      el('b', {}, `A${j + 1}`),
+      el('span', {}, fixed(row.min, 0)),
+      el('div.rail', {}, range, pin),
+      el('span', {}, fixed(row.max, 0)),
+      value,
+    );
     return { host, range, pin, value };
   });
   onChange(({ case: isOther }) => {
@@ -55,5 +67,9 @@ function gauges() {
       range.style.width = `${most - least}%`;
     });
   });
-  return card('Joints now', 'deg; shaded: range over the whole path', el('div.gauges', {}, ...rows.map((row) => row.host)));
+  return card(
+    'Joints now',
+    'deg; shaded: range over the whole path',
+    el('div.gauges', {}, ...rows.map((row) => row.host)),
+  );
 }

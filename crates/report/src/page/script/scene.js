@@ -11,13 +11,23 @@ const LAYERS = [
 const SHADOW_PIXELS = 2048;
 const SUN = unit([0.42, -0.52, 0.86]);
 
-/** @typedef {{ view: (name: string) => void, layer: (name: string, isShown: boolean) => void, turn: (dx: number, dy: number) => void, zoom: (factor: number) => void, picture: () => string }} Scene */
+/**
+ * @typedef {{
+ *   view: (name: string) => void, layer: (name: string, isShown: boolean) => void, turn: (dx: number, dy: number) => void,
+ *   zoom: (factor: number) => void, picture: () => string
+ * }} Scene
+ */
 
 /** Everything on the graphics card, made once for a context. @param {WebGL2RenderingContext} gl */
 function sceneParts(gl) {
   const [thin, thick] = floorGrid();
   const wide = 2 * FARTHEST;
-  const corners = [[-wide, -wide], [wide, -wide], [wide, wide], [-wide, wide]].flatMap(([x, y]) => [x, y, FLOOR - 1]);
+  const corners = [
+    [-wide, -wide],
+    [wide, -wide],
+    [wide, wide],
+    [-wide, wide],
+  ].flatMap(([x, y]) => [x, y, FLOOR - 1]);
   return {
     main: programOf(gl, VERTEX, FRAGMENT),
     depth: programOf(gl, VERTEX, DEPTH_FRAGMENT),
@@ -45,7 +55,10 @@ function caseParts(gl) {
     tube: buffersOf(gl, tube),
     curtain: buffersOf(gl, curtain),
     block: HAS_BLOCK ? buffersOf(gl, block(isDark() ? [104, 118, 134] : [186, 197, 209])) : null,
-    edges: linesOf(gl, partEdges().map((corner) => moved(frame, corner))),
+    edges: linesOf(
+      gl,
+      partEdges().map((corner) => moved(frame, corner)),
+    ),
     axes: buffersOf(gl, arrows(frame, FARTHEST * 0.09)),
     ghost: other ? buffersOf(gl, pathMeshes(other).tube) : null,
     ghostEdges: other ? buffersOf(gl, tubes(ghostEdges, FARTHEST * 0.0008)) : null,
@@ -144,7 +157,10 @@ function sceneIn(host) {
     const program = parts.main;
     const aspect = canvas.width / canvas.height;
     const place = placeOf(eye);
-    const view = product(perspective(aspect < 1 ? 0.9 : 0.63, aspect, 0.02 * far, 11 * far), lookAt(place, eye.target, [0, 0, 1]));
+    const view = product(
+      perspective(aspect < 1 ? 0.9 : 0.63, aspect, 0.02 * far, 11 * far),
+      lookAt(place, eye.target, [0, 0, 1]),
+    );
     gl.useProgram(program.program);
     gl.uniformMatrix4fv(program.at('view'), false, view);
     gl.uniformMatrix4fv(program.at('sunView'), false, sunView);
@@ -262,16 +278,29 @@ function sceneCard() {
   );
   const scene = sceneIn(view);
   viewPicture = scene.picture;
-  const views = [['cell', '3-D'], ['top', 'Top'], ['front', 'Front'], ['tool', 'Tool']].map(([name, text]) =>
+  const views = [
+    ['cell', '3-D'],
+    ['top', 'Top'],
+    ['front', 'Front'],
+    ['tool', 'Tool'],
+  ].map(([name, text]) =>
     el('button.chip', { type: 'button', 'data-view': name, onclick: () => scene.view(name) }, text),
   );
   const layers = LAYERS.filter(([name]) => name !== 'ghost' || CASES.length > 2).map(([name, text]) => {
     const box = /** @type {HTMLInputElement} */ (
-      el('input', { type: 'checkbox', checked: true, 'data-layer': name, onchange: () => scene.layer(name, box.checked) })
+      el('input', {
+        type: 'checkbox',
+        checked: true,
+        'data-layer': name,
+        onchange: () => scene.layer(name, box.checked),
+      })
     );
     return el('label.chip', {}, box, text);
   });
-  const words = [HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '', HAS_BLOCK ? 'the block is the extent of the path' : ''];
+  const words = [
+    HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '',
+    HAS_BLOCK ? 'the block is the extent of the path' : '',
+  ];
   host.append(
     el('div.tr', {}, ...views),
     el('div.bl', {}, el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),

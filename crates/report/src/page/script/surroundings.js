@@ -10,9 +10,12 @@ function edgesOf(low, high) {
     y ? high[1] : low[1],
     z ? high[2] : low[2],
   ];
-  return [[0, 0], [0, 1], [1, 0], [1, 1]].flatMap(([a, b]) => [
-    at(0, a, b), at(1, a, b), at(a, 0, b), at(a, 1, b), at(a, b, 0), at(a, b, 1),
-  ]);
+  return [
+    [0, 0],
+    [0, 1],
+    [1, 0],
+    [1, 1],
+  ].flatMap(([a, b]) => [at(0, a, b), at(1, a, b), at(a, 0, b), at(a, 1, b), at(a, b, 0), at(a, b, 1)]);
 }
 
 /** The extent of the block under the path, with a margin: an illustration. @returns {[Vec, Vec]} */
@@ -20,7 +23,10 @@ function blockBox() {
   const margin = Math.max(20, PATH_SIZE * 0.07);
   const [[x0, x1], [y0, y1], [z0]] = EXTENT;
   const top = z0 - Math.max(2, PATH_SIZE * 0.012);
-  return [[x0 - margin, y0 - margin, top - PATH_SIZE * 0.13], [x1 + margin, y1 + margin, top]];
+  return [
+    [x0 - margin, y0 - margin, top - PATH_SIZE * 0.13],
+    [x1 + margin, y1 + margin, top],
+  ];
 }
 
 /** @param {number[]} colour to 255 @returns {Mesh} the block in the workpiece frame */
@@ -31,7 +37,12 @@ function block(colour) {
     for (const side of [0, 1]) {
       const base = out.p.length / 3;
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      for (const [a, b] of [[0, 0], [1, 0], [1, 1], [0, 1]]) {
+      for (const [a, b] of [
+        [0, 0],
+        [1, 0],
+        [1, 1],
+        [0, 1],
+      ]) {
         const corner = [0, 0, 0];
         corner[axis] = side ? high[axis] : low[axis];
         corner[u] = a ? high[u] : low[u];

@@ -77,11 +77,20 @@ function transport() {
     const of = current();
     const i = currentPoint();
     slider.value = String(state.t);
-    slider.setAttribute('aria-valuetext', `point ${pathPoint(i)}, segment ${SEGMENT[i]}, ${fixed(of.columns.score_mm[i])} mm`);
+    slider.setAttribute(
+      'aria-valuetext',
+      `point ${pathPoint(i)}, segment ${SEGMENT[i]}, ${fixed(of.columns.score_mm[i])} mm`,
+    );
     const low = Math.floor(state.t);
     const isBetween = state.t > low && isMove(low);
     const words = isBetween ? 'moving over' : `segment ${SEGMENT[i]}`;
-    const parts = [`point ${pathPoint(i)} of ${RAW.task.points - 1}`, words, `posture ${of.columns.posture[i]}`, `β ${fixed(of.columns.beta_deg[i], 1)}°`, `${fixed(timeAt(clock(), state.t), 1)} s`];
+    const parts = [
+      `point ${pathPoint(i)} of ${RAW.task.points - 1}`,
+      words,
+      `posture ${of.columns.posture[i]}`,
+      `β ${fixed(of.columns.beta_deg[i], 1)}°`,
+      `${fixed(timeAt(clock(), state.t), 1)} s`,
+    ];
     now.textContent = parts.join(' · ');
     if (!isOther) return;
     const wide = Math.min(COUNT, 2000);
@@ -92,20 +101,29 @@ function transport() {
       g.fillRect(x, 0, 1, 6);
     }
   });
-  return el('section.card.bar', { 'aria-label': 'Position along the tool path' }, button, pace, el('div.track', {}, slider, strip), now);
+  return el(
+    'section.card.bar',
+    { 'aria-label': 'Position along the tool path' },
+    button,
+    pace,
+    el('div.track', {}, slider, strip),
+    now,
+  );
 }
 
 /** Keys that work wherever nothing else takes them. @param {KeyboardEvent} event */
 function onKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const target = /** @type {HTMLElement} */ (event.target);
-  const isOnControl = ['BUTTON', 'SUMMARY', 'A'].includes(target.tagName) || /** @type {any} */ (target).type === 'checkbox';
+  const isOnControl =
+    ['BUTTON', 'SUMMARY', 'A'].includes(target.tagName) || /** @type {any} */ (target).type === 'checkbox';
   const { key } = event;
   const i = currentPoint();
   if (key === 'ArrowRight' || key === 'ArrowLeft') {
     const step = key === 'ArrowRight' ? 1 : -1;
     const starts = RUNS.map(([first]) => first);
-    const far = step > 0 ? starts.find((first) => first > i) ?? COUNT - 1 : starts.filter((first) => first < i).pop() ?? 0;
+    const far =
+      step > 0 ? (starts.find((first) => first > i) ?? COUNT - 1) : (starts.filter((first) => first < i).pop() ?? 0);
     pause();
     set({ t: event.shiftKey ? far : i + step });
   } else if (key === ' ' && !isOnControl) playOrPause();
