@@ -8,6 +8,7 @@ use crate::constraints::Measured;
 use crate::outcome::PlanPoint;
 use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
+use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Scene};
 use stead_model::robot::Posture;
@@ -115,23 +116,34 @@ impl Problem {
 
     /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
     pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
-        let Some(scene) = self.scene.as_deref() else { return Vec::new() };
-        let mut hits = Vec::new();
+        self.path_hits(placement, &plan.points, &plan.joints, with_motions).collect()
+    }
+
+    /// The same of joint angles (rad) at path points of a segment, one after the other.
+    pub(crate) fn path_hits(
+        &self,
+        placement: &Placement,
+        points: &Span<usize>,
+        joints: &[[f64; 6]],
+        with_motions: bool,
+    ) -> impl Iterator<Item = PlanHit> {
         let mut is_free_before = false;
-        for (place, point) in plan.points.clone().enumerate() {
-            let joints = &plan.joints[place];
-            let poses = self.poses(scene, point, placement, joints);
+        let hit = move |(place, point): (usize, usize)| {
+            let scene = self.scene.as_deref()?;
+            let poses = self.poses(scene, point, placement, &joints[place]);
             let pair = scene.first_hit(&poses, &PairKind::OF_STATES);
+            let was_free = std::mem::replace(&mut is_free_before, pair.is_none());
             if let Some(pair) = pair {
-                hits.push(PlanHit { point, is_between: false, pair });
-            } else if with_motions && is_free_before {
-                let before = self.poses(scene, point - 1, placement, &plan.joints[place - 1]);
-                let hit = scene.motion((&plan.joints[place - 1], &before), (joints, &poses));
-                hits.extend(hit.map(|hit| PlanHit { point, is_between: true, pair: hit.pair }));
+                return Some(PlanHit { point, is_between: false, pair });
             }
-            is_free_before = pair.is_none();
-        }
-        hits
+            if !with_motions || !was_free {
+                return None;
+            }
+            let before = self.poses(scene, point - 1, placement, &joints[place - 1]);
+            let hit = scene.motion((&joints[place - 1], &before), (&joints[place], &poses))?;
+            Some(PlanHit { point, is_between: true, pair: hit.pair })
+        };
+        points.clone().enumerate().filter_map(hit)
     }
 
     /// Whether nothing hits along the plans of all segments, between points too.

@@ -4,6 +4,7 @@
 //! is made again until nothing hits. A plan over fewer states is never better, so the first one that is free is the best free one of
 //! its grid. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
 
+use super::joint_turns::SegmentChoice;
 use super::{Forbidden, NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};
 use crate::candidate::Objective;
 use crate::collision::PlanHit;
@@ -77,6 +78,7 @@ impl Planner<'_> {
     ) -> Objective {
         let plans = self.until_free(placement, workspace, |workspace| {
             let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
+            let choices = self.without_hitting_ways(placement, choices);
             Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
         });
         match plans {
@@ -110,6 +112,35 @@ impl Planner<'_> {
                 off_grid::refine_free(self.problem, placement, sense, self.spacing, plan);
             }
         }
+    }
+
+    /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others are left. Turns of
+    /// the joints change nothing about collisions.
+    pub(super) fn without_hitting_ways(
+        &self,
+        placement: &Placement,
+        choices: Vec<Vec<SegmentChoice>>,
+    ) -> Vec<Vec<SegmentChoice>> {
+        if self.problem.scene.is_none() {
+            return choices;
+        }
+        let free = |mut choice: SegmentChoice| {
+            let postures: BTreeSet<Posture> = choice.joint_paths.iter().map(|path| path.posture).collect();
+            if postures.len() > 1 {
+                let hits = |posture: &Posture| {
+                    let path = choice.joint_paths.iter().find(|path| path.posture == *posture);
+                    path.is_none_or(|path| {
+                        self.problem.path_hits(placement, &choice.points, &path.joints, false).next().is_some()
+                    })
+                };
+                let free: BTreeSet<Posture> = postures.iter().copied().filter(|posture| !hits(posture)).collect();
+                if !free.is_empty() {
+                    choice.joint_paths.retain(|path| free.contains(&path.posture));
+                }
+            }
+            choice
+        };
+        choices.into_iter().map(|plans| plans.into_iter().map(free).collect()).collect()
     }
 
     /// No plan, since two shapes are too near to each other whatever the arm does.

@@ -30,6 +30,7 @@ mod reference_dp;
 mod segment;
 pub mod transition;
 mod turns_dp;
+mod unchanging;
 
 pub use collision_free::Collisions;
 pub(crate) use collision_free::forbid;
@@ -261,6 +262,7 @@ impl<'a> Planner<'a> {
         self.unchanging(scheme, sense, |scheme| {
             self.until_free(placement, workspace, |workspace| {
                 let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+                let choices = self.without_hitting_ways(placement, choices);
                 Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
             })
         })
@@ -286,6 +288,7 @@ impl<'a> Planner<'a> {
         self.unchanging(scheme, sense, |scheme| {
             self.until_free(placement, workspace, |workspace| {
                 let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+                let choices = self.without_hitting_ways(placement, choices);
                 let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
                     let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), classes);
                     Some(driven).filter(|driven| !driven.is_empty())
@@ -294,37 +297,10 @@ impl<'a> Planner<'a> {
                     true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
                     false => choices.into_iter().enumerate().filter_map(refined).collect(),
                 };
+                let refined = self.without_hitting_ways(placement, refined);
                 Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
             })
         })
-    }
-
-    /// What `plan` finds for a scheme, or where the posture may not change, the best of what it finds for each posture: of those
-    /// within the tie the one with the shortest moves.
-    fn unchanging(
-        &self,
-        scheme: Option<&[Posture]>,
-        sense: Sense,
-        mut plan: impl FnMut(Option<&[Posture]>) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
-    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let schemes = self.problem.unchanging_schemes(scheme);
-        if schemes.is_empty() {
-            return plan(scheme);
-        }
-        let (mut found, mut failure): (Vec<Vec<SegmentPlan>>, Option<NoFeasiblePlan>) = (Vec::new(), None);
-        for scheme in &schemes {
-            match plan(Some(scheme)) {
-                Ok(plans) => found.push(plans),
-                Err(none) => {
-                    let size = |none: &NoFeasiblePlan| (none.blocked_points.len(), none.broken_segments.len());
-                    failure = Some(match failure {
-                        Some(known) if size(&known) <= size(&none) => known,
-                        _ => none,
-                    });
-                }
-            }
-        }
-        joint_turns::best_of(self.problem, sense, found).ok_or_else(|| failure.unwrap_or_else(NoFeasiblePlan::empty))
     }
 
     /// The plans of a segment's posture classes with beta off the grid, the best first, or the best alone where that is taken
