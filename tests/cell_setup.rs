@@ -75,9 +75,9 @@ fn a_robot_on_a_wall_is_placed_exported_and_checked() {
     assert_exported(&bench, "krl", "PART.src");
     let summary: serde_json::Value = serde_json::from_str(&bench.read("r/summary.json")).unwrap();
     assert_eq!(summary["mount"]["rpy_deg"][0], 90.0);
-    // A mount elsewhere is another cell; the plan is then none of the run.
-    let moved = bench.stead(&["check", RUN, "--set", "mount.xyz_mm[3]=500"]);
-    assert!(ok(&moved).contains("z 500.0 mm"), "{}", moved.stdout);
+    let at = ["--x-mm", "0", "--y-mm", "400", "--z-mm", "500", "--yaw-deg", "0"];
+    let moved = bench.stead(&[&["score", RUN, "--set", "mount.xyz_mm[3]=500"], &at[..]].concat());
+    moved.assert_says(&["note: mount.xyz_mm[3] is 500 in place of what the files say"]);
 }
 
 #[test]

@@ -30,7 +30,7 @@ mod external_axes;
 use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
 use crate::setup::AxisPositions;
-use external_axes::axis_limit;
+use external_axes::{axis_limit, smallest};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -222,7 +222,6 @@ impl Limits {
         let ends = [&plan.joints[place - 1], &plan.joints[place]];
         let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
         let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, weights, ends);
-        // The way is that in the workpiece, which is not that in the base frame where an external axis moves on the way.
         let length = match &problem.setup.positions {
             AxisPositions::PerPoint(_) => problem.step_length(plan.points.start + place),
             _ => motion.travel.norm(),
@@ -274,11 +273,6 @@ impl Limits {
         }
         limit
     }
-}
-
-/// The smallest finite feed (m/s) with its joint.
-fn smallest(feeds: impl Iterator<Item = (f64, usize)>) -> Option<(f64, usize)> {
-    feeds.filter(|(feed, _)| feed.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// A pose of a step.

@@ -1,7 +1,6 @@
 //! What is to be cut: a tool path in segments, and the wrench at every point of it.
 //!
-//! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches with it, given by
-//! the file or computed by a cutting model (see [`crate::cutting`]).
+//! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches too.
 
 mod following;
 mod thinned;
@@ -158,7 +157,7 @@ pub enum TaskError {
         /// Number of points.
         points: usize,
     },
-    /// There are not as many wrenches as points.
+    /// Not as many wrenches as points.
     #[error("{wrenches} wrenches for {points} points")]
     Wrenches {
         /// Number of wrenches.

@@ -1,6 +1,6 @@
 //! The feed that external axes hold which move along the path.
 
-use super::{FeedLimit, FeedLimitKind, smallest};
+use super::{FeedLimit, FeedLimitKind};
 use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
 
@@ -19,4 +19,9 @@ pub(super) fn axis_limit(problem: &Problem, segment: usize, plan: &SegmentPlan) 
         Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point })
     };
     plan.points.clone().skip(1).filter_map(at).reduce(FeedLimit::smaller)
+}
+
+/// The smallest finite feed (m/s) with its joint.
+pub(super) fn smallest(feeds: impl Iterator<Item = (f64, usize)>) -> Option<(f64, usize)> {
+    feeds.filter(|(feed, _)| feed.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
