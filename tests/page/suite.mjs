@@ -25,8 +25,9 @@ export async function open(browser, address, { width = 1400, height = 1000, befo
   page.on('console', (message) => message.type() === 'error' && seen.complaints.push(message.text()));
   page.on('pageerror', (error) => seen.complaints.push(String(error)));
   if (before) await page.addInitScript(before);
+  page.setDefaultTimeout(120000);
   await page.goto(address);
-  await page.waitForFunction(() => window.stead?.first > 0, null, { timeout: 20000 });
+  await page.waitForFunction(() => window.stead?.first > 0, null, { timeout: 120000 });
   return { page, seen, close: () => context.close() };
 }
 
