@@ -199,6 +199,11 @@ export function tests(folder, others) {
       await page.mouse.click(...place(30, allowed));
       await check(30, allowed);
       const first = await view(page);
+      // A state among allowed ones and away from both plans is painted all over.
+      const isClear = (row, k) =>
+        [-2, 0, 2].every((by) => states[90 * count + k + by]?.reason === '') &&
+        plans.slice(0, 2).every((plan) => Math.abs(plan[90].beta_deg - row.beta_deg) > 20);
+      const clear = states.slice(90 * count, 91 * count).findIndex(isClear);
       const pixel = await page.evaluate(
         ([x, y]) => {
           const canvas = document.querySelector('#map canvas');
@@ -206,7 +211,7 @@ export function tests(folder, others) {
           const ratio = canvas.width / box.width;
           return [...canvas.getContext('2d').getImageData((x - box.x) * ratio, (y - box.y) * ratio, 1, 1).data];
         },
-        place(90, allowed),
+        place(90, clear),
       );
       assert.equal(pixel[3], 255, 'the map is not drawn');
       // Dragging goes from state to state.
