@@ -12,9 +12,10 @@ use stead_format::field::{FieldOverride, FieldOverrides};
 use stead_placement::certify::{self, Certificate};
 use stead_placement::feasibility;
 use stead_placement::outcome::{Cases, Outcome};
-use stead_placement::place::Infeasible;
+use stead_placement::place::{Infeasible, setup_at};
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::settings::CertificateSettings;
+use stead_placement::setup::Setup;
 use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
 use stead_report::document::Timing;
 use stead_report::page::put_page;
@@ -33,18 +34,24 @@ use stead_study::{self as study, Placed, Scored};
 #[derive(Debug, Clone)]
 pub struct Run {
     pub(crate) run: Arc<format::Run>,
+    /// Whether the positions of the external axes are those of a result, and not to be looked for.
+    is_set_up: bool,
 }
 
 impl Run {
     /// The relative size of the force error of `stead place --sensitivity`.
     pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
 
+    fn of(run: format::Run) -> Self {
+        Self { run: Arc::new(run), is_set_up: false }
+    }
+
     /// Reads a run file and the files that it names.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_run(file.as_ref())?) })
+        Ok(Self::of(format::read_run(file.as_ref())?))
     }
 
     /// Reads a run file with values that take the place of its own, or of those of the files that it names: each by its path from the
@@ -62,7 +69,7 @@ impl Run {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn read_with(file: impl AsRef<Path>, values: Vec<FieldOverride>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_run_with(file.as_ref(), &FieldOverrides(values))?) })
+        Ok(Self::of(format::read_run_with(file.as_ref(), &FieldOverrides(values))?))
     }
 
     /// The same run with a certificate of this gap (relative), whatever the file says of one.
@@ -79,7 +86,7 @@ impl Run {
     /// # Errors
     /// As [`Run::read`].
     pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_run_to_certify(file.as_ref(), Some(gap))?) })
+        Ok(Self::of(format::read_run_to_certify(file.as_ref(), Some(gap))?))
     }
 
     /// The gap of a certificate from per cent, for [`Run::read_to_certify`].
@@ -104,6 +111,47 @@ impl Run {
     pub fn with_sensitivity(mut self, force_error: f64) -> Self {
         Arc::make_mut(&mut self.run).search.sensitivity = Some(force_error);
         self
+    }
+
+    /// The same run with the part in one of its orientations, by name.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] with the names that are allowed.
+    pub fn in_orientation(mut self, name: &str) -> Result<Self, Error> {
+        let problem = &self.run.problem;
+        let Some(orientation) = problem.orientations.iter().position(|known| known.name == name) else {
+            let names: Vec<&str> = problem.orientations.iter().map(|known| known.name.as_str()).collect();
+            let allowed =
+                if names.is_empty() { "none: the run has no [cell] orientations".to_owned() } else { names.join(", ") };
+            return Err(Error::Argument(format!("no such orientation, found {name}; allowed: {allowed}")));
+        };
+        let setup = Setup { orientation, ..problem.setup.clone() };
+        let problem = problem.in_setup(&setup).into_owned();
+        Arc::make_mut(&mut self.run).problem = problem;
+        Ok(self)
+    }
+
+    /// The same run with part and external axes set up as for case 1 (the best) or 3 (the worst) in a results folder that `stead place` has
+    /// written from the same files; with the exact placement of the case.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a folder that is no such result, or one of other files.
+    pub fn set_up_as_in(mut self, results: impl AsRef<Path>, case: u8) -> Result<(Self, Placement), Error> {
+        let (placement, setup) = format::read_setup_of(results.as_ref(), case, &self.run.inputs, &self.run.problem)?;
+        let problem = self.run.problem.in_setup(&setup).into_owned();
+        Arc::make_mut(&mut self.run).problem = problem;
+        self.is_set_up = true;
+        Ok((self, placement))
+    }
+
+    /// The run with the external axes where a given placement is best, unless they are set up already.
+    fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<format::Run> {
+        let problem = &self.run.problem;
+        if self.is_set_up || problem.external_axes.is_empty() {
+            return Arc::clone(&self.run);
+        }
+        let problem = problem.in_setup(&setup_at(problem, placement, monitor)).into_owned();
+        Arc::new(format::Run { problem, ..(*self.run).clone() })
     }
 
     /// The same run without a page among its files, whatever the file says of one.
@@ -188,17 +236,18 @@ impl Run {
         self.score_with(placement, &Monitor::silent())
     }
 
-    /// As [`Run::score`]. A stop that the monitor asks for leaves out the critical depths.
+    /// As [`Run::score`]: external axes stand where the placement is best, unless a result says where ([`Run::set_up_as_in`]). A stop that the monitor asks for leaves out the critical depths.
     ///
     /// # Errors
     /// As [`Run::score`].
     pub fn score_with(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
-        let Scored { score, stability, notes } = study::score(&self.run, placement, monitor)?;
+        let run = self.set_up_at(placement, monitor);
+        let Scored { score, stability, notes } = study::score(&run, placement, monitor)?;
         let warnings = score.warnings.clone();
         let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
         context.notes.extend(notes);
         context.notes.extend(score.notes.iter().cloned());
-        Ok(PlacementScore { run: Arc::clone(&self.run), score, map: None, context })
+        Ok(PlacementScore { run, score, map: None, context })
     }
 
     /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
@@ -303,7 +352,7 @@ impl Report for Placements {
     }
 
     fn document(&self) -> Value {
-        let mut document = place_json(&self.outcome, &self.context, &self.timing);
+        let mut document = place_json(&self.run.problem, &self.outcome, &self.context, &self.timing);
         if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
             entries.insert("certificate".to_owned(), certificate_json(certificate, &self.run.inputs));
         }

@@ -12,7 +12,7 @@ use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{Context, placement_files, write_placement};
-use stead_report::study::{status_json, study_files, study_json, study_text, write_study};
+use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
 use stead_report::{Files, Folder};
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
@@ -138,7 +138,18 @@ impl Study {
         let analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
         let csv = input_file("table", cases::TABLES[0], &table.to_csv()?);
         let inputs = self.plan.study.inputs.iter().cloned().chain([csv]).collect();
-        Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs })
+        Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs, pages: self.pages(folder) })
+    }
+
+    /// The pages of the cases that are kept in a folder of results.
+    fn pages(&self, folder: &Path) -> CasePages {
+        let results = self.folder(folder);
+        let page = |case: &PlannedCase| {
+            let name = results.name_of_case(case);
+            let is_there = results.of_case(case).join("report.html").is_file() && results.is_kept(case);
+            is_there.then(|| (case.case.number as i64, format!("{CASES}/{name}/report.html")))
+        };
+        self.plan.cases.iter().filter_map(page).collect()
     }
 
     /// The folder of results as cases and tables are put into it.
@@ -154,6 +165,8 @@ pub struct StudyReport {
     analysis: Analysis,
     /// The files of the study, and its table.
     inputs: Vec<InputFile>,
+    /// The pages of the cases that are kept.
+    pages: CasePages,
 }
 
 impl StudyReport {
@@ -165,11 +178,11 @@ impl StudyReport {
 
 impl Report for StudyReport {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.inputs)?)
+        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.inputs, &self.pages)?)
     }
 
     fn files(&self) -> Result<Files, Error> {
-        Ok(study_files(&self.plan.name(), &self.analysis, &self.inputs)?)
+        Ok(study_files(&self.plan.name(), &self.analysis, &self.inputs, &self.pages)?)
     }
 
     fn document(&self) -> Value {
@@ -186,6 +199,8 @@ result!(StudyReport);
 /// The command in whose name the table is written, and that of what is derived from it.
 const RUN: &str = "study run";
 const REPORT: &str = "study report";
+/// The folder of kept cases in that of a study.
+const CASES: &str = "cases";
 /// How long a table waits for a report that is just being written to the same folder.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -196,9 +211,12 @@ struct StudyFolder<'s> {
 }
 
 impl StudyFolder<'_> {
+    fn name_of_case(&self, case: &PlannedCase) -> String {
+        format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default())
+    }
+
     fn of_case(&self, case: &PlannedCase) -> PathBuf {
-        let name = format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default());
-        self.path.join("cases").join(name)
+        self.path.join(CASES).join(self.name_of_case(case))
     }
 }
 

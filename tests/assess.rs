@@ -87,6 +87,7 @@ fn files_are_the_same_for_any_number_of_threads() {
         "map-kuka-kr-500.svg",
         "middle-zones.csv",
         "optimal-zones.csv",
+        "report.html",
         "selection.csv",
         "summary.json",
     ];

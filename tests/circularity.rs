@@ -75,7 +75,7 @@ fn table_names_the_four_circles_and_files_are_asked_for() {
     let written = run(&bench, &["--exclude-deg", "350:10", "--out", "out", "--json"]);
     assert_eq!(
         bench.tree("out").keys().collect::<Vec<_>>(),
-        ["circularity.json", "deviations.csv", "manifest.json", "polar.svg"]
+        ["circularity.json", "deviations.csv", "manifest.json", "polar.svg", "report.html"]
     );
     assert_eq!(bench.read("out/circularity.json"), written.stdout);
     let deviations = bench.read("out/deviations.csv");

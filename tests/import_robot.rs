@@ -128,3 +128,19 @@ fn a_pose_of_the_controller_settles_how_it_counts() {
         assert!(!bench.path("wrong.toml").exists());
     }
 }
+
+#[test]
+fn links_become_shapes_of_a_cell_file_where_they_are_asked_for() {
+    let bench = bench();
+    let link = "<link name=\"link_2\">";
+    let collision = "<collision><geometry><box size=\"0.3 0.3 1.0\"/></geometry></collision>";
+    bench.replace("kuka.urdf", link, &format!("{link}{collision}"));
+    let ended = bench.stead(&["import", "robot", "kuka.urdf", "--collision", "--out", "my/arm.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("written: my/arm.toml, my/arm-cell.toml"), "{}", ended.stdout);
+    ended.assert_says(&["note: link \"link_1\" has no <collision> shape: the arm is not checked there"]);
+    let cell = bench.read("my/arm-cell.toml");
+    for part in ["name = \"link_2 shape\"", "attached = \"link_2\"", "box_mm = [300.0, 300.0, 1000.0]"] {
+        assert!(cell.contains(part), "{part} in {cell}");
+    }
+}

@@ -12,15 +12,23 @@ fn a_run_leaves_a_page_unless_it_is_not_wanted_and_it_can_be_made_again() {
     let page = bench.read("out/report.html");
     let manifest = bench.read("out/manifest.json");
     assert!(page.contains("<title>run · stead</title>") && manifest.contains("page-data.json"));
+    let scene = bench.tree("out").remove("cell.glb").unwrap().unwrap();
+    assert!(scene.starts_with(b"glTF"));
     bench.write("out/report.html", "spoilt");
+    bench.write("out/cell.glb", "spoilt");
     let again = bench.stead(&["page", "out"]);
-    assert_eq!((again.code, again.stdout.as_str()), (Some(0), "out/report.html\n"));
+    assert_eq!((again.code, again.stdout.as_str()), (Some(0), "out/report.html\nout/cell.glb\n"));
     assert!(bench.read("out/report.html") == page && bench.read("out/manifest.json") == manifest);
+
+    assert!(bench.tree("out")["cell.glb"].as_ref() == Some(&scene));
 
     // Without a page none of the run before stays.
     assert_eq!(place(&["--no-page"]).code, Some(0));
     let names = bench.names("out");
-    assert!(names.iter().all(|name| name != "report.html" && name != "page-data.json"), "{names:?}");
+    assert!(
+        ["report.html", "cell.glb", "page-data.json"].iter().all(|page| names.iter().all(|name| name != page)),
+        "{names:?}"
+    );
     let refused = bench.stead(&["page", "out"]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.stderr.contains("out: manifest.json lists no page-data.json; allowed: "), "{}", refused.stderr);

@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 18] = [
+pub const FILES: [&str; 19] = [
     "best-worst-plan.csv",
     "best.csv",
+    "cell.glb",
     "cell.svg",
     "convergence.csv",
     "convergence.svg",

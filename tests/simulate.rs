@@ -46,7 +46,16 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     assert_eq!(document["fast"].as_bool(), Some(false));
     assert!(number(&document["real_time_factor"]) > 0.0);
 
-    let expected = ["forces.svg", "manifest.json", "series.csv", "summary.json", "turns.svg", "wall.csv", "wall.svg"];
+    let expected = [
+        "forces.svg",
+        "manifest.json",
+        "report.html",
+        "series.csv",
+        "summary.json",
+        "turns.svg",
+        "wall.csv",
+        "wall.svg",
+    ];
     let files = bench.tree("results/pass");
     assert!(files.keys().eq(&expected), "{:?}", files.keys());
     let series = bench.read("results/pass/series.csv");

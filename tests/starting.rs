@@ -17,7 +17,7 @@ fn starter(kind: &str) -> Bench {
 #[test]
 fn every_starter_set_runs() {
     for (kind, files, commands) in [
-        ("place", &["robot.toml", "run.toml", "task.csv"][..], &[&["place", "new/run.toml"][..]][..]),
+        ("place", &["cell.toml", "robot.toml", "run.toml", "task.csv"][..], &[&["place", "new/run.toml"][..]][..]),
         ("assess", &["assess.toml", "robot.toml"], &[&["assess", "new/assess.toml"]]),
         (
             "identify",

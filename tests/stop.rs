@@ -9,8 +9,9 @@ const MAPS: [&str; 4] =
     ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
 
 /// What a score leaves, its map apart.
-const SCORE_FILES: [&str; 7] = [
+const SCORE_FILES: [&str; 8] = [
     "best-plan.csv",
+    "cell.glb",
     "manifest.json",
     "page-data.json",
     "placement.svg",
@@ -90,6 +91,7 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
     let scored = with(&["--out", "scored"]);
     let files = [
         "best-plan.csv",
+        "cell.glb",
         "deflection-map.csv",
         "deflection-map.svg",
         "manifest.json",

@@ -113,8 +113,7 @@ impl Run {
 
     /// As `score`, of the exact placement of a case in a results folder.
     fn score_of(&self, py: Python<'_>, results: PathBuf, case: u8, options: Options) -> Done {
-        let place = self.0.placement_of(results, case).map_err(|error| raised(py, error))?;
-        let run = self.0.clone();
+        let (run, place) = self.0.clone().set_up_as_in(results, case).map_err(|error| raised(py, error))?;
         let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score_with(&place, monitor))?;
         let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
         done(result, was_stopped, Kind::Score, raise)

@@ -292,6 +292,9 @@ pub(super) struct ScoreOptions {
     pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: GivenPlacement,
+    /// Orientation of the part by its name, where the run file has several
+    #[arg(long, value_name = "NAME", conflicts_with = "placement_of")]
+    pub orientation: Option<String>,
     /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -309,6 +312,9 @@ pub(super) struct ExplainOptions {
     pub set: Vec<FieldOverride>,
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// Orientation of the part by its name, where the run file has several
+    #[arg(long, value_name = "NAME")]
+    pub orientation: Option<String>,
     /// Path point, counted from 0 in the order of the task file
     #[arg(long, value_name = "I", value_parser = point, allow_negative_numbers = true)]
     pub point: usize,
@@ -345,7 +351,7 @@ pub(super) struct CircularityOptions {
     /// Exclude points from angle A to B in degrees about the least-squares centre; may be repeated
     #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]
     pub exclude_deg: Vec<Sector>,
-    /// Folder for circularity.json, deviations.csv and polar.svg [default: nothing is written]
+    /// Folder for circularity.json, deviations.csv, polar.svg and report.html [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print one JSON document instead of a table

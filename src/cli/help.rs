@@ -57,7 +57,8 @@ Files written to the results folder:
                                      deflection over path point and spindle angle, unless [output] maps = false
   convergence.{csv,svg}, refinements.csv, transfers.csv, cell.svg
   summary.json                       all of it for programs
-  report.html, page-data.json        a page for the browser, and what `stead page` makes it of; not with --no-page
+  report.html, cell.glb, page-data.json
+                                     page for the browser, moving 3-D scene, what `stead page` makes both of; not with --no-page
   stability-{best,worst}.csv, stability.svg
                                      with a table [stability]: critical depth along the path
   certificate.json, open-region.{csv,svg}, open-region-worst.svg
@@ -74,12 +75,14 @@ Examples:
   stead score configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258
   stead score configs/caro-2013.toml --x-mm 0 --y-mm -1640 --z-mm -214 --yaw-deg 79 --json
   stead score configs/caro-2013.toml --placement-of results/caro-2013 --case 3 --out results/worst
+  stead score configs/tilting-table.toml --x-mm 1700 --y-mm 0 --z-mm 700 --yaw-deg 0 --orientation flat
 
 Files written with --out:
   best-plan.csv, worst-plan.csv      the two plans, point by point
   deflection-map.{csv,svg}           deflection over path point and spindle angle, unless [output] maps = false
   placement.svg                      the cell from above with the placement
-  report.html, page-data.json        as of `stead place`
+  report.html, cell.glb, page-data.json
+                                     as of `stead place`
   score.json                         what --json prints
   stability-{best,worst}-plan.csv, stability.svg
                                      with a table [stability]: critical depth along the path
@@ -154,7 +157,7 @@ Files written to the folder of the study:
   study-front.{csv,svg}              layouts that no other is better than in every column of the front
   study-effects.{csv,svg}            what each axis does to the column of the ranking
   study-map.svg                      that column over two axes
-  study-report.json                  what --json prints
+  study-report.json, report.html     what --json prints; a page with all of it, which leads to the pages of kept cases
 
 Exit codes:
   0  done
@@ -174,7 +177,7 @@ Files written to the results folder:
   accuracy.csv, selection.csv        with forces and accuracies: which robots reach which accuracy
   indicators.svg                     accuracy, reach, payload and price side by side
   cutting.svg, cutting-*.csv         with a cutter and a cut: force and torque over a turn
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -205,7 +208,7 @@ Files written to the results folder:
   robot-identified.toml              the robot file with the identified values and their covariance
   compliances.csv                    every estimate with standard deviation and 95 % interval
   residuals.csv, deflections.svg     every reading beside what the identified arm gives
-  report.json                        all of it for programs
+  report.json, report.html           all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -235,7 +238,7 @@ Examples:
 Files written with --out:
   circularity.json                   the four reference circles with their circularity
   deviations.csv                     angle, radii and deviations of every point
-  polar.svg                          the profile between its zone circles
+  polar.svg, report.html             the profile between its zone circles; a page whose charts answer to the pointer
 
 Exit codes:
   0  done
@@ -252,7 +255,7 @@ Files written to the results folder:
   series.csv                         forces and tool positions over time
   wall.csv, wall.svg                 profile of the wall that is left, and its roughness
   forces.svg, turns.svg              forces over the pass, and over three turns of the spindle
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done; an unstable cut is a result, too
@@ -332,12 +335,13 @@ pub(super) const IMPORT_ROBOT: &str = "\
 Examples:
   stead import robot kr120.urdf --out my/kr120.toml
   stead import robot cell.urdf --base-link base_link --tip-link tool0 --out my/arm.toml
-  stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --out my/kr210.toml
+  stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --collision --out my/kr210.toml
   stead import robot kr210.urdf --controller kuka --out my/kr210.toml \\
       --home-deg=-31.2,-71.4,63.7,17.9,52.6,-117.3=1791.52,1023.61,1741.52,99.95,-2.34,131.94
 
-Files written: the robot file. Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like
-taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict millimetres.
+Files written: the robot file, and with --collision NAME-cell.toml beside it: the links as shapes of surroundings.
+Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like taken from a shipped arm
+(`stead robots` lists them), which ranks placements and does not predict millimetres.
 
 Exit codes:
   0  done
@@ -350,7 +354,7 @@ Examples:
   stead init place --robot my/kr210.toml --task my/part.csv --out my/run.toml
 
 Files written to the folder:
-  place     run.toml, robot.toml, task.csv
+  place     run.toml, robot.toml, task.csv, cell.toml
   assess    assess.toml, robot.toml
   identify  identify.toml, robot.toml, sheet.csv
   simulate  simulate.toml, robot.toml (for stead stability too)

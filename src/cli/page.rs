@@ -9,11 +9,11 @@ Example:
   stead page results/caro-2013
 
 Files written to the results folder:
-  report.html                        the page, the same as the run has left it
+  report.html, cell.glb              the page and the scene, the same as the run has left them
 
 Exit codes:
   0  done
-  1  the page could not be written
+  1  a file could not be written
   2  wrong usage, or a folder that lacks a file, mixes two runs, is of another format or was changed since";
 
 #[derive(Debug, Args)]

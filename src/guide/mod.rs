@@ -6,7 +6,9 @@
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
+//! | What must the robot not hit? | [`surroundings`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
+//! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -20,7 +22,7 @@
 //! | How round is a measured profile? | [`circularity`] |
 //! | How do I use stead from Rust, from Python? | [`library`], [`python`] |
 //! | Which direction is positive? | [`conventions`] |
-//! | What stands in which file? | [`files`], [`run_file`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
+//! | What stands in which file? | [`files`], [`run_file`], [`surroundings`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
 //! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
 //! | What does this message mean? | [`troubleshooting`], [`glossary`] |
 //!
@@ -30,6 +32,8 @@
 pub mod assess {}
 #[doc = include_str!("assessment_file.md")]
 pub mod assessment_file {}
+#[doc = include_str!("cell_setup.md")]
+pub mod cell_setup {}
 #[doc = include_str!("certify.md")]
 pub mod certify {}
 #[doc = include_str!("circularity.md")]
@@ -90,6 +94,8 @@ pub mod studies {}
 pub mod study {}
 #[doc = include_str!("study_file.md")]
 pub mod study_file {}
+#[doc = include_str!("surroundings.md")]
+pub mod surroundings {}
 #[doc = include_str!("tables.md")]
 pub mod tables {}
 #[doc = include_str!("troubleshooting.md")]

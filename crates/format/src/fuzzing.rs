@@ -4,9 +4,14 @@
 use crate::cam::gcode::Machine;
 use crate::cam::{CamFormat, LengthUnit, ReadSettings, Resampling, import_bytes};
 use crate::input::InputError;
+use crate::mesh::{MeshUnit, read_mesh};
 use crate::task::parse_csv;
 use crate::urdf::{ImportOptions, import_robot_text};
 use std::path::Path;
+use std::sync::Arc;
+use stead_cell::collider::Collider;
+use stead_cell::{Solid, TriangleMesh};
+use stead_model::robot::Pose;
 
 /// A reader of files that others write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +24,10 @@ pub enum Reader {
     Gcode,
     /// Tool paths as CSV.
     Task,
+    /// Meshes as STL, binary and ASCII.
+    Stl,
+    /// Meshes as OBJ.
+    Obj,
 }
 
 impl Reader {
@@ -28,7 +37,7 @@ impl Reader {
     /// A sentence where an answer does not hold what it promises: an error in one line that names the file and what is allowed, an imported
     /// path that is read back as a task with as many points.
     pub fn check(self, bytes: &[u8]) -> Result<bool, String> {
-        let file = Path::new("file");
+        let file = Path::new(if self == Self::Obj { "file.obj" } else { "file" });
         let taken = match self {
             Self::Urdf => {
                 import_robot_text(file, &String::from_utf8_lossy(bytes), &ImportOptions::default()).map(|robot| {
@@ -36,6 +45,13 @@ impl Reader {
                 })
             }
             Self::Task => parse_csv(file, bytes).map(drop),
+            Self::Stl | Self::Obj => match read_mesh(file, bytes, MeshUnit::Metre) {
+                Ok(mesh) => {
+                    used(&Arc::new(mesh))?;
+                    Ok(())
+                }
+                Err(error) => Err(error),
+            },
             Self::Cldata | Self::Gcode => match import_bytes(file, bytes, &self.settings(bytes)) {
                 Ok(path) => {
                     let _ = path.to_string();
@@ -72,6 +88,19 @@ impl Reader {
     }
 }
 
+/// A mesh that was read can be looked at as what it is and as its hull.
+fn used(mesh: &Arc<TriangleMesh>) -> Result<(), String> {
+    let ball = Collider::new(&Solid::Capsule { radius: 0.1, length: 0.0 }, &Pose::identity());
+    for solid in [Solid::Mesh(mesh.clone()), Solid::Hull(mesh.clone())] {
+        let Some((collider, ball)) = Collider::new(&solid, &Pose::identity()).zip(ball.as_ref()) else { continue };
+        let distance = collider.distance(&Pose::identity(), ball, &Pose::identity(), 1.0);
+        if distance.is_nan() {
+            return Err("a mesh whose distance is no number".to_owned());
+        }
+    }
+    Ok(())
+}
+
 /// What every error of a reader promises.
 fn promised(error: &InputError) -> Result<(), String> {
     let message = error.to_string();
@@ -89,17 +118,22 @@ mod tests {
     use rand::{Rng, RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    const URDF: [&str; 2] = [include_str!("urdf/fixtures/kuka.urdf"), include_str!("urdf/fixtures/abb.urdf")];
-    const CLDATA: [&str; 2] = [include_str!("cam/fixtures/pocket.cls"), include_str!("cam/fixtures/every_word.cls")];
-    const GCODE: [&str; 2] = [include_str!("cam/fixtures/three_axes.nc"), include_str!("cam/fixtures/five_axes.nc")];
-    const TASK: [&str; 2] =
-        [include_str!("../../../tasks/five-segments.csv"), include_str!("cam/fixtures/followed.csv")];
+    const URDF: [&[u8]; 2] = [include_bytes!("urdf/fixtures/kuka.urdf"), include_bytes!("urdf/fixtures/abb.urdf")];
+    const CLDATA: [&[u8]; 2] =
+        [include_bytes!("cam/fixtures/pocket.cls"), include_bytes!("cam/fixtures/every_word.cls")];
+    const GCODE: [&[u8]; 2] =
+        [include_bytes!("cam/fixtures/three_axes.nc"), include_bytes!("cam/fixtures/five_axes.nc")];
+    const TASK: [&[u8]; 2] =
+        [include_bytes!("../../../tasks/five-segments.csv"), include_bytes!("cam/fixtures/followed.csv")];
+    const STL: [&[u8]; 2] =
+        [include_bytes!("mesh/fixtures/wedge.stl"), include_bytes!("mesh/fixtures/wedge-ascii.stl")];
+    const OBJ: [&[u8]; 2] = [include_bytes!("mesh/fixtures/wedge.obj"), include_bytes!("mesh/fixtures/house.obj")];
 
     /// Runs so many fixtures with mutations; how many were taken.
-    fn run(reader: Reader, fixtures: &[&str], runs: usize) -> usize {
+    fn run(reader: Reader, fixtures: &[&[u8]], runs: usize) -> usize {
         let mut random = ChaCha8Rng::seed_from_u64(16);
         let taken = |run: usize| {
-            let mut bytes = fixtures[run % fixtures.len()].as_bytes().to_vec();
+            let mut bytes = fixtures[run % fixtures.len()].to_vec();
             (0..random.random_range(1..4)).for_each(|_| mutate(&mut bytes, &mut random));
             reader.check(&bytes).unwrap_or_else(|broken| panic!("{broken}: {:?}", String::from_utf8_lossy(&bytes)))
         };
@@ -130,9 +164,14 @@ mod tests {
 
     /// All readers on so many fixtures with mutations each.
     fn run_all(runs: usize) {
-        for (reader, fixtures) in
-            [(Reader::Urdf, URDF), (Reader::Cldata, CLDATA), (Reader::Gcode, GCODE), (Reader::Task, TASK)]
-        {
+        for (reader, fixtures) in [
+            (Reader::Urdf, URDF),
+            (Reader::Cldata, CLDATA),
+            (Reader::Gcode, GCODE),
+            (Reader::Task, TASK),
+            (Reader::Stl, STL),
+            (Reader::Obj, OBJ),
+        ] {
             let share = run(reader, &fixtures, runs) as f64 / runs as f64;
             assert!((0.025..0.975).contains(&share), "{reader:?}: {share} of {runs} are taken");
         }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// What a starter set is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StarterSet {
-    /// `run.toml`, `robot.toml` and `task.csv`, for `stead place`.
+    /// `run.toml`, `robot.toml`, `task.csv` and `cell.toml`, for `stead place`.
     Place,
     /// `assess.toml` and `robot.toml`, for `stead assess`.
     Assess,
@@ -29,9 +29,12 @@ impl StarterSet {
     /// The files of the set with their names, the one to start with first.
     pub fn files(self) -> Vec<(&'static str, &'static str)> {
         match self {
-            Self::Place => {
-                vec![("run.toml", include_str!("init/run.toml")), ROBOT, ("task.csv", include_str!("init/task.csv"))]
-            }
+            Self::Place => vec![
+                ("run.toml", include_str!("init/run.toml")),
+                ROBOT,
+                ("task.csv", include_str!("init/task.csv")),
+                ("cell.toml", include_str!("init/cell.toml")),
+            ],
             Self::Assess => vec![("assess.toml", include_str!("init/assess.toml")), ROBOT],
             Self::Identify => vec![
                 ("identify.toml", include_str!("init/identify.toml")),
@@ -108,6 +111,11 @@ mod tests {
         let place = written(StarterSet::Place);
         let run = read_run(&place.path().join("run.toml")).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!((run.problem.task.points().len(), run.notes.len()), (17, 0));
+        let file = place.path().join("run.toml");
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, text.replacen("# surroundings", "surroundings", 1)).unwrap();
+        let run = read_run(&file).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(run.problem.scene.map(|scene| scene.surroundings().shapes().len()), Some(5));
         let assess = written(StarterSet::Assess);
         read_assessment(&assess.path().join("assess.toml")).unwrap_or_else(|e| panic!("{e}"));
         let identify = written(StarterSet::Identify);

@@ -44,13 +44,9 @@ const KEYS: &str = "exactly one of rotation (matrix, by rows), abc_deg (Rz(A) Ry
      rpy_deg (Rz(y) Ry(p) Rx(r)), quaternion_wxyz";
 
 impl OrientationKeys {
-    /// The rotation that the table states.
-    ///
-    /// # Errors
-    /// [`InputError`] where none or several of the keys are there, for a matrix that is no rotation, and for a quaternion whose
-    /// length is not 1.
-    pub fn rotation(&self, at: &Place<'_>) -> Result<Matrix3<f64>, InputError> {
-        let given: Vec<&str> = [
+    /// The keys that the table has.
+    fn given(&self) -> Vec<&'static str> {
+        [
             ("rotation", self.rotation.is_some()),
             ("abc_deg", self.abc_deg.is_some()),
             ("wpr_deg", self.wpr_deg.is_some()),
@@ -59,8 +55,21 @@ impl OrientationKeys {
         ]
         .into_iter()
         .filter_map(|(key, is_given)| is_given.then_some(key))
-        .collect();
-        if let [first, second, ..] = given[..] {
+        .collect()
+    }
+
+    /// Whether the table has any of the keys.
+    pub fn is_given(&self) -> bool {
+        !self.given().is_empty()
+    }
+
+    /// The rotation that the table states.
+    ///
+    /// # Errors
+    /// [`InputError`] where none or several of the keys are there, for a matrix that is no rotation, and for a quaternion whose
+    /// length is not 1.
+    pub fn rotation(&self, at: &Place<'_>) -> Result<Matrix3<f64>, InputError> {
+        if let [first, second, ..] = self.given()[..] {
             return Err(at.key(second).error(format!("states an orientation beside {first}"), KEYS));
         }
         if let Some([w, p, r]) = self.wpr_deg.or(self.rpy_deg).map(Array::si) {

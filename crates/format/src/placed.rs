@@ -4,8 +4,10 @@ use crate::input::{InputError, InputFile};
 use crate::manifest::{self, Unlisted};
 use serde_json::Value;
 use std::path::Path;
+use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::angles::wrap;
-use stead_placement::problem::Placement;
+use stead_placement::problem::{Placement, Problem};
+use stead_placement::setup::{AxisPositions, Setup};
 
 /// The file with the cases.
 const SUMMARY: &str = "summary.json";
@@ -19,6 +21,54 @@ const ALLOWED: &str = "a folder that `stead place` has written from the same run
 /// [`InputError`] for a folder that is no result of `stead place`, one that its manifest does not vouch for, one of other input files,
 /// or one without that case.
 pub fn read_placement_of(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<Placement, InputError> {
+    read_case(folder, case, inputs).map(|(placement, _)| placement)
+}
+
+/// As [`read_placement_of`], with how part and external axes of the run's problem are set up for the case.
+///
+/// # Errors
+/// As [`read_placement_of`], and for a setup that is none of the problem.
+pub fn read_setup_of(
+    folder: &Path,
+    case: u8,
+    inputs: &[InputFile],
+    problem: &Problem,
+) -> Result<(Placement, Setup), InputError> {
+    let (placement, entry) = read_case(folder, case, inputs)?;
+    let error = |field: &str| {
+        let problem = "is none of the run's".to_owned();
+        InputError::new(&folder.join(SUMMARY), problem).in_field(format!("cases.{field}")).allowed(ALLOWED)
+    };
+    let mut setup = problem.setup.clone();
+    if !problem.orientations.is_empty() {
+        let found = problem.orientations.iter().position(|known| entry["orientation"] == known.name.as_str());
+        setup.orientation = found.ok_or_else(|| error("orientation"))?;
+    }
+    if !problem.external_axes.is_empty() {
+        let axes = &entry["external_axes"];
+        let si = |(value, axis): (&Value, &ExternalAxis)| match axis.kind {
+            AxisKind::Rail => value.as_f64().map(|mm| mm / 1e3),
+            AxisKind::Turntable => value.as_f64().map(f64::to_radians),
+        };
+        let row = |row: &Value| -> Option<Vec<f64>> {
+            let row = row.as_array().filter(|row| row.len() == problem.external_axes.len())?;
+            row.iter().zip(&problem.external_axes).map(si).collect()
+        };
+        let rows = axes["positions"].as_array().and_then(|rows| rows.iter().map(row).collect::<Option<Vec<_>>>());
+        let task = &problem.task;
+        let positions = rows.and_then(|rows| match (axes["for_each"].as_str()?, rows.len()) {
+            ("path", 1) => rows.into_iter().next().map(AxisPositions::Same),
+            ("segment", count) => (count == task.segments().len()).then_some(AxisPositions::PerSegment(rows)),
+            ("point", count) => (count == task.points().len()).then_some(AxisPositions::PerPoint(rows)),
+            _ => None,
+        });
+        setup.positions = positions.ok_or_else(|| error("external_axes"))?;
+    }
+    Ok((placement, setup))
+}
+
+/// The exact placement of a case, and its entry.
+fn read_case(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<(Placement, Value), InputError> {
     let file = folder.join(SUMMARY);
     let error = |problem: String| InputError::new(&file, problem).allowed(ALLOWED);
     let text = std::fs::read_to_string(&file).map_err(|cause| error(format!("cannot be read: {cause}")))?;
@@ -42,7 +92,7 @@ pub fn read_placement_of(folder: &Path, case: u8, inputs: &[InputFile]) -> Resul
         })
     };
     let [x, y, z] = [number("x_mm")?, number("y_mm")?, number("z_mm")?].map(|mm| mm / 1e3);
-    Ok(Placement { x, y, z, yaw: wrap(number("yaw_deg")?.to_radians()) })
+    Ok((Placement { x, y, z, yaw: wrap(number("yaw_deg")?.to_radians()) }, cases[index].clone()))
 }
 
 /// Refuses results that were computed from other files.

@@ -10,6 +10,7 @@ use crate::robot::RobotFile;
 use crate::run::RunFile;
 use crate::simulation::SimulationFile;
 use crate::study::StudyFile;
+use crate::surroundings::SurroundingsFile;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Map, Value};
@@ -28,7 +29,7 @@ pub struct UnknownSchema {
 type Make = fn() -> Schema;
 
 /// Every kind of file, by the name of its schema.
-const SCHEMAS: [(&str, Make); 8] = [
+const SCHEMAS: [(&str, Make); 9] = [
     ("run", of::<RunFile>),
     ("robot", of::<RobotFile>),
     ("simulate", of::<SimulationFile>),
@@ -37,6 +38,7 @@ const SCHEMAS: [(&str, Make); 8] = [
     ("identify-plan", || requiring(of::<IdentificationFile>(), &["noise_mm", "plan"])),
     ("compensate", of::<CompensationFile>),
     ("study", of::<StudyFile>),
+    ("surroundings", of::<SurroundingsFile>),
 ];
 
 /// The names of all schemas.

@@ -1,11 +1,13 @@
 //! Where files come from: the disk, or what was read from it once for many runs.
 
 use crate::input::InputError;
+use crate::mesh::{MeshUnit, read_mesh};
 use crate::task::{Imported, parse_csv};
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use stead_cell::TriangleMesh;
 use stead_model::robot::Robot;
 
 /// Where files come from. Clones share what was read.
@@ -18,6 +20,7 @@ struct Shared {
     /// Robots of files without values put in place of theirs, and whether with what motion needs.
     robots: Known<(PathBuf, Option<bool>), Robot>,
     tasks: Known<PathBuf, Imported>,
+    meshes: Known<(PathBuf, MeshUnit), TriangleMesh>,
 }
 
 /// What was read or made once, by its key.
@@ -57,6 +60,13 @@ impl Sources {
         let Some(shared) = &self.0 else { return parse_csv(file, bytes) };
         let task = once(&shared.tasks, file.to_owned(), || parse_csv(file, bytes).map(Arc::new))?;
         Ok(Imported::clone(&task))
+    }
+
+    /// The triangles of a mesh file.
+    pub(crate) fn mesh(&self, file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<Arc<TriangleMesh>, InputError> {
+        let read = || read_mesh(file, bytes, unit).map(Arc::new);
+        let Some(shared) = &self.0 else { return read() };
+        once(&shared.meshes, (file.to_owned(), unit), read)
     }
 
     /// Offers a task under the name of a file that is not on the disk.

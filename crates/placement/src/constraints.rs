@@ -34,6 +34,8 @@ pub enum ConstraintKind {
     MaxDeflection,
     /// The smallest distance of a path point from axis 1.
     BaseDistance,
+    /// The distance of shapes on the arm and around it, and zones that the arm keeps out of.
+    Clearance,
     /// The bounds of the cell on x, y and z.
     CellPosition,
     /// The bounds of the cell on the yaw.
@@ -54,6 +56,7 @@ impl ConstraintKind {
             Self::SpindleTurn => "spindle_turn".to_owned(),
             Self::MaxDeflection => "deflection".to_owned(),
             Self::BaseDistance => "base_distance".to_owned(),
+            Self::Clearance => "clearance".to_owned(),
             Self::CellPosition => "cell_position".to_owned(),
             Self::CellYaw => "cell_yaw".to_owned(),
         }
@@ -74,6 +77,7 @@ impl Problem {
         kinds.extend((self.constraints.min_base_distance > 0.0).then_some(BaseDistance));
         let is_free = self.postures.may_change && self.postures.allowed().count() == 8;
         kinds.extend((!is_free).then_some(Posture));
+        kinds.extend(self.scene.as_ref().map(|_| Clearance));
         kinds.push(CellPosition);
         kinds.extend((!self.cell.is_yaw_free()).then_some(CellYaw));
         kinds
@@ -114,6 +118,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
             SpindleTurn => Some("turn of the spindle"),
             MaxDeflection => Some("max_deflection_mm"),
             BaseDistance => Some("distance of the path from axis 1"),
+            Clearance => Some("clearance of the shapes"),
             CellPosition => Some("bounds of x, y and z"),
             CellYaw => Some("which yaw goes with which x and y"),
         }

@@ -39,6 +39,16 @@ impl Explanation {
 /// What each of the eight postures gives at path point `point`, workpiece at a placement, free angle
 /// `beta` (rad), in the order of their numbers.
 pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
+    without_clearance(problem, placement, point, beta).map(|mut explanation| {
+        let measured =
+            explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
+        explanation.violations.extend(measured.filter(|measured| !measured.holds()));
+        explanation
+    })
+}
+
+/// The same without the shapes of the scene.
+fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     Posture::ALL.map(|posture| match state(problem, point, placement, beta, posture) {
         Err(unreachable) => Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)] },
         Ok(mut found) => {
@@ -60,7 +70,16 @@ pub struct DeflectionMap {
     pub beta_count: usize,
     /// For each path point the row of its `beta_count` states: a score (m), or the constraint that the posture nearest to
     /// being allowed breaks most.
-    pub rows: Vec<Vec<Result<MapCell, ConstraintKind>>>,
+    pub rows: Vec<Vec<Result<MapCell, MapReason>>>,
+}
+
+/// Why no posture of a state is allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MapReason {
+    /// The constraint that the posture nearest to being allowed breaks most.
+    pub kind: ConstraintKind,
+    /// Number of the pair of the scene that is nearer than it may be.
+    pub pair: Option<usize>,
 }
 
 /// An allowed state of a [`DeflectionMap`].
@@ -79,16 +98,28 @@ pub(super) const AFTER_STOP: usize = 50_000;
 /// large map that the caller stops.
 pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<DeflectionMap> {
     let beta_count = problem.redundancy.beta_count;
+    let placement_hit = problem.placement_hit(placement);
     let cell = |point: usize, k: usize| {
-        let all = explain(problem, placement, point, problem.redundancy.beta(k));
-        let allowed = all
+        let all = without_clearance(problem, placement, point, problem.redundancy.beta(k));
+        let mut allowed: Vec<(MapCell, [f64; 6])> = all
             .iter()
             .filter(|e| e.is_allowed())
-            .filter_map(|e| e.state.as_ref().map(|s| MapCell { score: s.score(), posture: e.posture }));
-        allowed.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or_else(|| {
-            let nearest = all.iter().min_by(|a, b| a.severity().total_cmp(&b.severity()));
-            nearest.and_then(Explanation::worst).map_or(ConstraintKind::Reach, Measured::kind)
-        })
+            .filter_map(|e| e.state.as_ref().map(|s| (MapCell { score: s.score(), posture: e.posture }, s.joints)))
+            .collect();
+        allowed.sort_by(|a, b| a.0.score.total_cmp(&b.0.score));
+        let mut hit = placement_hit;
+        for (cell, joints) in &allowed {
+            match placement_hit.or_else(|| problem.state_hit(point, placement, joints)) {
+                None => return Ok(*cell),
+                found => hit = hit.or(found),
+            }
+        }
+        if let (Some(pair), false) = (hit, allowed.is_empty()) {
+            return Err(MapReason { kind: ConstraintKind::Clearance, pair: Some(pair) });
+        }
+        let nearest = all.iter().min_by(|a, b| a.severity().total_cmp(&b.severity()));
+        let kind = nearest.and_then(Explanation::worst).map_or(ConstraintKind::Reach, Measured::kind);
+        Err(MapReason { kind, pair: None })
     };
     let points = problem.task.points().len();
     let is_stopped = || points * beta_count > AFTER_STOP && monitor.should_stop();

@@ -25,8 +25,12 @@
 //! (as a divided difference, where the poses at hand are a little farther apart than w). Within w of the ends of a segment, where the feed
 //! starts and stops, accelerations are not evaluated.
 
+mod external_axes;
+
 use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
+use crate::setup::AxisPositions;
+use external_axes::axis_limit;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -74,7 +78,7 @@ pub struct FeedLimit {
     pub feed: f64,
     /// Whether a speed or an acceleration decides.
     pub kind: FeedLimitKind,
-    /// The joint that decides, from 1.
+    /// The joint that decides, from 1; from 7 on the external axes.
     pub joint: usize,
     /// Number of the segment, from 1.
     pub segment: usize,
@@ -92,7 +96,10 @@ impl fmt::Display for FeedLimit {
     /// What decides, without the feed.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, joint, segment, point, .. } = self;
-        write!(f, "{kind} of joint {joint} at point {point}, segment {segment}")
+        match joint.checked_sub(6) {
+            Some(axis @ 1..) => write!(f, "{kind} of external axis {axis} at point {point}, segment {segment}"),
+            _ => write!(f, "{kind} of joint {joint} at point {point}, segment {segment}"),
+        }
     }
 }
 
@@ -139,7 +146,10 @@ pub fn cut_feed(problem: &Problem, blend: f64, plans: &[SegmentPlan]) -> CutFeed
     let of = |limit: fn(&Joint) -> Option<f64>| problem.robot.joints().each_ref().map(limit);
     let limits =
         Limits { speeds: of(|joint| joint.max_speed), accelerations: of(|joint| joint.max_acceleration), blend };
-    let segment = |(index, plan): (usize, &SegmentPlan)| limits.segment(problem, index + 1, plan);
+    let segment = |(index, plan): (usize, &SegmentPlan)| {
+        let axes = axis_limit(problem, index + 1, plan);
+        limits.segment(problem, index + 1, plan).into_iter().chain(axes).reduce(FeedLimit::smaller)
+    };
     let programmed_segments: Vec<f64> = (0..plans.len()).map(|segment| problem.programmed_feed(segment)).collect();
     CutFeed {
         programmed: programmed_segments.iter().copied().reduce(f64::max).unwrap_or(problem.redundancy.feed),
@@ -212,7 +222,11 @@ impl Limits {
         let ends = [&plan.joints[place - 1], &plan.joints[place]];
         let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
         let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, weights, ends);
-        let length = motion.travel.norm();
+        // The way is that in the workpiece, which is not that in the base frame where an external axis moves on the way.
+        let length = match &problem.setup.positions {
+            AxisPositions::PerPoint(_) => problem.step_length(plan.points.start + place),
+            _ => motion.travel.norm(),
+        };
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
         let nodes = motion.nodes(ends, spacing / length);
         let point = plan.points.start + place;

@@ -1,6 +1,6 @@
 //! The main job: where to put the workpiece.
 //!
-//! - [`problem`]: what may vary, what must hold; [`settings`]: how hard to search.
+//! - [`problem`]: what may vary, what must hold; [`setup`]: which way up the part lies, where external axes stand; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
 //! - [`criterion`]: which part of the deflection is scored, and how points make up one figure; [`objective`]: that of a problem.
 //! - [`constraints`]: what a plan must satisfy, by kind, with signed margins; [`limit`]: which limits can hold an optimum.
@@ -22,6 +22,7 @@ mod beta_step;
 pub mod candidate;
 pub mod cell;
 pub mod certify;
+pub mod collision;
 pub mod constraints;
 pub mod coordinate_search;
 pub mod criterion;
@@ -45,6 +46,7 @@ pub mod search;
 pub mod sense;
 pub mod sensitivity;
 pub mod settings;
+pub mod setup;
 pub mod symmetry;
 pub mod transfer;
 mod whole_path;
@@ -56,6 +58,7 @@ pub mod testing {
     use super::criterion::Criterion;
     use super::postures::PostureRules;
     use super::problem::*;
+    use super::setup::Setup;
     use nalgebra::{DMatrix, Vector3};
     use std::f64::consts::PI;
     use stead_model::robot::testing::{kr270, spindle};
@@ -87,6 +90,10 @@ pub mod testing {
                 max_spindle_speed: None,
             },
             postures: PostureRules::NONE,
+            scene: None,
+            orientations: [].into(),
+            external_axes: Vec::new(),
+            setup: Setup::default(),
         }
     }
 

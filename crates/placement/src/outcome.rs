@@ -1,18 +1,22 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
+use super::collision::PlanClearance;
 use super::feasibility::{DeflectionMap, deflection_map};
-use super::feed::CutFeed;
 use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
 use super::sense::Sense;
+use super::setup::{AxisPath, Setup, TriedSetup};
 use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
+use stead_cell::Clearance;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
+
+pub use super::transfer::{Cycle, Transfer};
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +51,8 @@ pub struct PlanPoint {
     pub score: f64,
     /// Standard deviation of the scored part, where the robot's uncertainty is known. m
     pub deviation: Option<f64>,
+    /// The pair of shapes with the least room; `None` without a scene, and where nothing is near.
+    pub clearance: Option<Clearance>,
 }
 
 /// How large the deflection is along a path, in each direction and altogether.
@@ -84,6 +90,8 @@ impl DeflectionFigures {
 pub struct Plan {
     /// All path points.
     pub points: Vec<PlanPoint>,
+    /// Where the external axes stand at every point; empty where there are none.
+    pub axes: Vec<AxisPath>,
     /// How the mean of the scores answers to the stiffness of each joint ([`mean_by_stiffness`]): derivative by its logarithm. m
     ///
     /// [`mean_by_stiffness`]: super::sensitivity::mean_by_stiffness
@@ -103,6 +111,8 @@ pub struct Plan {
     /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err together, so
     /// that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
+    /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
+    pub clearance: Option<PlanClearance>,
 }
 
 /// A placement with one of its plans.
@@ -114,6 +124,10 @@ pub struct Case {
     pub plan_sense: Sense,
     /// The placement.
     pub placement: Placement,
+    /// How part and external axes are set up for it.
+    pub setup: Setup,
+    /// The name of the orientation of the part, where the run says several.
+    pub orientation: Option<String>,
     /// The plan.
     pub plan: Plan,
     /// Times of the moves between segments and of the whole cut.
@@ -157,38 +171,9 @@ impl Cases {
     }
 }
 
-/// How long the cut takes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cycle {
-    /// The feed that the arm holds.
-    pub feed: CutFeed,
-    /// Time in the cut: the length of each segment over the feed held there. s
-    pub cutting: f64,
-    /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
-    pub transfers: Vec<Transfer>,
-}
-
-/// A joint move from the end of one segment to the start of the next, from rest to rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Transfer {
-    /// Number of the segment before the move, from 1.
-    pub after_segment: usize,
-    /// Duration; `None` where a joint that moves has no speed in the robot file. s
-    pub duration: Option<f64>,
-    /// Largest joint travel of the move. rad
-    pub travel: f64,
-}
-
 /// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
 /// nothing. m
 pub const CANCELLATION: f64 = 1e-9;
-
-impl Cycle {
-    /// Cutting and moves together; `None` where a move's time is not known. s
-    pub fn total(&self) -> Option<f64> {
-        self.transfers.iter().try_fold(self.cutting, |sum, transfer| Some(sum + transfer.duration?))
-    }
-}
 
 /// State of one genetic search after one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -334,6 +319,8 @@ impl SetOutcome {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
+    /// The setups that were searched, where there are several; searches and refinements below are those of the best one.
+    pub tried_setups: Vec<TriedSetup>,
     /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// How a long path was searched; `None` for a path short enough to be searched whole.
@@ -366,7 +353,7 @@ impl Outcome {
     /// Makes the deflection maps at the best and at the worst placement. A stop may leave them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
         let Cases { best, worst, .. } = &self.cases;
-        let map = |case: &Case| deflection_map(problem, &case.placement, monitor);
+        let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
         self.maps = map(best).zip(map(worst)).map(<[DeflectionMap; 2]>::from);
         if self.maps.is_none() {
             self.warnings.push(left_out("the deflection maps are"));

@@ -1,6 +1,8 @@
 //! What a run states, in figures to compare with what was meant: before any search.
 
-use super::problem::{Placement, Problem};
+use super::problem::{Interval, Placement, Problem};
+use super::symmetry::is_axis_1_vertical;
+use nalgebra::Vector3;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::robot::Robot;
@@ -94,10 +96,25 @@ fn middle(problem: &Problem) -> Placement {
     Placement { x, y, z, yaw: (yaw.min + yaw.max) / 2.0 }
 }
 
-/// From the nearest to the farthest place of the cell, from axis 1 of an upright arm.
+/// Projections between cell and axis 1 until the nearest place is found.
+const PROJECTIONS: usize = 500;
+
+/// From the nearest to the farthest place of the cell, from axis 1.
 fn cell_distances(problem: &Problem) -> [f64; 2] {
     let root = problem.robot.geometry().root_in_base;
-    let [x, y, _] = problem.cell.position;
+    let [x, y, z] = problem.cell.position;
+    if !is_axis_1_vertical(problem) {
+        // The nearest place of a box to a line, by projections onto one and the other; the farthest is a corner.
+        let axis = problem.robot.geometry().base_from_root.column(2).into_owned();
+        let inside = |p: &Vector3<f64>| Vector3::new(x.clamp(p.x), y.clamp(p.y), z.clamp(p.z));
+        let on_axis = |p: &Vector3<f64>| root + axis * axis.dot(&(p - root));
+        let nearest = (0..PROJECTIONS).fold(inside(&root), |place, _| inside(&on_axis(&place)));
+        let corners = (0..8).map(|corner: u32| {
+            let end = |bounds: Interval, bit: u32| if corner >> bit & 1 == 1 { bounds.max } else { bounds.min };
+            problem.base_distance(&Vector3::new(end(x, 0), end(y, 1), end(z, 2)))
+        });
+        return [problem.base_distance(&nearest), corners.fold(0.0, f64::max)];
+    }
     let nearest = [x.clamp(root.x) - root.x, y.clamp(root.y) - root.y];
     let farthest = [(x, root.x), (y, root.y)].map(|(bounds, at)| (bounds.min - at).abs().max((bounds.max - at).abs()));
     [nearest, farthest].map(|[x, y]| libm::hypot(x, y))

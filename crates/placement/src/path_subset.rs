@@ -7,7 +7,9 @@
 //! seen: whoever uses a subset checks the whole path, and adds the points that decide ([`PathSubset::add`]).
 
 use super::problem::Problem;
+use super::setup::Setup;
 use std::ops::Range;
+use std::sync::Arc;
 use stead_model::task::{KeptPoint, Task, ToolPath};
 
 /// Points kept of a path, ascending.
@@ -71,6 +73,11 @@ impl PathSubset {
         Self { points }
     }
 
+    /// Given points, ascending, at least one of every segment.
+    pub(crate) fn of_points(points: Vec<usize>) -> Self {
+        Self { points }
+    }
+
     /// The points, ascending.
     pub fn points(&self) -> &[usize] {
         &self.points
@@ -92,6 +99,10 @@ impl PathSubset {
             robot: problem.robot.clone(),
             task: problem.task.thinned(&kept),
             criterion: problem.criterion.clone(),
+            scene: problem.scene.clone(),
+            orientations: Arc::clone(&problem.orientations),
+            external_axes: problem.external_axes.clone(),
+            setup: Setup { positions: problem.setup.positions.of_points(&self.points), ..problem.setup },
             ..*problem
         }
     }

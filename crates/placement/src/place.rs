@@ -12,14 +12,16 @@ use super::sensitivity::objective_with_force_errors;
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{best_alone, choose, leading, refine_basins};
-use notes::{cancellation, interruption};
+use notes::{blocked_moves, cancellation, interruption};
 use plan::{StatedPlans, detailed};
 use refined::Refined;
 use searched::{Searched, search_cell};
 use sets::Sets;
+use setups::place_in_all;
 use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::{Monitor, Progress};
 
+mod axes;
 mod basins;
 mod infeasible;
 mod long_path;
@@ -30,11 +32,13 @@ mod refined;
 mod score;
 mod searched;
 mod sets;
+mod setups;
 
-pub use infeasible::Infeasible;
 use infeasible::infeasible;
+pub use infeasible::{BlockingPair, Infeasible};
 pub use long_path::LongPath;
 pub use score::{Score, score};
+pub use setups::setup_at;
 
 /// Memory for a point of the path while it is planned and reported, as measured with 50 000 points. Bytes
 const MEMORY_PER_POINT: u64 = 12_000;
@@ -53,6 +57,19 @@ pub fn planning_memory(problem: &Problem) -> u64 {
 /// # Errors
 /// [`Infeasible`] when the search met no feasible placement.
 pub fn place(
+    problem: &Problem,
+    settings: &SearchSettings,
+    transfer: &TransferSettings,
+    monitor: &Monitor,
+) -> Result<Outcome, Infeasible> {
+    if problem.orientations.len() < 2 && problem.external_axes.is_empty() {
+        return place_as_set_up(problem, settings, transfer, monitor);
+    }
+    place_in_all(problem, settings, transfer, monitor)
+}
+
+/// The job in the setup of the problem.
+fn place_as_set_up(
     problem: &Problem,
     settings: &SearchSettings,
     transfer: &TransferSettings,
@@ -77,46 +94,22 @@ pub fn place(
     let sets = Sets::of(&untied, (&found, long), &basins[0], monitor);
     let [best, worst] = choose(&basins, sets.regrets().as_deref()).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
-    let stated_planner = Planner::finer(problem);
-    let stated = |refined: &Refined| StatedPlans::of(&stated_planner, refined, monitor);
-    let (of_best, of_worst) = rayon::join(|| stated(&best), || stated(&worst));
-    let case = |placement_sense, solution: &Refined, plan_sense, stated: &StatedPlans| {
-        let plans = match plan_sense {
-            Sense::Min => &stated.best,
-            Sense::Max => &stated.worst,
-        };
-        let active_bounds = match plan_sense {
-            Sense::Min if monitor.should_stop() => None,
-            Sense::Min if placement_sense == Sense::Min => active_bounds(&untied, &solution.solution),
-            Sense::Min => Some(active_walls(&planner, &solution.solution, solution.scheme.as_deref())),
-            Sense::Max => Some(Vec::new()),
-        };
-        Case {
-            placement_sense,
-            plan_sense,
-            placement: solution.solution.placement,
-            plan: detailed(problem, &solution.solution.placement, plans),
-            cycle: cycle(problem, transfer, plans),
-            active_bounds,
-        }
-    };
+    let cases = |refined, sense| stated_cases(problem, transfer, sense, refined, monitor);
+    let (of_best, of_worst) = rayon::join(|| cases(&best, Sense::Min), || cases(&worst, Sense::Max));
+    let ([best_case, best_worst_plan], [worst_case, worst_worst_plan]) = (of_best, of_worst);
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
-    let best_case = case(Sense::Min, &best, Sense::Min, &of_best);
     let sensitivity = match settings.sensitivity {
         Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
         _ => None,
     };
+    let blocked = blocked_moves(problem, &best_case.cycle);
     Ok(Outcome {
         sets: sets.outcomes(&best_case),
         set_basins: sets.basins,
         notes: notes::of(problem, &best_case.plan, &best_case.cycle.feed),
         sensitivity,
-        cases: Cases {
-            best: best_case,
-            best_worst_plan: case(Sense::Min, &best, Sense::Max, &of_best),
-            worst: case(Sense::Max, &worst, Sense::Min, &of_worst),
-            worst_worst_plan: case(Sense::Max, &worst, Sense::Max, &of_worst),
-        },
+        cases: Cases { best: best_case, best_worst_plan, worst: worst_case, worst_worst_plan },
+        tried_setups: Vec::new(),
         lookup_summary,
         path_levels: long.map(|path| path.levels),
         convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
@@ -129,8 +122,44 @@ pub fn place(
         interrupted,
         warnings: cancellation(problem, best.solution.objective)
             .into_iter()
+            .chain(blocked)
             .chain(interrupted.then(interruption))
             .collect(),
+    })
+}
+
+/// The best and the worst plan at a refined placement, with everything that there is to say of them.
+fn stated_cases(
+    problem: &Problem,
+    transfer: &TransferSettings,
+    placement_sense: Sense,
+    refined: &Refined,
+    monitor: &Monitor,
+) -> [Case; 2] {
+    let untied = problem.untied();
+    let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
+    let stated = StatedPlans::of(&Planner::finer(problem), refined, monitor);
+    Sense::BOTH.map(|plan_sense| {
+        let plans = match plan_sense {
+            Sense::Min => &stated.best,
+            Sense::Max => &stated.worst,
+        };
+        let active_bounds = match plan_sense {
+            Sense::Min if monitor.should_stop() => None,
+            Sense::Min if placement_sense == Sense::Min => active_bounds(&untied, solution),
+            Sense::Min => Some(active_walls(&Planner::finer(&untied), solution, scheme)),
+            Sense::Max => Some(Vec::new()),
+        };
+        Case {
+            placement_sense,
+            plan_sense,
+            placement: solution.placement,
+            setup: problem.setup.clone(),
+            orientation: problem.orientation().map(|orientation| orientation.name.clone()),
+            plan: detailed(problem, &solution.placement, plans),
+            cycle: cycle(problem, &solution.placement, transfer, plans),
+            active_bounds,
+        }
     })
 }
 

@@ -2,22 +2,26 @@
 
 use super::criterion::Criterion;
 use super::postures::PostureRules;
+use super::setup::{Orientation, Setup};
 use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
+use stead_cell::Scene;
+use stead_model::external_axis::ExternalAxis;
 use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Posture, Robot, Spindle,
     angles::{q4_from_yaw, wrap, yaw_from_q4},
     cast, point_from_tool,
 };
-use stead_model::task::Task;
+use stead_model::task::{PathPoint, Task};
 use stead_numerics::scalar::Scalar;
 
 pub use super::cell::{Cell, Interval};
 
-/// Where the workpiece stands: its origin in the robot base frame, and its rotation about the vertical.
+/// Where the workpiece stands, with all external axes at zero: its origin in the robot base frame, and its rotation about the vertical.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Placement<T = f64> {
     /// x of the workpiece origin. m
@@ -171,7 +175,7 @@ pub struct Problem {
     pub robot: Robot,
     /// The spindle as mounted.
     pub spindle: Spindle,
-    /// The tool path with its wrenches.
+    /// The tool path with its wrenches, turned as the part lies in the [`setup`](Self::setup).
     pub task: Task,
     /// Where the workpiece may stand.
     pub cell: Cell,
@@ -183,6 +187,14 @@ pub struct Problem {
     pub redundancy: Redundancy,
     /// Which postures segments may be driven in.
     pub postures: PostureRules,
+    /// The shapes on the arm and around it, where collisions are looked for.
+    pub scene: Option<Arc<Scene>>,
+    /// The ways in which the part may lie; none where it lies as in the task file.
+    pub orientations: Arc<[Orientation]>,
+    /// Rails and turntables beside the robot's own axes.
+    pub external_axes: Vec<ExternalAxis>,
+    /// How part and axes are set up.
+    pub setup: Setup,
 }
 
 impl Problem {
@@ -214,8 +226,7 @@ impl Problem {
             translation: cast(&path_point.position),
         };
         let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
-        placement
-            .base_from_workpiece()
+        self.base_from_workpiece(point, placement)
             .then(&workpiece_from_point)
             .then(&point_from_tool)
             .then(&self.spindle.flange_from_tool.inverse().cast())
@@ -223,7 +234,7 @@ impl Problem {
 
     /// Path point `point` and its wrench in the robot base frame, the workpiece at a placement.
     pub fn placed<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> PlacedPoint<T> {
-        let workpiece = placement.base_from_workpiece();
+        let workpiece = self.base_from_workpiece(point, placement);
         let (path_point, wrench) = (&self.task.points()[point], &self.task.wrenches()[point]);
         PlacedPoint {
             tip: workpiece.point(&cast(&path_point.position)),
@@ -245,13 +256,14 @@ impl Problem {
     /// The normal of the surface at a path point in the base frame, with the workpiece placed, where the task states it.
     pub fn surface_normal<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> Option<Vector3<T>> {
         let normals = self.task.path().surface_normals()?;
-        Some(placement.base_from_workpiece().rotation * cast(&normals[point]))
+        Some(self.base_from_workpiece(point, placement).rotation * cast(&normals[point]))
     }
 
     /// The feed at every path point in the base frame, with the workpiece placed.
     pub fn feeds(&self, placement: &Placement) -> Vec<Vector3<f64>> {
-        let rotation = placement.base_from_workpiece().rotation;
-        self.task.points().iter().map(|point| rotation * point.feed).collect()
+        let feed =
+            |(number, point): (usize, &PathPoint)| self.base_from_workpiece(number, placement).rotation * point.feed;
+        self.task.points().iter().enumerate().map(feed).collect()
     }
 
     /// Time from path point `point - 1` to `point`, both in one segment: at the feed of the task, or at the given one where it states

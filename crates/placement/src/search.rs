@@ -358,7 +358,8 @@ fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluation
 /// comparing is dear, placements that a turn about axis 1 brings near each other count as one basin: it changes nothing but the angle of
 /// joint 1.
 pub fn distinct(problem: &Problem, sorted: &[Candidate], max_count: usize) -> Vec<Candidate> {
-    let is_up_to_turn = problem.task.path().is_thinned() && is_axis_1_vertical(problem);
+    let is_up_to_turn =
+        problem.task.path().is_thinned() && is_axis_1_vertical(problem) && problem.external_axes.is_empty();
     let mut basins: Vec<Candidate> = Vec::new();
     for candidate in sorted {
         if basins.len() == max_count {

@@ -19,6 +19,12 @@ pub enum Unsupported {
         /// Angle between axis 1 and the vertical of the base frame. rad
         angle: f64,
     },
+    /// External axes stand elsewhere than at a place that only shifts the cell.
+    #[error("external axes move the workpiece or the robot")]
+    ExternalAxes,
+    /// There are several orientations of the part to choose from.
+    #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
+    Orientations,
     /// A tool axis that is not vertical, or that is upside down against the first one.
     #[error(
         "the tool is not upright in the same sense at every point: at point {point} it is not as at the first, vertical one"
@@ -106,6 +112,9 @@ impl Upright {
         let up = axis_1(problem);
         if !is_vertical(&up) {
             return Err(Unsupported::BaseNotVertical { angle: libm::acos(up.z.abs().min(1.0)) });
+        }
+        if !problem.external_axes.is_empty() {
+            return Err(Unsupported::ExternalAxes);
         }
         let points = problem.task.points();
         let first = points.first().map_or(1.0, |point| point.axis.z.signum());

@@ -1,20 +1,55 @@
 //! Moves between segments: how long the joints need from the end of one segment to the start of the next.
 //!
-//! Each joint moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal profiles
-//! come from rsruckig. Only the time is computed: that the move clears the workpiece is for the programmer to see to.
+//! Each joint and each external axis moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal
+//! profiles come from rsruckig. Without shapes of the cell only the time is computed: that the move clears the workpiece is for the
+//! programmer to see to. With them, moves keep free of all shapes ([`way`]).
 
-use super::feed::cut_feed;
-use super::outcome::{Cycle, Transfer};
-use super::problem::Problem;
+mod way;
+
+pub use way::Way;
+
+use super::feed::{CutFeed, cut_feed};
+use super::problem::{Placement, Problem};
 use super::redundancy::SegmentPlan;
 use super::settings::TransferSettings;
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
+
+/// How long the cut takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// The feed that the arm holds.
+    pub feed: CutFeed,
+    /// Time in the cut: the length of each segment over the feed held there. s
+    pub cutting: f64,
+    /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
+    pub transfers: Vec<Transfer>,
+}
+
+/// A joint move from the end of one segment to the start of the next, from rest to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transfer {
+    /// Number of the segment before the move, from 1.
+    pub after_segment: usize,
+    /// Duration; `None` where a joint that moves has no speed in the robot file. s
+    pub duration: Option<f64>,
+    /// Largest joint travel of the move. rad
+    pub travel: f64,
+    /// How it keeps free, where there is a scene.
+    pub way: Option<Way>,
+}
+
+impl Cycle {
+    /// Cutting and moves together; `None` where a move's time is not known. s
+    pub fn total(&self) -> Option<f64> {
+        self.transfers.iter().try_fold(self.cutting, |sum, transfer| Some(sum + transfer.duration?))
+    }
+}
 
 /// A joint that moves by less than this stands still. rad
 const STANDSTILL: f64 = 1e-7;
 
 /// The times of a plan: the cut itself, each segment with the feed that the arm holds, and the moves between segments.
-pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
+pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
     let feed = cut_feed(problem, settings.blend, plans);
     let cutting =
         plans.iter().enumerate().map(|(s, plan)| cutting_time(problem, settings, feed.held(s), s, plan)).sum();
@@ -22,9 +57,14 @@ pub fn cycle(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPla
         .windows(2)
         .enumerate()
         .filter_map(|(index, pair)| {
-            let (from, to) = (pair[0].joints.last()?, pair[1].joints.first()?);
-            let travel = from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            Some(Transfer { after_segment: index + 1, duration: duration(problem, settings, from, to), travel })
+            let direct = [*pair[0].joints.last()?, *pair[1].joints.first()?];
+            let way = way::way(problem, settings, placement, [&pair[0], &pair[1]], index);
+            let joints = way.as_ref().map_or(&direct[..], |way| &way.joints);
+            let travel = (0..6).map(|j| joints.windows(2).map(|step| (step[0][j] - step[1][j]).abs()).sum::<f64>());
+            let positions = [pair[0].points.end - 1, pair[1].points.start].map(|point| problem.axis_positions(point));
+            let of_joints = way_duration(problem, settings, joints);
+            let duration = of_joints.zip(axis_duration(problem, settings, positions)).map(|(a, b)| a.max(b));
+            Some(Transfer { after_segment: index + 1, duration, travel: travel.fold(0.0, f64::max), way })
         })
         .collect();
     Cycle { feed, cutting, transfers }
@@ -45,6 +85,11 @@ fn cutting_time(problem: &Problem, settings: &TransferSettings, held: f64, segme
         path.step_length(point) / path.feed(point).map_or(held, |feed| feed.min(held))
     };
     (1..plan.joints.len()).map(step).sum()
+}
+
+/// Time of joint moves one after the other, each from rest to rest. s
+fn way_duration(problem: &Problem, settings: &TransferSettings, joints: &[[f64; 6]]) -> Option<f64> {
+    joints.windows(2).try_fold(0.0, |sum, step| Some(sum + duration(problem, settings, &step[0], &step[1])?))
 }
 
 /// Shortest time from rest at `from` to rest at `to` (joint angles in rad); `None` when a joint that has to move has no
@@ -75,6 +120,27 @@ pub fn duration(problem: &Problem, settings: &TransferSettings, from: &[f64; 6],
     generator.calculate(&input, &mut trajectory).ok()?;
     let duration = trajectory.get_duration();
     duration.is_finite().then_some(duration)
+}
+
+/// Shortest time in which the external axes move from rest to rest between positions (m or rad), each by itself, beside the joints; `None`
+/// when one that has to move has no speed. s
+fn axis_duration(problem: &Problem, settings: &TransferSettings, [from, to]: [&[f64]; 2]) -> Option<f64> {
+    let moved = problem.external_axes.iter().zip(from.iter().zip(to)).filter(|(_, (from, to))| from != to);
+    moved
+        .map(|(axis, (from, to))| {
+            let mut input = InputParameter::<1>::new(None);
+            let speed = axis.max_speed?;
+            let acceleration = speed / settings.acceleration_time;
+            input.current_position[0] = *from;
+            input.target_position[0] = *to;
+            input.max_velocity[0] = speed;
+            input.max_acceleration[0] = acceleration;
+            input.max_jerk[0] = acceleration / settings.jerk_time;
+            let mut trajectory = Trajectory::<1>::new(None);
+            Ruckig::<1, ThrowErrorHandler>::new(None, 0.01).calculate(&input, &mut trajectory).ok()?;
+            Some(trajectory.get_duration()).filter(|duration| duration.is_finite())
+        })
+        .try_fold(0.0, |longest: f64, duration| Some(longest.max(duration?)))
 }
 
 #[cfg(test)]

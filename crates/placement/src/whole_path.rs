@@ -119,7 +119,7 @@ impl<'a, 'p> WholePath<'a, 'p> {
         if blocked_points.is_empty() {
             return highest.into_iter().map(|(_, point)| point).collect();
         }
-        deciding(problem, &NoFeasiblePlan { blocked_points, broken_segments: Vec::new() })
+        deciding(problem, &NoFeasiblePlan { blocked_points, ..NoFeasiblePlan::empty() })
     }
 
     /// The objective of a candidate of a subset, none where it has no plan, and the points that decide that.

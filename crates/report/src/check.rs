@@ -6,6 +6,7 @@ use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_model::robot::Robot;
+use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::overview::Overview;
 use stead_placement::problem::Problem;
 
@@ -60,7 +61,11 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     say(format!("feed      {} mm/s", MM.text(problem.redundancy.feed)));
     let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
     let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
-    say(format!("cell      workpiece origin in the base frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
+    let frame = if problem.robot.is_mounted() { "cell" } else { "base" };
+    say(format!("cell      workpiece origin in the {frame} frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
+    if let Some(mount) = mount_line(problem) {
+        say(mount);
+    }
     say(format!("          {} mm from axis 1", interval(MM, overview.cell_distances)));
     let middle = &overview.middle;
     say(format!(
@@ -68,6 +73,19 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         middle.reached, middle.tried
     ));
     text
+}
+
+/// Where a mounted robot stands.
+fn mount_line(problem: &Problem) -> Option<String> {
+    let mount = problem.robot.is_mounted().then(|| problem.robot.cell_from_base::<f64>())?;
+    let [x, y, z]: [String; 3] = <[f64; 3]>::from(mount.translation).map(|value| MM.text(value));
+    let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation).map(|angle| DEG.text(angle));
+    let up = problem.robot.geometry().base_from_root[(2, 2)].clamp(-1.0, 1.0);
+    let lean = DEG.text(libm::acos(up));
+    Some(format!(
+        "mount     base frame in the cell frame at x {x}, y {y}, z {z} mm, roll {roll}, pitch {pitch}, yaw {yaw} deg; axis 1 leans \
+         {lean} deg from upright"
+    ))
 }
 
 /// What `stead check` prints of a robot file; `has_stiffness` is nothing where it goes without saying.

@@ -1,6 +1,9 @@
-//! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv` and `polar.svg`.
+//! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv`, `polar.svg` and `report.html`.
+
+mod page;
 
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::columns::aligned;
@@ -16,7 +19,7 @@ use stead_format::PointFile;
 /// Decimals of lengths in mm: a nine-digit micrometre has no fewer.
 const DECIMALS: usize = 12;
 
-/// Writes `circularity.json`, `deviations.csv` and `polar.svg` into a folder and returns their paths in that order.
+/// Writes `circularity.json`, `deviations.csv`, `polar.svg` and `report.html` into a folder and returns their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -34,6 +37,7 @@ pub fn circularity_files(file: &PointFile, found: &Roundness) -> Result<Files, R
         ("circularity.json", bytes(&circularity_json(file, found))),
         ("deviations.csv", deviations(file, found)?),
         ("polar.svg", picture::polar(&file.input.name, found).into_bytes()),
+        (PAGE, page::page(file, found).html()),
     ]))
 }
 

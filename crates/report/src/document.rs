@@ -73,6 +73,12 @@ pub fn bytes(document: &Value) -> Vec<u8> {
     format!("{document:#}\n").into_bytes()
 }
 
+/// A document as bytes without spaces, for files that only programs read.
+pub(crate) fn compact(document: &impl serde::Serialize) -> Vec<u8> {
+    // Only maps whose keys are no strings cannot be written, and there are none.
+    serde_json::to_vec(document).unwrap_or_default()
+}
+
 /// Adds a standard deviation to an object where the robot's uncertainty is known.
 pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
     if let (Some(deviation), Value::Object(map)) = (deviation, object) {

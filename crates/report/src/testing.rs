@@ -9,7 +9,7 @@ use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
-use stead_placement::feasibility::{DeflectionMap, MapCell};
+use stead_placement::feasibility::{DeflectionMap, MapCell, MapReason};
 use stead_placement::feed::{CutFeed, FeedLimit, FeedLimitKind};
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
@@ -56,6 +56,7 @@ pub fn outcome() -> &'static Outcome {
         let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
         Outcome {
             cases,
+            tried_setups: Vec::new(),
             lookup_summary: None,
             path_levels: None,
             convergence,
@@ -136,7 +137,8 @@ impl Grid {
             let allowed = states.iter().zip(Posture::ALL).filter_map(|(s, posture)| Some((s.as_ref().ok()?, posture)));
             let cells = allowed.map(|(state, posture)| MapCell { score: state.score(), posture });
             let nearest = states.iter().filter_map(|s| s.as_ref().err().copied()).max();
-            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(nearest.unwrap_or(ConstraintKind::Reach))
+            let kind = nearest.unwrap_or(ConstraintKind::Reach);
+            cells.min_by(|a, b| a.score.total_cmp(&b.score)).ok_or(MapReason { kind, pair: None })
         };
         let rows = self.states.iter().map(|row| row.iter().map(cell).collect()).collect();
         DeflectionMap { beta_count: problem().redundancy.beta_count, rows }
@@ -164,13 +166,15 @@ impl Grid {
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,
+            clearance: None,
             mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
+            axes: Vec::new(),
             points,
         };
         let transfer = |k: usize| {
             let duration =
                 (placement_sense == Sense::Min || plan_sense == Sense::Min || k != 2).then_some(0.4 * k as f64);
-            Transfer { after_segment: k, duration, travel: 0.3 * k as f64 }
+            Transfer { after_segment: k, duration, travel: 0.3 * k as f64, way: None }
         };
         let limit = |k: usize| FeedLimit {
             feed: 0.08 - 0.005 * k as f64,
@@ -185,7 +189,17 @@ impl Grid {
             segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
         };
         let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };
-        Case { placement_sense, plan_sense, placement: self.placement, plan, cycle, active_bounds: Some(Vec::new()) }
+        let (placement, setup) = (self.placement, problem().setup.clone());
+        Case {
+            placement_sense,
+            plan_sense,
+            placement,
+            setup,
+            orientation: None,
+            plan,
+            cycle,
+            active_bounds: Some(Vec::new()),
+        }
     }
 
     /// Sum of the signed scores and the grid values of beta of the best plan through a segment in one posture.
@@ -231,6 +245,7 @@ impl Grid {
             surface_part: None,
             score: state.score(),
             deviation: state.own.deviation,
+            clearance: None,
         }
     }
 }

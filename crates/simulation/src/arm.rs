@@ -143,11 +143,12 @@ impl Arm<18> {
         let bearing = |j: usize| Vector3::new(0.0, 0.0, parts.dynamics[j].bearing);
         let from_bearing = |j: usize| Pose { translation: -bearing(j), ..Pose::identity() };
         let to_bearing = |j: usize| Pose { translation: bearing(j), ..Pose::identity() };
+        let rows = robot.mounted_rows();
         let links = std::array::from_fn(|k| {
             let j = k / 3;
             match k % 3 {
                 0 => {
-                    let step = robot.rows()[j].then(&to_bearing(j));
+                    let step = rows[j].then(&to_bearing(j));
                     let step = if j == 0 { step } else { from_bearing(j - 1).then(&step) };
                     Link::new(step, Axis::Z, None)
                 }

@@ -3,6 +3,7 @@
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Plan, PlanPoint};
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::setup::Setup;
 use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 use stead_simulation::stability_analysis::{CutStability, StabilityError};
 
@@ -19,18 +20,18 @@ pub struct PathStability {
 }
 
 impl PathStability {
-    /// Critical depths at every point of two plans, each at its placement; `None` once the caller asks to stop.
+    /// Critical depths at every point of two plans, each at its placement in its setup; `None` once the caller asks to stop.
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little of its masses, or a cut without width.
     pub fn along(
         problem: &Problem,
         analysis: &PathStabilityAnalysis,
-        plans: [(&Placement, &Plan); 2],
+        plans: [(&Setup, &Placement, &Plan); 2],
         monitor: &Monitor,
     ) -> Result<Option<Self>, StabilityError> {
-        let along = |(placement, plan): (&Placement, &Plan)| -> Result<_, StabilityError> {
-            let feeds = problem.feeds(placement);
+        let along = |(setup, placement, plan): (&Setup, &Placement, &Plan)| -> Result<_, StabilityError> {
+            let feeds = problem.in_setup(setup).feeds(placement);
             let configuration =
                 |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
             let configurations: Vec<_> = plan.points.iter().map(configuration).collect();

@@ -7,6 +7,7 @@ use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Cases, Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
 use stead_placement::problem::Placement;
+use stead_placement::setup::Setup;
 use stead_simulation::stability_analysis::StabilityError;
 
 /// Why a run ends without a result.
@@ -51,7 +52,7 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
         outcome.map(&run.problem, monitor);
     }
     let Cases { best, worst, .. } = &outcome.cases;
-    let plans = [(&best.placement, &best.plan), (&worst.placement, &worst.plan)];
+    let plans = [(&best.setup, &best.placement, &best.plan), (&worst.setup, &worst.placement, &worst.plan)];
     let stability = stability(run, plans, &mut outcome.warnings, monitor)?;
     outcome.interrupted |= monitor.should_stop();
     Ok(Placed { outcome, stability })
@@ -63,7 +64,8 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
 /// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
 pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scored, RunError> {
     let mut score = place::score(&run.problem, placement, &run.transfer, monitor)?;
-    let plans = [(placement, &score.best), (placement, &score.worst)];
+    let setup = score.setup.clone();
+    let plans = [(&setup, placement, &score.best), (&setup, placement, &score.worst)];
     let stability = stability(run, plans, &mut score.warnings, monitor)?;
     score.interrupted = monitor.should_stop();
     let notes = outside_cell(run, placement).into_iter().collect();
@@ -79,7 +81,7 @@ pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
 /// The critical depths along two plans, where the run file asks for them; a stop leaves them out, which is then warned of.
 fn stability(
     run: &Run,
-    plans: [(&Placement, &Plan); 2],
+    plans: [(&Setup, &Placement, &Plan); 2],
     warnings: &mut Vec<Warning>,
     monitor: &Monitor,
 ) -> Result<Option<PathStability>, StabilityError> {

@@ -32,6 +32,9 @@ pub(in super::super) struct RobotOptions {
     /// Look for the mesh files that the URDF names, and note those that are missing
     #[arg(long)]
     pub check_meshes: bool,
+    /// Write the <collision> shapes of the links too, to NAME-cell.toml beside the robot file
+    #[arg(long)]
+    pub collision: bool,
 }
 
 pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
@@ -45,9 +48,11 @@ pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
             flange,
         }),
         check_meshes: options.check_meshes,
+        collision: options.collision,
     };
     let robot = import_robot(&options.urdf, &asked).map_err(stead::Error::from)?;
     robot.write(&options.out).map_err(stead::Error::from)?;
     say_notes(&robot.notes);
-    print(format!("{robot}\nwritten: {}\n", options.out.display()).as_bytes())
+    let files: Vec<String> = robot.files(&options.out).iter().map(|(file, _)| file.display().to_string()).collect();
+    print(format!("{robot}\nwritten: {}\n", files.join(", ")).as_bytes())
 }

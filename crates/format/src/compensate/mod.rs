@@ -99,7 +99,7 @@ impl CompensationTable {
 
 /// The robot that stands for reality, which must have the geometry of the run's.
 fn reality_from(source: &TomlFile, robot: &Robot) -> Result<Robot, InputError> {
-    let reality = robot_from(source)?;
+    let reality = robot_from(source)?.mounted(&robot.cell_from_base());
     let Some(other) = other_geometry(robot, &reality) else { return Ok(reality) };
     let key = match other.field {
         "alpha" => "alpha_deg",

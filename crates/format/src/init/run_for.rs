@@ -81,6 +81,7 @@ x_mm = {}                # the middle of the path is at {x:?}, {y:?}, {z:?} mm o
 y_mm = {}
 z_mm = {}
 # q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
+# A robot on a pedestal or a wall, a part on its side, a rail or a turntable: the page cell_setup has the tables.
 
 [constraints]
 min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1

@@ -5,6 +5,8 @@ mod stations;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+pub(crate) use rows::axis_column;
 pub(crate) use stations::PlacedPlan;
 
 use crate::input::{InputError, InputFile, input_file};
@@ -19,8 +21,8 @@ use stead_placement::problem::Problem;
 /// [`InputError`] with file, line and column for a plan that does not fit, or that its manifest does not vouch for.
 pub(crate) fn plan_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<PlacedPlan, InputError> {
     manifest::check(file, bytes, Unlisted::Refused)?;
-    let rows = rows::rows_from(file, bytes, problem.task.path())?;
-    stations::placed(file, &rows, problem)
+    let rows = rows::rows_from(file, bytes, problem)?;
+    stations::set_up(file, &rows, problem)
 }
 
 /// As [`plan_from`], from a file named on the command line; with what it was, for the result to state.

@@ -4,11 +4,12 @@ use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::Posture;
-use stead_model::task::ToolPath;
+use stead_placement::problem::Problem;
 
 /// One row of a plan, in SI units and radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlanRow {
     /// Line in the file, from 1.
     pub line: usize,
@@ -24,6 +25,8 @@ pub(super) struct PlanRow {
     pub force: Vector3<f64>,
     /// Deflection in the base frame, where the file has it. m
     pub deflection: Option<Vector3<f64>>,
+    /// Positions of the external axes of the run. m or rad
+    pub axes: Vec<f64>,
 }
 
 /// Where the columns are that a row is read from.
@@ -36,6 +39,7 @@ struct Columns {
     joints: [usize; 6],
     force: [usize; 3],
     deflection: Option<[usize; 3]>,
+    axes: Vec<(usize, AxisKind)>,
 }
 
 pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
@@ -44,14 +48,15 @@ pub(super) const JOINTS: [&str; 6] =
 pub(super) const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
 const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection_z_mm"];
 
-/// Reads the rows of a plan for a tool path; columns that are not needed are passed over.
+/// Reads the rows of a plan for the tool path of a problem; columns that are not needed are passed over.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a missing or doubled column, a value of the wrong kind, points that are not those of
 /// the path in their order.
-pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Vec<PlanRow>, InputError> {
+pub(super) fn rows_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<Vec<PlanRow>, InputError> {
+    let path = problem.task.path();
     let mut table = CsvTable::new(file, bytes)?;
-    let columns = columns(&table)?;
+    let columns = columns(&table, &problem.external_axes)?;
     let count = path.points().len();
     let mut rows = Vec::with_capacity(count);
     let mut last_line = 1;
@@ -76,7 +81,15 @@ pub(super) fn rows_from(file: &Path, bytes: &[u8], path: &ToolPath) -> Result<Ve
     Ok(rows)
 }
 
-fn columns(table: &CsvTable<'_>) -> Result<Columns, InputError> {
+/// The column of an external axis, from 1.
+pub(crate) fn axis_column(number: usize, kind: AxisKind) -> String {
+    match kind {
+        AxisKind::Rail => format!("e{number}_mm"),
+        AxisKind::Turntable => format!("e{number}_deg"),
+    }
+}
+
+fn columns(table: &CsvTable<'_>, axes: &[ExternalAxis]) -> Result<Columns, InputError> {
     let column = |name: &str| {
         let allowed = format!(
             "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",
@@ -93,6 +106,9 @@ fn columns(table: &CsvTable<'_>) -> Result<Columns, InputError> {
     };
     let three = |names: [&str; 3]| try_each(names, column);
     let joints = try_each(JOINTS, column)?;
+    let axes = axes.iter().zip(1..);
+    let axes = axes.map(|(axis, number)| Ok((column(&axis_column(number, axis.kind))?, axis.kind)));
+    let axes = axes.collect::<Result<Vec<_>, InputError>>()?;
     let has_deflection = DEFLECTION.iter().any(|name| table.column(name).is_some());
     Ok(Columns {
         point: column("point")?,
@@ -103,6 +119,7 @@ fn columns(table: &CsvTable<'_>) -> Result<Columns, InputError> {
         joints,
         force: three(FORCE)?,
         deflection: if has_deflection { Some(three(DEFLECTION)?) } else { None },
+        axes,
     })
 }
 
@@ -116,7 +133,12 @@ fn number_is(row: &Row<'_>, column: usize, expected: usize) -> Result<(), InputE
 fn plan_row(row: &Row<'_>, columns: &Columns) -> Result<PlanRow, InputError> {
     let joints = try_each(columns.joints, |column| row.number(column).map(f64::to_radians))?;
     let posture = row.text(columns.posture).parse().ok().and_then(Posture::from_number);
+    let axis = |(column, kind): &(usize, AxisKind)| {
+        let position = row.number(*column)?;
+        Ok(if *kind == AxisKind::Rail { position / 1e3 } else { position.to_radians() })
+    };
     Ok(PlanRow {
+        axes: columns.axes.iter().map(axis).collect::<Result<_, InputError>>()?,
         line: row.line(),
         position: row.vector(columns.position)? / 1e3,
         beta: row.number(columns.beta)?.to_radians(),

@@ -13,12 +13,15 @@ use stead_calibration::compensation::PathPoint;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use stead_model::stiffness::displacement;
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::setup::{AxisPositions, Setup};
 
 /// A plan that fits its run.
 #[derive(Debug)]
 pub(crate) struct PlacedPlan {
     /// Where the workpiece stands.
     pub placement: Placement,
+    /// How part and external axes are set up.
+    pub setup: Setup,
     /// The points with their targets in the base frame.
     pub points: Vec<PathPoint>,
     /// The free angle about the tool axis at every point. rad
@@ -43,11 +46,32 @@ const DEFLECTION_TOLERANCE: (f64, f64) = (1e-7, 1e-3);
 /// What does not fit in a row: the columns, and a sentence on them with the values.
 type Misfit = (String, String);
 
-/// Puts the rows of a plan on the task of its run.
+/// Puts the rows of a plan on the task of its run, the part in the first orientation in which they fit and the external axes where the rows
+/// have them.
+///
+/// # Errors
+/// [`InputError`] at the line of the first row that does not fit the run or the other rows, the part as it lies in the run.
+pub(super) fn set_up(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
+    let positions = match &problem.external_axes[..] {
+        [] => problem.setup.positions.clone(),
+        _ => AxisPositions::PerPoint(rows.iter().map(|row| row.axes.clone()).collect()),
+    };
+    let in_orientation = |orientation: usize| {
+        let setup = Setup { orientation, positions: positions.clone() };
+        placed(file, rows, &problem.in_setup(&setup))
+    };
+    let own = problem.setup.orientation;
+    in_orientation(own).or_else(|error| {
+        let others = (0..problem.orientations.len()).filter(|other| *other != own);
+        others.map(in_orientation).find_map(Result::ok).ok_or(error)
+    })
+}
+
+/// Puts the rows of a plan on the task of a problem, in its setup.
 ///
 /// # Errors
 /// [`InputError`] at the line of the first row that does not fit the run or the other rows.
-pub(super) fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
+fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
     let located = |row: &PlanRow, (columns, problem): Misfit| {
         InputError::new(file, problem)
             .at_line(row.line)
@@ -71,7 +95,8 @@ pub(super) fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result
         note = note.or_else(|| deflection_note(problem, &station, row));
         stations.push(station);
     }
-    Ok(PlacedPlan { placement, points: stations, betas: rows.iter().map(|row| row.beta).collect(), note })
+    let setup = problem.setup.clone();
+    Ok(PlacedPlan { placement, setup, points: stations, betas: rows.iter().map(|row| row.beta).collect(), note })
 }
 
 fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {
@@ -96,7 +121,8 @@ fn own_yaw(problem: &Problem, point: usize, row: &PlanRow) -> Result<f64, Misfit
     }
     let workpiece_from_point = problem.task.points()[point].workpiece_from_point();
     let base_from_point = tool.rotation * point_from_tool(row.beta).transpose();
-    let base_from_workpiece = base_from_point * workpiece_from_point.transpose();
+    let moved = problem.base_from_workpiece_at(problem.axis_positions(point), &Placement::from([0.0; 4])).rotation;
+    let base_from_workpiece = moved.transpose() * base_from_point * workpiece_from_point.transpose();
     let tilt = (base_from_workpiece.column(2) - Vector3::z()).norm();
     if tilt > DIRECTION_TOLERANCE {
         let tilt_deg = tilt.to_degrees();
@@ -126,8 +152,11 @@ fn common_yaw<'a>(yaws: &[f64], rows: &'a [PlanRow]) -> Result<f64, (&'a PlanRow
 /// The workpiece origin that all rows agree on, or the first row that does not agree with most. m
 fn common_origin<'a>(problem: &Problem, yaw: f64, rows: &'a [PlanRow]) -> Result<Vector3<f64>, (&'a PlanRow, Misfit)> {
     let turned = Placement { x: 0.0, y: 0.0, z: 0.0, yaw }.base_from_workpiece();
-    let pairs = rows.iter().zip(problem.task.points());
-    let origins: Vec<Vector3<f64>> = pairs.map(|(row, point)| row.position - turned.point(&point.position)).collect();
+    let at_zero = |(point, row): (usize, &PlanRow)| {
+        let moved = problem.base_from_workpiece_at(problem.axis_positions(point), &Placement::from([0.0; 4]));
+        moved.inverse().point(&row.position) - turned.point(&problem.task.points()[point].position)
+    };
+    let origins: Vec<Vector3<f64>> = rows.iter().enumerate().map(at_zero).collect();
     let middle = Vector3::from_fn(|axis, _| median(origins.iter().map(|origin| origin[axis])));
     for (row, origin) in rows.iter().zip(&origins) {
         let off = (origin - middle).norm();
@@ -147,7 +176,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow) -> PathPoint {
-    let base_from_workpiece = placement.base_from_workpiece();
+    let base_from_workpiece = problem.base_from_workpiece(point, placement);
     let (path_point, wrench) = (&problem.task.points()[point], &problem.task.wrenches()[point]);
     let base_from_flange = problem.base_from_flange(point, placement, row.beta);
     let tool = base_from_flange.then(&problem.spindle.flange_from_tool);

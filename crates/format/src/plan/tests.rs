@@ -1,5 +1,5 @@
 use super::rows::rows_from;
-use super::stations::placed;
+use super::stations::set_up as placed;
 use super::*;
 use crate::testing::root;
 use crate::{Run, read_run};
@@ -27,7 +27,7 @@ fn printed_placement(number: usize) -> [f64; 5] {
 fn a_plan_tells_its_placement() {
     let problem = &shipped().problem;
     for (name, number) in [("best.csv", 1), ("best-worst-plan.csv", 2), ("worst.csv", 3), ("worst-worst-plan.csv", 4)] {
-        let rows = rows_from(Path::new(name), &plan(name), problem.task.path()).unwrap();
+        let rows = rows_from(Path::new(name), &plan(name), problem).unwrap();
         let placed = placed(Path::new(name), &rows, problem).unwrap();
         let [x, y, z, _, yaw] = printed_placement(number);
         let found = &placed.placement;
@@ -58,7 +58,7 @@ proptest! {
         let end = (at + cut).min(bytes.len());
         bytes.splice(at..end, put.bytes());
         let file = Path::new("plan.csv");
-        let result = rows_from(file, &bytes, problem.task.path()).and_then(|rows| placed(file, &rows, problem));
+        let result = rows_from(file, &bytes, problem).and_then(|rows| placed(file, &rows, problem));
         match result {
             Ok(placed) => prop_assert_eq!(placed.points.len(), 105),
             Err(error) => prop_assert!(error.line.is_some() && error.allowed.is_some(), "{}", error),

@@ -144,7 +144,7 @@ fn command(row: &Row<'_>, columns: &Columns, problem: &Problem, planned: &Target
     if let Some(j) = (0..6).find(off) {
         return Err(row.fail(columns.joints[j], "is not the joint angle of the command", allowed));
     }
-    Ok(Target { base_from_tool, posture: planned.posture, joints })
+    Ok(Target { base_from_tool, joints, ..*planned })
 }
 
 /// A row of the corrected path as it is printed, for the reader of programs, which makes a pose of its own of it.

@@ -107,7 +107,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
                 statements.push(format_args!("L P[{position}] {}mm/sec {stop}", speed(step.feed)));
             }
         }
-        position_of(&mut positions, position, step, layout.sign_3);
+        position_of(&mut positions, position, step, layout);
     }
     program(&layout.part_name(index).to_ascii_uppercase(), &statements, &positions.0)
 }
@@ -117,7 +117,8 @@ pub(super) fn speed(feed: f64) -> u32 {
     (feed * 1e3).round().max(1.0) as u32
 }
 
-fn position_of(lines: &mut Lines, number_of: usize, step: &Move, sign_3: f64) {
+fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout<'_>) {
+    let (sign_3, layout_units) = (layout.sign_3, layout.external_units);
     let angles = step.angles.unwrap_or(step.joints);
     lines.line(format_args!("P[{number_of}]{{"));
     lines.line("   GP1:");
@@ -131,7 +132,7 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move, sign_3: f64) {
                 .map(|(angle, axis)| format!("\tJ{axis}= {:>10} deg", number(angle.to_degrees(), AXIS_DECIMALS)))
                 .collect();
             lines.line(format_args!("{},", axes[..3].join(",")));
-            lines.line(axes[3..].join(","));
+            lines.line(format_args!("{}{}", axes[3..].join(","), external(step, layout_units)));
         }
         MoveKind::Linear => {
             lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(step.posture, sign_3, &angles)));
@@ -142,8 +143,17 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move, sign_3: f64) {
             let lengths: Vec<String> = numbers[..3].iter().map(|pair| entry(*pair, MM_DECIMALS, " mm")).collect();
             let turns: Vec<String> = numbers[3..].iter().map(|pair| entry(*pair, DEG_DECIMALS, "deg")).collect();
             lines.line(format_args!("{},", lengths.join(",")));
-            lines.line(turns.join(","));
+            lines.line(format_args!("{}{}", turns.join(","), external(step, layout_units)));
         }
     }
     lines.line("};");
+}
+
+/// `, E1 = ..` for each external axis, on lines of their own.
+fn external(step: &Move, units: [&str; 6]) -> String {
+    let entry = |((position, unit), axis): ((Option<f64>, &str), usize)| {
+        Some(format!("\tE{axis}= {:>10} {unit:>3}", number(position?, AXIS_DECIMALS)))
+    };
+    let entries: Vec<String> = step.external.into_iter().zip(units).zip(1..).filter_map(entry).collect();
+    if entries.is_empty() { String::new() } else { format!(",\n{}", entries.join(",")) }
 }

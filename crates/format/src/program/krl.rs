@@ -79,7 +79,8 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
                 }
                 let is_blended = step.is_blended && number_in_part + 1 < moves.len();
                 let blending = if is_blended { " C_DIS" } else { "" };
-                lines.line(format_args!("LIN {{{}}}{blending}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
+                let pose = frame(&step.workpiece_from_tool, POSE_DECIMALS);
+                lines.line(format_args!("LIN {{{pose}{}}}{blending}", external(step)));
             }
         }
     }
@@ -93,5 +94,11 @@ fn joint(lines: &mut Lines, layout: &Layout<'_>, step: &Move) {
     lines.line(format_args!("; start: {},S {s},T {t}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
     let axes =
         angles.iter().zip(1..).map(|(angle, axis)| format!("A{axis} {}", number(angle.to_degrees(), AXIS_DECIMALS)));
-    lines.line(format_args!("PTP {{{}}}", axes.collect::<Vec<_>>().join(",")));
+    lines.line(format_args!("PTP {{{}{}}}", axes.collect::<Vec<_>>().join(","), external(step)));
+}
+
+/// `,E1 ..` for each external axis, in mm or deg.
+fn external(step: &Move) -> String {
+    let entry = |(position, axis): (Option<f64>, usize)| Some(format!(",E{axis} {}", number(position?, AXIS_DECIMALS)));
+    step.external.into_iter().zip(1..).filter_map(entry).collect()
 }

@@ -31,6 +31,8 @@ pub(super) struct Layout<'a> {
     pub spindle_off: Option<&'a str>,
     /// 1 where the controller's third axis counts in the direction of the row, else -1.
     pub sign_3: f64,
+    /// The units of the external axes, mm or deg.
+    pub external_units: [&'static str; 6],
     /// Mass and centre (m, flange frame) of what the flange carries, where known.
     pub load: Option<(f64, [f64; 3])>,
 }

@@ -188,7 +188,7 @@ const MAX_MOVES: usize = 1_000_000;
 pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Program, ExportError> {
     check_options(run, options)?;
     let planned = targets(run, plan, options.corrected)?;
-    let problem = &run.problem;
+    let problem = &planned.problem;
     let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
     let moves = motion::moves(problem, &planned.placement, &planned.targets, ends)?;
     let frames = motion::frames(problem, &planned.placement);
@@ -197,7 +197,7 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     notes.extend(names::check(options.name, options.format, parts.len())?);
     notes.extend(format_note(options, &moves, frames.is_some()));
     let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
-    let files = files(run, options, &planned.inputs, &moves, parts, frames)?;
+    let files = files((run, problem), options, &planned.inputs, &moves, parts, frames)?;
     let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
     Ok(Program {
         format: options.format,
@@ -217,7 +217,7 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
 
 /// The files of a program in its form.
 fn files(
-    run: &Run,
+    (run, problem): (&Run, &Problem),
     options: &ExportOptions<'_>,
     inputs: &[InputFile],
     moves: &[Move],
@@ -225,10 +225,11 @@ fn files(
     frames: Option<Frames>,
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
-    let (Some(frames), Some(_)) = (frames, format.controller()) else { return Ok(table::files(options.name, moves)) };
+    let (Some(frames), Some(_)) = (frames, format.controller()) else {
+        return Ok(table::files(options.name, moves, motion::external_units(problem)));
+    };
     let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
-    let problem = &run.problem;
     let layout = Layout {
         name: options.name,
         origin: origin(run, inputs),
@@ -238,6 +239,7 @@ fn files(
         blend: options.blend,
         spindle_on: on.as_deref(),
         spindle_off: off.as_deref(),
+        external_units: motion::external_units(problem),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
     };
@@ -251,6 +253,8 @@ fn files(
 /// What a program follows, and where from.
 struct Planned {
     placement: Placement,
+    /// The problem in the setup of the plan.
+    problem: Problem,
     targets: Vec<Target>,
     uncorrected: usize,
     inputs: Vec<InputFile>,
@@ -260,22 +264,29 @@ struct Planned {
 /// The targets of a plan, or those of its corrected path.
 fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>) -> Result<Planned, InputError> {
     let (plan, file) = read_plan(plan, &run.problem)?;
+    let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();
     inputs.push(file);
     let PlacedPlan { placement, points, note, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()
-        .map(|point| Target { base_from_tool: point.base_from_tool, posture: point.posture, joints: point.joints })
+        .enumerate()
+        .map(|(number, point)| Target {
+            base_from_tool: point.base_from_tool,
+            posture: point.posture,
+            joints: point.joints,
+            external: motion::external_at(&problem, number),
+        })
         .collect();
     let (targets, uncorrected) = match corrected {
         Some(path) => {
-            let (targets, uncorrected, file) = corrected_targets(&run.problem, &planned, path)?;
+            let (targets, uncorrected, file) = corrected_targets(&problem, &planned, path)?;
             inputs.push(file);
             (targets, uncorrected)
         }
         None => (planned, 0),
     };
-    Ok(Planned { placement: *placement, targets, uncorrected, inputs, notes: note.iter().cloned().collect() })
+    Ok(Planned { placement: *placement, problem, targets, uncorrected, inputs, notes: note.iter().cloned().collect() })
 }
 
 /// Whether the options are in their ranges, and the form is one for the robot.

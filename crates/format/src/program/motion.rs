@@ -2,9 +2,33 @@
 //! then linear moves through its points, and back.
 
 use super::ProgramError;
+use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
 use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
+
+/// Positions of the external axes that there are, in mm and deg.
+pub(super) type External = [Option<f64>; 6];
+
+/// Their units.
+pub(super) fn external_units(problem: &Problem) -> [&'static str; 6] {
+    std::array::from_fn(|number| match problem.external_axes.get(number).map(|axis| axis.kind) {
+        Some(AxisKind::Turntable) => "deg",
+        _ => "mm",
+    })
+}
+
+/// Those of a problem at a path point.
+pub(super) fn external_at(problem: &Problem, point: usize) -> External {
+    let positions = problem.axis_positions(point);
+    std::array::from_fn(|number| {
+        let (axis, position) = (problem.external_axes.get(number)?, positions.get(number)?);
+        Some(match axis.kind {
+            AxisKind::Rail => position * 1e3,
+            AxisKind::Turntable => position.to_degrees(),
+        })
+    })
+}
 
 /// Where the tool shall be at a path point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +39,8 @@ pub(super) struct Target {
     pub posture: Posture,
     /// Joint angles with their turns, as they are printed in the plan. rad
     pub joints: [f64; 6],
+    /// Where the external axes stand.
+    pub external: External,
 }
 
 /// How a move is made.
@@ -42,6 +68,8 @@ pub(super) struct Move {
     pub joints: [f64; 6],
     /// Angles of the controller, where it is known how it counts. rad
     pub angles: Option<[f64; 6]>,
+    /// Where the external axes stand.
+    pub external: External,
     /// Speed of the tool centre point. m/s
     pub feed: f64,
     /// Whether the next move may begin before this one has arrived.
@@ -58,7 +86,7 @@ impl Move {
 /// The frames that a program is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frames {
-    /// The workpiece in the controller's robot root.
+    /// The workpiece in the controller's robot root, with all external axes at zero.
     pub root_from_workpiece: Pose<f64>,
     /// The tool on the flange.
     pub flange_from_tool: Pose<f64>,
@@ -80,11 +108,20 @@ const MAX_APPROACH_STEP: f64 = 0.5;
 
 /// The frames of a program, where the robot's root is known.
 pub(super) fn frames(problem: &Problem, placement: &Placement) -> Option<Frames> {
-    let root_from_base = problem.robot.controller()?.root_from_base?;
+    let root_from_cell = problem.robot.controller_root_from_cell()?;
     Some(Frames {
-        root_from_workpiece: root_from_base.then(&placement.base_from_workpiece()),
+        root_from_workpiece: root_from_cell.then(&at_zero(problem, placement)),
         flange_from_tool: problem.spindle.flange_from_tool,
     })
+}
+
+/// The workpiece of the task file in the base frame with all external axes at zero.
+fn at_zero(problem: &Problem, placement: &Placement) -> Pose<f64> {
+    let mut pose = placement.base_from_workpiece();
+    if let Some(orientation) = problem.orientation() {
+        pose.rotation *= orientation.rotation;
+    }
+    pose
 }
 
 /// All moves, segment by segment.
@@ -97,7 +134,7 @@ pub(super) fn moves(
     targets: &[Target],
     ends: Ends,
 ) -> Result<Vec<Move>, ProgramError> {
-    let maker = Maker { problem, workpiece_from_base: placement.base_from_workpiece().inverse() };
+    let maker = Maker { problem, placement };
     let mut moves = Vec::with_capacity(targets.len() + 2 * problem.task.segments().len());
     let has_approach = ends.approach > 0.0;
     let retracted = |point: usize, at: &At, when| {
@@ -148,7 +185,7 @@ struct At {
 
 struct Maker<'a> {
     problem: &'a Problem,
-    workpiece_from_base: Pose<f64>,
+    placement: &'a Placement,
 }
 
 impl Maker<'_> {
@@ -157,10 +194,11 @@ impl Maker<'_> {
             kind,
             segment: segment + 1,
             point: Some(point),
-            workpiece_from_tool: self.workpiece_from_base.then(&at.base_from_tool),
+            workpiece_from_tool: self.problem.base_from_part(point, self.placement).inverse().then(&at.base_from_tool),
             posture: target.posture,
             joints: at.joints,
             angles: self.problem.robot.controller().map(|controller| controller.angles(&at.joints)),
+            external: target.external,
             feed: feed_at(self.problem, point),
             is_blended: false,
         }

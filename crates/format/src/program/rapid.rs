@@ -1,7 +1,7 @@
 //! Programs for ABB's controllers, in RAPID.
 
 use super::layout::{Layout, Lines, ProgramFile};
-use super::motion::MoveKind;
+use super::motion::{Move, MoveKind};
 use super::names::{MODULE, number};
 use nalgebra::{Matrix3, Vector3};
 use stead_numerics::rotation::quaternion_from_rotation;
@@ -12,8 +12,8 @@ const MM_DECIMALS: usize = 4;
 const QUATERNION_DECIMALS: usize = 9;
 /// Decimals of joint angles in deg: all six off by half a unit move nothing 4 m away by 3e-3 mm.
 const AXIS_DECIMALS: usize = 5;
-/// External axes that are not there.
-const NO_AXES: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+/// An external axis that is not there.
+const NO_AXIS: &str = "9E9";
 /// Speeds of reorientation, of linear and of rotating external axes, as in the predefined speed data.
 const OTHER_SPEEDS: &str = "500,5000,1000";
 
@@ -36,6 +36,12 @@ fn orientation_after(last: &mut [f64; 4], rotation: &Matrix3<f64>) -> String {
     let is_far = quaternion.iter().zip(&*last).map(|(a, b)| a * b).sum::<f64>() < 0.0;
     *last = if is_far { quaternion.map(|part| -part) } else { quaternion };
     list(*last, QUATERNION_DECIMALS)
+}
+
+/// eax_a to eax_f, in mm or deg.
+fn external(step: &Move) -> String {
+    let axes = step.external.map(|axis| axis.map_or_else(|| NO_AXIS.to_owned(), |at| number(at, AXIS_DECIMALS)));
+    format!("[{}]", axes.join(","))
 }
 
 /// The main module, with the data and a procedure that calls the parts, and the modules of the parts.
@@ -114,15 +120,17 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
                 let angles = step.angles.unwrap_or(step.joints).map(f64::to_degrees);
                 lines.line(format_args!("    ! start: {target}"));
                 lines.line(format_args!(
-                    "    MoveAbsJ [{},{NO_AXES}],{speed},fine,{tool}\\WObj:={workpiece};",
-                    list(angles, AXIS_DECIMALS)
+                    "    MoveAbsJ [{},{}],{speed},fine,{tool}\\WObj:={workpiece};",
+                    list(angles, AXIS_DECIMALS),
+                    external(step)
                 ));
             }
             MoveKind::Linear => {
                 let is_blended = step.is_blended && number_in_part + 1 < moves.len();
                 let stop = if is_blended { zone.as_str() } else { "fine" };
                 lines.line(format_args!(
-                    "    MoveL [{target},[0,0,0,0],{NO_AXES}],[{},{OTHER_SPEEDS}],{stop},{tool}\\WObj:={workpiece};",
+                    "    MoveL [{target},[0,0,0,0],{}],[{},{OTHER_SPEEDS}],{stop},{tool}\\WObj:={workpiece};",
+                    external(step),
                     number(step.feed * 1e3, 3)
                 ));
             }

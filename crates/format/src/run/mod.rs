@@ -2,8 +2,10 @@
 
 mod certificate;
 mod criterion;
+mod external_axes;
 mod forces;
 mod notes;
+mod orientations;
 mod output;
 mod postures;
 mod redundancy;
@@ -14,7 +16,9 @@ mod tests;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
+pub use external_axes::ExternalAxisTable;
 pub use forces::ForcesTable;
+pub use orientations::OrientationTable;
 pub use output::OutputTable;
 pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
@@ -24,11 +28,14 @@ pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, Trans
 use crate::document::Document;
 use crate::field::FieldOverrides;
 use crate::input::{InputError, InputFile, input_file};
+use crate::mount::MountTable;
 use crate::robot::{moving_robot_from, robot_from};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
+use crate::surroundings::{CollisionTable, KeepOutTable, ShapeTable, SurroundingsFile, read_scene};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
+use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
 use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
@@ -39,6 +46,7 @@ use std::path::Path;
 use stead_model::published::Published;
 use stead_placement::problem::Problem;
 use stead_placement::settings::{CertificateSettings, SearchSettings, TransferSettings};
+use stead_placement::setup::Setup;
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
@@ -55,8 +63,12 @@ pub struct RunFile {
     pub task: String,
     /// The tool frame in the flange frame.
     pub spindle: SpindleTable,
+    /// Where the robot stands in its cell; with it, all that is stated in the base frame is in the cell frame.
+    pub mount: Option<MountTable>,
     /// Where the workpiece may stand.
     pub cell: CellTable,
+    /// Rails and turntables that carry the robot or the workpiece, those that carry the same thing on each other in their order.
+    pub external_axis: Option<Vec<ExternalAxisTable>>,
     /// What a placement has to keep to.
     pub constraints: ConstraintsTable,
     /// By what a placement is scored.
@@ -79,6 +91,14 @@ pub struct RunFile {
     pub cut: Option<CutTable>,
     /// Forces in the frame of each path point, in place of force columns or of `[tool]` and `[cut]`.
     pub forces: Option<ForcesTable>,
+    /// What stands around the robot and on it, to be kept apart: a file of the tables below, relative to the folder of this one.
+    pub surroundings: Option<String>,
+    /// Shapes that keep apart, beside those of `surroundings`.
+    pub shape: Option<Vec<ShapeTable>>,
+    /// Zones that points of the arm are kept out of, beside those of `surroundings`.
+    pub keep_out: Option<Vec<KeepOutTable>>,
+    /// How far shapes keep apart, and which may touch.
+    pub collision: Option<CollisionTable>,
     /// Asks for critical depths along the path.
     pub stability: Option<PathStabilityTable>,
     /// What is made beside the plans.
@@ -102,7 +122,7 @@ pub struct Run {
     pub maps: bool,
     /// Whether a page is left with the files.
     pub page: bool,
-    /// The files that were read, in the order config, robot, task.
+    /// The files that were read, in the order config, robot, task, and others that they name.
     pub inputs: Vec<InputFile>,
     /// Published figures to print beside ours.
     pub reference: Option<Published<[f64; 4]>>,
@@ -175,6 +195,10 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         None => robot_from(&robot_source),
     })?;
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
+    let robot = match &run.mount {
+        Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
+        None => robot,
+    };
     let task_file = task_field.named_file()?;
     let imported = source.sources.task(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> = source.overrides().iter().map(|(field, _)| override_note(field)).collect();
@@ -196,13 +220,35 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
-    let problem = Problem { robot, spindle, task, cell, constraints, criterion, redundancy, postures: rules };
+    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
+    let around = read_scene(around, &at, &robot, &spindle)?;
+    let scene = around.scene;
+    let orientations = run.cell.orientations(&task, &at.key("cell"))?;
+    let task = orientations.first().map_or(task, |first| (*first.task).clone());
+    let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
+    let problem = Problem {
+        robot,
+        spindle,
+        task,
+        cell,
+        constraints,
+        criterion,
+        redundancy,
+        postures: rules,
+        scene,
+        orientations,
+        setup: Setup::at_rest(&external_axes),
+        external_axes,
+    };
+    check_axes(&problem, &at.key("external_axis"))?;
     check_postures(&postures, &problem, &search, &at.key("postures"))?;
     check_axis_turns(&problem, &at.key("redundancy"))?;
     check_tables(&search, &problem, &at.key("search"))?;
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
+    inputs.extend(around.inputs);
     notes.extend(problem.notes());
+    notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     let reference = run.reference.map(ReferenceTable::reference);

@@ -1,6 +1,7 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
 use super::certificate::Memory;
+use super::orientations::OrientationTable;
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
@@ -30,7 +31,7 @@ ranges! {
 }
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellTable {
     /// Range `[min, max]` of the x coordinate.
@@ -42,6 +43,10 @@ pub struct CellTable {
     /// Range `[min, max]` of sin(yaw / 2), the quaternion component that turns the workpiece about the vertical axis; all
     /// yaw angles where left out.
     pub q4: Option<Interval<Number<PlusMinusOne>>>,
+    /// The ways in which the part may lie, of which the search chooses one: the part is turned so before it is placed.
+    pub orientations: Option<Vec<OrientationTable>>,
+    /// The name of the orientation in which the part lies, in place of a choice among all of them.
+    pub orientation: Option<String>,
 }
 
 impl CellTable {
@@ -187,6 +192,8 @@ pub struct TransferTable {
     pub jerk_time_s: Option<S<Positive>>,
     /// Distance along the cut over which the controller blends changes of the joint speeds.
     pub blend_mm: Option<Mm<Blend>>,
+    /// How far the tool is drawn out of the cut along its axis before it moves to the next segment, where there are surroundings.
+    pub retract_mm: Option<Mm<Positive>>,
 }
 
 impl TransferTable {
@@ -196,6 +203,7 @@ impl TransferTable {
             acceleration_time: self.acceleration_time_s.map_or(default.acceleration_time, Quantity::si),
             jerk_time: self.jerk_time_s.map_or(default.jerk_time, Quantity::si),
             blend: self.blend_mm.map_or(default.blend, Quantity::si),
+            retract: self.retract_mm.map_or(default.retract, Quantity::si),
         }
     }
 }

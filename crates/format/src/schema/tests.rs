@@ -119,7 +119,7 @@ fn document(text: &str) -> Value {
 #[test]
 fn shipped_files_are_as_their_schemas_say() {
     let configs = root().join("configs");
-    let files = [shipped(&configs), shipped(&configs.join("robots"))].concat();
+    let files = [shipped(&configs), shipped(&configs.join("robots")), shipped(&configs.join("cells"))].concat();
     assert!(files.len() > 15);
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
@@ -169,8 +169,9 @@ fn assert_written_as_read<T: DeserializeOwned + Serialize + PartialEq + Debug>(f
 #[test]
 fn what_is_written_is_read_back() {
     let configs = root().join("configs");
-    for name in ["caro-2013", "five-segments-cutting", "tx200-stability"] {
+    for name in ["caro-2013", "collision", "five-segments-cutting", "tx200-stability"] {
         assert_written_as_read::<RunFile>(&configs.join(format!("{name}.toml")));
     }
+    assert_written_as_read::<SurroundingsFile>(&configs.join("cells/kr270-cell.toml"));
     shipped(&configs.join("robots")).iter().for_each(|robot| assert_written_as_read::<RobotFile>(robot));
 }

@@ -37,6 +37,10 @@ pub(super) fn setup_from(
     let spindle = file.spindle.moving_spindle(&at.key("spindle"))?;
     let (source, input) = at.key("robot").named_toml("robot")?;
     let robot = moving_robot_from(&source, variant >= Variant::Orthogonal)?;
+    let robot = match &file.mount {
+        Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
+        None => robot,
+    };
     inputs.push(input);
     let motion = motion_from(&file.pass, &at.key("pass"), &robot, &spindle)?;
     Ok(Setup { robot, spindle, variant, damping_scale, motion })

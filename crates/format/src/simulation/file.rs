@@ -1,5 +1,6 @@
 //! What a simulation file declares.
 
+use crate::mount::MountTable;
 use crate::scalars::{Whole, Word};
 use crate::shapes::{Array, Span, Vector};
 use crate::spindle::SpindleTable;
@@ -38,6 +39,8 @@ pub struct SimulationFile {
     pub damping_scale: Option<Number<DampingScale>>,
     /// The tool frame in the flange frame, and the body that the flange carries.
     pub spindle: SpindleTable,
+    /// Where the robot stands in its cell, whose z axis points up: gravity follows it.
+    pub mount: Option<MountTable>,
     /// The motion of the tool.
     pub pass: PassTable,
     /// The workpiece.
@@ -59,7 +62,7 @@ pub struct SimulationFile {
 pub struct PassTable {
     /// Joint angles at the start, in the angles of the robot file.
     pub start_joints_deg: Array<Deg, 6>,
-    /// Direction of the feed in the base frame, normal to the tool axis; its length does not matter.
+    /// Direction of the feed in the base frame (in the cell frame with `[mount]`), normal to the tool axis; its length does not matter.
     pub feed_direction: Vector<Number>,
     /// Length of the pass.
     pub length_mm: Mm<PassLength>,

@@ -18,6 +18,7 @@ use crate::input::{InputError, InputFile, sha256};
 use crate::place::Place;
 use crate::run::{Run, run_of};
 use crate::sources::Sources;
+use crate::surroundings::MESH;
 use crate::toml_file::TomlFile;
 use axis::Axis;
 use cases::cases;
@@ -150,7 +151,13 @@ impl Study {
         }
         // The first is the run file itself.
         by_digest(&mut root, inputs.get(1..).unwrap_or_default());
-        sha256(format!("{RESULT_VERSION}\ncertified {}\n{root}\n", self.is_certified).as_bytes())
+        let mut text = format!("{RESULT_VERSION}\ncertified {}\n{root}\n", self.is_certified);
+        // Files that the file of the surroundings names are not in the run file.
+        inputs
+            .iter()
+            .filter(|input| input.role == MESH)
+            .for_each(|input| text.push_str(&format!("{}\n", input.sha256)));
+        sha256(text.as_bytes())
     }
 }
 

@@ -13,14 +13,8 @@ use stead_model::robot::{Inertial, Pose, Robot};
 /// # Errors
 /// Why the URDF does not state all six: a sentence without its full stop.
 pub(super) fn bodies(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> Result<[Inertial; 6], String> {
-    let mut base_from_row = rows.link_from_base;
     let mut bodies = Vec::with_capacity(6);
-    for (k, joint) in chain.moving.into_iter().enumerate() {
-        let theta = rows.rows[k].offset_deg.to_radians();
-        base_from_row = base_from_row.then(&robot.rows()[k]).then(&about_z(theta));
-        let last = chain.path.iter().position(|other| *other == joint).unwrap_or_default();
-        let row_from_link = base_from_row.inverse().then(&link_at(urdf, chain, &[0.0; 6], last));
-        let link = urdf.joints[joint].child;
+    for (link, row_from_link) in row_from_links(urdf, chain, rows, robot) {
         let body = rigid(urdf, link)?.ok_or_else(|| format!("link {} has no mass", quoted(&urdf.links[link].name)))?;
         let body = body.placed(&row_from_link);
         let checked = Inertial::new(body.mass(), *body.centre(), *body.inertia());
@@ -29,18 +23,40 @@ pub(super) fn bodies(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> 
     <[Inertial; 6]>::try_from(bodies).map_err(|_| "not six bodies".to_owned())
 }
 
+/// The links behind the six moving joints, each with its pose in the frame of its row.
+pub(super) fn row_from_links(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> [(usize, Pose<f64>); 6] {
+    let mut base_from_row = rows.link_from_base;
+    std::array::from_fn(|k| {
+        let joint = chain.moving[k];
+        let theta = rows.rows[k].offset_deg.to_radians();
+        base_from_row = base_from_row.then(&robot.rows()[k]).then(&about_z(theta));
+        let last = chain.path.iter().position(|other| *other == joint).unwrap_or_default();
+        let row_from_link = base_from_row.inverse().then(&link_at(urdf, chain, &[0.0; 6], last));
+        (urdf.joints[joint].child, row_from_link)
+    })
+}
+
+/// A link and all that is fixed to it, each with its pose in the frame of the link.
+pub(super) fn attached_to(urdf: &Urdf, link: usize) -> Vec<(usize, Pose<f64>)> {
+    let mut attached = vec![(link, Pose::identity())];
+    let mut next = 0;
+    while let Some((link, pose)) = attached.get(next).copied() {
+        let fixed = urdf.joints.iter().filter(|joint| joint.parent == link && joint.kind == Kind::Fixed);
+        attached.extend(fixed.map(|joint| (joint.child, pose.then(&joint.origin))));
+        next += 1;
+    }
+    attached
+}
+
 /// A link and all that is fixed to it, in its frame.
 fn rigid(urdf: &Urdf, link: usize) -> Result<Option<Inertial>, String> {
     let mut whole: Option<Inertial> = None;
-    let mut open = vec![(link, Pose::identity())];
-    while let Some((link, pose)) = open.pop() {
+    for (link, pose) in attached_to(urdf, link) {
         if let Some(inertial) = &urdf.links[link].inertial {
             let body =
                 inertial.map_err(|error| format!("link {}: {error}", quoted(&urdf.links[link].name)))?.placed(&pose);
             whole = Some(whole.map_or(body, |whole| whole.joined(&body)));
         }
-        let fixed = urdf.joints.iter().filter(|joint| joint.parent == link && joint.kind == Kind::Fixed);
-        open.extend(fixed.map(|joint| (joint.child, pose.then(&joint.origin))));
     }
     Ok(whole)
 }

@@ -1,26 +1,27 @@
-//! Whether the files of the shapes are there. Nothing of them is used.
+//! Where the files of the shapes are.
 
 use super::read::Urdf;
 use std::path::{Path, PathBuf};
 
-/// The files of the shapes that are not found: a relative path from the folder of the URDF, one of a package (`package://name/..`)
-/// from the nearest folder above it that has the package, or the rest of the path, in it.
+/// The files of the shapes that are not found.
 pub(super) fn missing(urdf: &Urdf) -> Vec<String> {
-    let folder = std::path::absolute(&urdf.file).unwrap_or_default();
-    let folder = folder.parent().unwrap_or(Path::new("."));
     let names = urdf.links.iter().flat_map(|link| &link.meshes);
-    let mut missing: Vec<String> = names.filter(|name| !is_there(folder, name)).cloned().collect();
+    let mut missing: Vec<String> = names.filter(|name| found(urdf, name).is_none()).cloned().collect();
     missing.sort();
     missing.dedup();
     missing
 }
 
-fn is_there(folder: &Path, name: &str) -> bool {
+/// The file of a shape, where it is found: by a relative path from the folder of the URDF, one of a package (`package://name/..`) from
+/// the nearest folder above it that has the package, or the rest of the path, in it.
+pub(super) fn found(urdf: &Urdf, name: &str) -> Option<PathBuf> {
+    let folder = std::path::absolute(&urdf.file).unwrap_or_default();
+    let folder = folder.parent().unwrap_or(Path::new("."));
     let places: Vec<PathBuf> = if let Some(path) = name.strip_prefix("package://") {
         let rest = path.split_once('/').map_or(path, |(_, rest)| rest);
         folder.ancestors().flat_map(|above| [above.join(path), above.join(rest)]).collect()
     } else {
         vec![folder.join(name.strip_prefix("file://").unwrap_or(name))]
     };
-    places.iter().any(|place| place.is_file())
+    places.into_iter().find(|place| place.is_file())
 }

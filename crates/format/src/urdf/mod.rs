@@ -14,6 +14,8 @@
 //! ```
 
 mod bodies;
+mod cell_text;
+mod collision;
 mod deviation;
 mod forward;
 mod home;
@@ -27,17 +29,18 @@ mod toml_text;
 mod tree;
 mod xml;
 
+pub use collision::{LinkShape, LinkShapes};
 pub use deviation::{Deviation, POSTURES};
 pub use home::HomePose;
 pub use rows::ImportedRow;
 
 use crate::input::{InputError, sha256};
-use crate::new_file::write_new;
+use crate::new_file::write_all_new;
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};
 use rows::Rows;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stead_model::robot::{Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
 use stiffness::Borrowed;
 use tree::{Chain, Tree};
@@ -56,6 +59,8 @@ pub struct ImportOptions<'a> {
     pub home: Option<HomePose>,
     /// Whether to look for the files of the shapes.
     pub check_meshes: bool,
+    /// Whether to read the shapes of the links for collision checks.
+    pub collision: bool,
 }
 
 /// A robot from a URDF, as a robot file has it.
@@ -85,6 +90,8 @@ pub struct ImportedRobot {
     pub controller: Option<Controller>,
     /// The bodies behind the joints in the frames of the rows, where the URDF states all.
     pub bodies: Option<[Inertial; 6]>,
+    /// The shapes of the links, where they were asked for.
+    pub link_shapes: Option<LinkShapes>,
     /// What the user should know.
     pub notes: Vec<String>,
     /// The robot file.
@@ -141,6 +148,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref()),
         controller: None,
         bodies: bodies.as_ref().ok().copied(),
+        link_shapes: None,
         text: String::new(),
     };
     imported.notes.extend(
@@ -158,6 +166,16 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
     if options.check_meshes {
         imported.notes.extend(meshes::missing(urdf).iter().map(|name| format!("mesh {} is not found", quoted(name))));
     }
+    if options.collision {
+        let shapes = collision::link_shapes(urdf, &chain, &rows, &robot)?;
+        if shapes.shapes.is_empty() {
+            let allowed = "a URDF with <collision> shapes whose files are there, or an import without --collision";
+            let error = InputError::new(&urdf.file, "has no <collision> shape that can be read");
+            return Err(error.allowed(allowed));
+        }
+        imported.notes.extend(shapes.notes.iter().cloned());
+        imported.link_shapes = Some(shapes);
+    }
     imported.text = toml_text::text(&imported, urdf, &sha256(urdf.text.as_bytes()), borrowed.as_ref());
     Ok(imported)
 }
@@ -169,12 +187,27 @@ impl ImportedRobot {
         Controller { kind, sign, offset, is_j3_level: false, root_from_base: Some(self.link_from_base) }
     }
 
-    /// Writes the robot file, which must not exist yet; folders to it are made.
+    /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were asked for, that of
+    /// the surroundings with these shapes, `NAME-cell.toml`.
+    pub fn files(&self, file: &Path) -> Vec<(PathBuf, String)> {
+        let mut files = vec![(file.to_owned(), self.text.clone())];
+        if let Some(shapes) = &self.link_shapes {
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            let cell = file.with_file_name(format!("{stem}-cell.toml"));
+            let text = cell_text::text(shapes, &cell, &self.name);
+            files.push((cell, text));
+        }
+        files
+    }
+
+    /// Writes these files, which must not exist yet; folders to them are made.
     ///
     /// # Errors
-    /// [`InputError`] where the file exists or cannot be written: nothing is changed then.
+    /// [`InputError`] where a file exists or cannot be written: nothing is changed then.
     pub fn write(&self, file: &Path) -> Result<(), InputError> {
-        write_new(file, &self.text)
+        let files = self.files(file);
+        let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
+        write_all_new(&texts)
     }
 }
 

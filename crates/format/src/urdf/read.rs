@@ -35,6 +35,24 @@ pub(super) struct Link {
     pub inertial: Option<Result<Inertial, InertialError>>,
     /// The files of its shapes, as written.
     pub meshes: Vec<String>,
+    /// Its shapes for collision checks, each in its own frame; the reason where one says nothing that can be.
+    pub collisions: Vec<Result<(Pose<f64>, Geometry), InputError>>,
+}
+
+/// The form of a shape. m
+#[derive(Debug, Clone)]
+pub(super) enum Geometry {
+    Box(Vector3<f64>),
+    /// Along z.
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+    Sphere(f64),
+    Mesh {
+        file: String,
+        scale: Vector3<f64>,
+    },
 }
 
 /// What a joint lets its child do.
@@ -171,12 +189,41 @@ fn links_of(root: Element<'_>) -> Result<(Vec<Link>, BTreeMap<String, usize>), I
         let mut meshes: Vec<String> = files.map(str::to_owned).collect();
         meshes.dedup();
         let inertial = element.child("inertial").map(inertial_of).transpose()?;
-        links.push(Link { name, byte: element.byte(), inertial, meshes });
+        let collisions = element.children("collision").map(collision_of).collect();
+        links.push(Link { name, byte: element.byte(), inertial, meshes, collisions });
     }
     if links.is_empty() {
         return Err(root.error(None, "has no links", "a robot of links and joints"));
     }
     Ok((links, numbers))
+}
+
+fn collision_of(element: Element<'_>) -> Result<(Pose<f64>, Geometry), InputError> {
+    const FORMS: &str = "<box>, <cylinder>, <sphere> or <mesh> in <geometry>";
+    let origin = origin_of(element)?;
+    let geometry = element.require_child("geometry")?;
+    let length = |form: Element<'_>, name: &str| -> Result<f64, InputError> {
+        let wanted = || form.error(Some(name), "is no length above 0", "a length above 0, in m");
+        form.number(name, LARGEST_LENGTH)?.filter(|length| *length > 0.0).ok_or_else(wanted)
+    };
+    let form = if let Some(form) = geometry.child("box") {
+        let edges = form.vector("size", LARGEST_LENGTH)?.filter(|edges| edges.iter().all(|edge| *edge > 0.0));
+        let wanted = || form.error(Some("size"), "is not three lengths above 0", "three lengths above 0, in m");
+        Geometry::Box(edges.ok_or_else(wanted)?.into())
+    } else if let Some(form) = geometry.child("cylinder") {
+        Geometry::Cylinder { radius: length(form, "radius")?, length: length(form, "length")? }
+    } else if let Some(form) = geometry.child("sphere") {
+        Geometry::Sphere(length(form, "radius")?)
+    } else if let Some(form) = geometry.child("mesh") {
+        let scale = Vector3::from(form.vector("scale", LARGEST_LENGTH)?.unwrap_or([1.0; 3]));
+        if scale.iter().any(|factor| *factor == 0.0) {
+            return Err(form.error(Some("scale"), "has a factor of 0", "three factors that are not 0"));
+        }
+        Geometry::Mesh { file: form.require("filename")?.to_owned(), scale }
+    } else {
+        return Err(geometry.error(None, "has no form that is known", FORMS));
+    };
+    Ok((origin, form))
 }
 
 fn inertial_of(element: Element<'_>) -> Result<Result<Inertial, InertialError>, InputError> {

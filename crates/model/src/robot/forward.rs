@@ -5,7 +5,8 @@ use super::pose::{Pose, cast};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use stead_numerics::scalar::Scalar;
 
-/// The joint frames of an arm in one configuration, in base coordinates.
+/// The joint frames of an arm in one configuration, in base coordinates; in those of the cell for an arm that is mounted
+/// ([`Robot::mounted`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frames<T: Scalar> {
     /// Unit vectors of the six joint axes.
@@ -19,7 +20,7 @@ pub struct Frames<T: Scalar> {
 impl<T: Scalar> Frames<T> {
     /// The frames for joint angles `theta` in rad, joint limits ignored.
     pub fn new(robot: &Robot, theta: &[T; 6]) -> Self {
-        let mut pose = Pose::<T>::identity();
+        let mut pose = robot.cell_from_base::<T>();
         let mut axes = [Vector3::zeros(); 6];
         let mut origins = [Vector3::zeros(); 6];
         for (j, row) in robot.rows().iter().enumerate() {
@@ -58,6 +59,18 @@ impl<T: Scalar> Frames<T> {
 }
 
 impl Robot {
+    /// The frames of the six rows in the base frame for joint angles `theta` in rad, each fixed to its link.
+    pub fn link_frames(&self, theta: &[f64; 6]) -> [Pose<f64>; 6] {
+        let mut pose = Pose::identity();
+        std::array::from_fn(|j| {
+            let row = &self.rows()[j];
+            let (sine, cosine) = libm::sincos(theta[j]);
+            let turned = Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
+            pose = pose.then(&Pose { rotation: row.rotation * turned, translation: row.translation });
+            pose
+        })
+    }
+
     /// Frame 6 in the base frame for joint angles `theta` in rad, joint limits ignored.
     pub fn forward<T: Scalar>(&self, theta: &[T; 6]) -> Pose<T> {
         Frames::new(self, theta).base_from_flange
@@ -69,6 +82,19 @@ mod tests {
     use super::super::testing::{kr270, odd_arms};
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn the_frames_of_links_are_those_of_the_joints() {
+        for robot in odd_arms().iter().chain([&kr270()]) {
+            let theta = [0.3, -0.4, 0.7, 1.1, -0.9, 2.0];
+            let (links, frames) = (robot.link_frames(&theta), Frames::new(robot, &theta));
+            for j in 0..6 {
+                assert!((links[j].translation - frames.origins[j]).norm() < 1e-12);
+                assert!((links[j].rotation.column(2) - frames.axes[j]).norm() < 1e-12);
+            }
+            assert!((links[5].rotation - frames.base_from_flange.rotation).norm() < 1e-12);
+        }
+    }
 
     #[test]
     fn stretched_arm_reaches_the_sum_of_its_lengths() {

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 /// centre. Signs are those of the sines of the twists, each +1 or -1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Rotation from root to base coordinates.
+    /// Rotation from root to base coordinates; to those of the cell for an arm that is mounted ([`Robot::mounted`](super::Robot::mounted)).
     pub base_from_root: Matrix3<f64>,
     /// Origin of the root frame in the base frame. m
     pub root_in_base: Vector3<f64>,

@@ -23,13 +23,7 @@ impl Robot {
             Joint { min: joint.min + margin, max: joint.max - margin, compliance, ..joint }
         });
         let narrowed = Self::new(self.name(), joints)?;
-        let robot = Self {
-            joints: narrowed.joints,
-            geometry: narrowed.geometry,
-            rows: narrowed.rows,
-            uncertainty: None,
-            ..self.clone()
-        };
+        let robot = Self { joints: narrowed.joints, uncertainty: None, ..self.clone() };
         // Covariances stay positive semidefinite, and parameters those of the laws: nothing to refuse.
         match self.uncertainty().and_then(|known| moved(known, self.joints(), margin)) {
             Some(uncertainty) => Ok(robot.clone().with_uncertainty(uncertainty).unwrap_or(robot)),

@@ -35,6 +35,7 @@ mod geometry;
 mod inertial;
 mod inverse;
 mod margin;
+mod mount;
 mod pose;
 pub mod posture;
 mod spindle;
@@ -86,6 +87,8 @@ pub struct Robot {
     joints: [Joint; 6],
     geometry: Geometry,
     rows: [Pose<f64>; 6],
+    /// Pose of the base frame of the rows in the cell frame, where that is another.
+    mount: Option<Pose<f64>>,
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
@@ -193,6 +196,7 @@ impl Robot {
             rows: geometry.rows(&joints),
             joints,
             geometry,
+            mount: None,
             data_sheet: DataSheet::default(),
             uncertainty: None,
             dynamics: None,
@@ -227,14 +231,15 @@ impl Robot {
         self.joints.each_ref().map(|joint| (joint.min + joint.max) / 2.0)
     }
 
-    /// The frame of every row at joint angle zero, in that before it (the base frame for the first).
+    /// The frame of every row at joint angle zero, in that before it (the base frame of the rows for the first).
     pub fn rows(&self) -> &[Pose<f64>; 6] {
         &self.rows
     }
 
     /// The arm as a [`Chain`] with a body behind every joint, given in the frame of its row, and a tip in the flange frame.
     pub fn chain(&self, bodies: &[Inertial; 6], flange_from_tip: Pose<f64>) -> Chain<6> {
-        let links = std::array::from_fn(|j| Link::new(self.rows[j], Axis::Z, Some(bodies[j])));
+        let rows = self.mounted_rows();
+        let links = std::array::from_fn(|j| Link::new(rows[j], Axis::Z, Some(bodies[j])));
         Chain::new(links, flange_from_tip)
     }
 

@@ -5,6 +5,7 @@
 
 mod following;
 mod thinned;
+mod turned;
 
 pub use thinned::KeptPoint;
 

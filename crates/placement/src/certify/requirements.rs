@@ -13,6 +13,9 @@ use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require
 /// # Errors
 /// The first reason why not.
 pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
+    if problem.orientations.len() > 1 {
+        return Err(Unsupported::Orientations);
+    }
     Upright::of(problem)?;
     require_mean_wall(problem)?;
     if !problem.criterion.segment_weights.is_empty() {

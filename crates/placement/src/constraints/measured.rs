@@ -4,13 +4,17 @@ use super::ConstraintKind;
 use crate::evaluate::reference::State;
 use crate::problem::Problem;
 use std::fmt;
+use std::sync::Arc;
 use stead_model::robot::{Unreachable, angles::ANGLE_ROUNDING};
 
 /// Joint steps are compared with their limits up to this (rad), steps of beta up to this share of the grid's step: rounding.
 pub const STEP_ROUNDING: f64 = 1e-9;
 
+/// What shapes that touch are counted as beyond their clearance: as much as 0.1 m.
+const TOUCHING: f64 = 1.0;
+
 /// A constraint with what it is measured by.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Measured {
     /// The posture does not reach the point.
     Reach(Unreachable),
@@ -46,6 +50,15 @@ pub enum Measured {
         /// What it may be. m
         limit: f64,
     },
+    /// The distance of two shapes, or of a point of the arm from a zone, held against the smallest allowed.
+    Clearance {
+        /// Their names.
+        names: Arc<[String; 2]>,
+        /// What it is; zero or less where they touch. m
+        distance: f64,
+        /// What it must be at least. m
+        required: f64,
+    },
     /// The step of a joint from one path point to the next.
     JointStep {
         /// The joint, from 1.
@@ -80,6 +93,7 @@ impl Measured {
             Self::Conditioning { .. } => ConstraintKind::Conditioning,
             Self::BaseDistance { .. } => ConstraintKind::BaseDistance,
             Self::MaxDeflection { .. } => ConstraintKind::MaxDeflection,
+            Self::Clearance { .. } => ConstraintKind::Clearance,
             Self::JointStep { .. } => ConstraintKind::JointStep,
             Self::BetaRate { .. } => ConstraintKind::BetaRate,
             Self::SpindleTurn { .. } => ConstraintKind::SpindleTurn,
@@ -93,6 +107,11 @@ impl Measured {
             Self::JointLimit { margin, .. } => margin,
             Self::Conditioning { value, limit } | Self::BaseDistance { value, limit } => value - limit,
             Self::MaxDeflection { value, limit } => limit - value,
+            // Shapes that touch break the constraint also where no clearance is asked for.
+            Self::Clearance { distance, required, .. } if distance <= 0.0 => {
+                (distance - required).min(-f64::MIN_POSITIVE)
+            }
+            Self::Clearance { distance, required, .. } => distance - required,
             Self::JointStep { step, limit, .. } | Self::BetaRate { step, limit } => limit - step,
             Self::SpindleTurn { turn, limit } => limit - turn,
         }
@@ -103,7 +122,11 @@ impl Measured {
         let rounding = match self {
             Self::JointLimit { .. } => ANGLE_ROUNDING,
             Self::JointStep { .. } | Self::BetaRate { .. } | Self::SpindleTurn { .. } => STEP_ROUNDING,
-            Self::Reach(_) | Self::Conditioning { .. } | Self::BaseDistance { .. } | Self::MaxDeflection { .. } => 0.0,
+            Self::Reach(_)
+            | Self::Conditioning { .. }
+            | Self::BaseDistance { .. }
+            | Self::Clearance { .. }
+            | Self::MaxDeflection { .. } => 0.0,
         };
         self.margin() >= -rounding
     }
@@ -114,10 +137,13 @@ impl Measured {
         match *self {
             // A point out of reach has no joint angles, so it counts as farther off than any state that has them.
             Self::Reach(_) => 100.0 - self.margin() * 10.0,
+            // How far shapes are into each other is not known.
+            Self::Clearance { distance, .. } if distance <= 0.0 => TOUCHING - self.margin() * 10.0,
             Self::JointLimit { .. }
             | Self::JointStep { .. }
             | Self::BetaRate { .. }
             | Self::SpindleTurn { .. }
+            | Self::Clearance { .. }
             | Self::BaseDistance { .. } => -self.margin() * 10.0,
             Self::Conditioning { value, limit } => 1.0 - value / limit,
             Self::MaxDeflection { value, limit } => value / limit - 1.0,
@@ -151,6 +177,14 @@ impl fmt::Display for Measured {
                     f,
                     "the path is {value:.1} mm from axis 1, {by:.1} mm nearer than min_base_distance = {limit} mm"
                 )
+            }
+            Self::Clearance { ref names, distance, required } if distance <= 0.0 => {
+                write!(f, "{} and {} touch, limit {:.1} mm apart", names[0], names[1], required * 1e3)
+            }
+            Self::Clearance { ref names, distance, required } => {
+                let (distance, by, required) = (distance * 1e3, (required - distance) * 1e3, required * 1e3);
+                let [a, b] = names.as_ref();
+                write!(f, "{a} and {b} are {distance:.1} mm apart, {by:.1} mm nearer than {required:.1} mm")
             }
             Self::MaxDeflection { value, limit } => {
                 let (value, by, limit) = (value * 1e3, (value - limit) * 1e3, limit * 1e3);

@@ -65,7 +65,12 @@ impl LookupTable<'_> {
             [x, y, z, problem.cell.yaw].map(|bounds| bounds.min + random.random::<f64>() * bounds.width()).into();
         let point = random.random_range(0..problem.task.points().len());
         let redundancy = Redundancy { beta_count: self.shape.headings, ..problem.redundancy };
-        let grid = BetaGrid { count: redundancy.beta_count, changes: Vec::new() };
+        let grid = BetaGrid {
+            count: redundancy.beta_count,
+            changes: Vec::new(),
+            tool_hits: std::sync::Arc::default(),
+            step: redundancy.beta_step(),
+        };
         let mut workspace = self.workspace(&grid);
         let interpolated: [Option<Vec<f32>>; 4] = std::array::from_fn(|class| {
             let polar = self.polar_point(&self.place(&placement), point)?;

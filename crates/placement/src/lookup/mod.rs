@@ -17,6 +17,7 @@
 //! [`LookupTable::accuracy`] measures the error of the interpolation.
 
 mod accuracy;
+mod collision_free;
 mod interpolate;
 mod objective;
 mod polar;
@@ -29,10 +30,12 @@ pub use shape::{Axis, Shape};
 
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
-use super::redundancy::{BetaChange, Planner, saved_changes};
+use super::redundancy::{BetaChange, Forbidden, Planner, saved_changes};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
+use std::f64::consts::PI;
+use std::sync::Arc;
 use stead_model::robot::turns::Range;
 use stead_numerics::monitor::Monitor;
 
@@ -63,6 +66,10 @@ pub struct BetaGrid {
     pub(crate) count: usize,
     /// For each path point the allowed changes of the beta number from the one before.
     pub(crate) changes: Vec<BetaChange>,
+    /// States in which spindle or holder hit part or fixture.
+    pub(crate) tool_hits: Arc<Forbidden>,
+    /// Its step. rad
+    step: f64,
 }
 
 impl BetaGrid {
@@ -75,7 +82,13 @@ impl BetaGrid {
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
         let changes = saved_changes(problem, &grid);
-        Self { count, changes }
+        let tool_hits = Arc::new(Forbidden::of_tool(problem, &grid));
+        Self { count, changes, tool_hits, step: grid.beta_step() }
+    }
+
+    /// Grid value of beta, as [`Redundancy::beta`]. rad
+    pub(crate) fn beta(&self, number: usize) -> f64 {
+        -PI + self.step * number as f64
     }
 }
 

@@ -7,7 +7,7 @@ use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
 use crate::candidate::{Objective, best_of};
 use crate::problem::Placement;
-use crate::redundancy::BetaChange;
+use crate::redundancy::{BetaChange, Forbidden};
 use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
@@ -22,6 +22,12 @@ pub struct Workspace {
     windows: [Vec<f32>; 2],
     /// For each segment the class that won last.
     favourites: Vec<usize>,
+    /// Costs after each point of the class gone through last, where there is a scene.
+    kept_costs: Vec<f32>,
+    /// The same of the best class.
+    pub(super) best_costs: Vec<f32>,
+    /// States that hit, of the placement evaluated.
+    pub(super) forbidden: Forbidden,
 }
 
 impl LookupTable<'_> {
@@ -34,6 +40,9 @@ impl LookupTable<'_> {
             costs: row(),
             windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
             favourites: vec![0; self.problem.task.segments().len()],
+            kept_costs: Vec::new(),
+            best_costs: Vec::new(),
+            forbidden: Forbidden::default(),
         }
     }
 
@@ -52,6 +61,12 @@ impl LookupTable<'_> {
             return best_of(Sense::Min, schemes.into_iter().map(of));
         }
         let placed = self.place(placement);
+        if self.problem.scene.is_some() {
+            workspace.forbidden.clear();
+            if self.problem.placement_hit(placement).is_some() {
+                return Objective::Infeasible { points: self.problem.task.points().len(), segments: 0 };
+            }
+        }
         let rules = &self.problem.postures;
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
@@ -59,26 +74,23 @@ impl LookupTable<'_> {
             let only = scheme.map(|s| s[index].class().index());
             let asked =
                 |class: usize| only.is_none_or(|asked| asked == class) && rules.allows_class(PostureClass::ALL[class]);
-            let mut best = f64::INFINITY;
-            // The class that won last time goes first: the others can then mostly be given up on the way.
-            let first = workspace.favourites[index];
-            for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
-                if let Some(cost) = self.through(&placed, span.clone(), class, grid, best, workspace) {
-                    best = cost;
-                    workspace.favourites[index] = class;
-                }
-            }
-            if best.is_finite() {
-                costs.push(self.problem.segment_weight(index) * best);
+            let best = match self.problem.scene {
+                None => self.best_class(&placed, (index, span), &asked, grid, workspace),
+                Some(_) => self.best_free_class(placement, &placed, (index, span), &asked, grid, workspace),
+            };
+            if let Some((cost, _)) = best {
+                costs.push(self.problem.segment_weight(index) * cost);
                 continue;
             }
-            let Workspace { scratch, scores, .. } = workspace;
+            let Workspace { scratch, scores, forbidden, .. } = workspace;
             let is_blocked = |point: &usize| {
                 let polar = self.polar_point(&placed, *point);
                 let mut classes = (0..4).filter(|class| asked(*class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
-                    self.interpolate(polar, class, grid, scratch, scores)
-                        && scores.iter().any(|score| score.is_finite())
+                    let is_reached = self.interpolate(polar, class, grid, scratch, scores);
+                    grid.tool_hits.apply_to_scores(*point, class, scores);
+                    forbidden.apply_to_scores(*point, class, scores);
+                    is_reached && scores.iter().any(|score| score.is_finite())
                 };
                 polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
             };
@@ -95,6 +107,29 @@ impl LookupTable<'_> {
         }
     }
 
+    /// The class that gets through a segment, given with its number, with the smallest sum of scores, and that sum. m
+    pub(super) fn best_class(
+        &self,
+        placed: &PlacedPath,
+        (index, span): (usize, &Span<usize>),
+        asked: &impl Fn(usize) -> bool,
+        grid: &BetaGrid,
+        workspace: &mut Workspace,
+    ) -> Option<(f64, usize)> {
+        let mut best: Option<(f64, usize)> = None;
+        // The class that won last time goes first: the others can then mostly be given up on the way.
+        let first = workspace.favourites[index];
+        for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
+            let bound = best.map_or(f64::INFINITY, |(cost, _)| cost);
+            if let Some(cost) = self.through(placed, span.clone(), class, grid, bound, workspace) {
+                best = Some((cost, class));
+                workspace.favourites[index] = class;
+                std::mem::swap(&mut workspace.kept_costs, &mut workspace.best_costs);
+            }
+        }
+        best
+    }
+
     /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`. m
     fn through(
         &self,
@@ -105,7 +140,9 @@ impl LookupTable<'_> {
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
-        let Workspace { scratch, scores, costs, windows, .. } = workspace;
+        let Workspace { scratch, scores, costs, windows, kept_costs, forbidden, .. } = workspace;
+        let has_scene = self.problem.scene.is_some();
+        kept_costs.clear();
         // Costs are relative to this, so that long sums keep their digits.
         let mut base = 0.0;
         for (place, point) in span.enumerate() {
@@ -116,6 +153,10 @@ impl LookupTable<'_> {
             if weight != 1.0 {
                 scores.iter_mut().for_each(|score| *score *= weight);
             }
+            if has_scene {
+                grid.tool_hits.apply_to_scores(point, class, scores);
+                forbidden.apply_to_scores(point, class, scores);
+            }
             if place == 0 {
                 costs.copy_from_slice(scores);
                 if !costs.iter().any(|cost| cost.is_finite()) {
@@ -123,6 +164,9 @@ impl LookupTable<'_> {
                 }
             } else if !advance(costs, scores, grid.changes[point], (bound - base) as f32, windows) {
                 return None;
+            }
+            if has_scene {
+                kept_costs.extend_from_slice(costs);
             }
             if place % RENEWAL == RENEWAL - 1 {
                 let min = costs.iter().copied().fold(f32::INFINITY, f32::min);

@@ -7,6 +7,38 @@ use crate::sense::Sense;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 
+/// Two shapes, or a point of the arm and a zone, that come nearer than they may in all plans tried.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BlockingPair {
+    /// Their names.
+    pub names: [String; 2],
+    /// The path points at which they do, ascending.
+    pub points: Vec<usize>,
+}
+
+impl std::fmt::Display for BlockingPair {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut runs: Vec<(usize, usize)> = Vec::new();
+        for point in &self.points {
+            match runs.last_mut() {
+                Some((_, last)) if *last + 1 == *point => *last = *point,
+                _ => runs.push((*point, *point)),
+            }
+        }
+        let shown = runs.iter().take(RUNS_NAMED).map(|(first, last)| match last - first {
+            0 => first.to_string(),
+            _ => format!("{first} to {last}"),
+        });
+        let shown = shown.collect::<Vec<_>>().join(", ");
+        let more = if runs.len() > RUNS_NAMED { " and elsewhere" } else { "" };
+        let [a, b] = &self.names;
+        write!(f, "{a} and {b} come too near to each other at points {shown}{more}, in plans tried")
+    }
+}
+
+/// Runs of neighbouring points that are named.
+const RUNS_NAMED: usize = 6;
+
 /// Why a placement job has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Infeasible {
@@ -16,6 +48,8 @@ pub struct Infeasible {
     pub searched: bool,
     /// Which constraint fails at which points there; of a search that was stopped, for some of the points.
     pub findings: Vec<Finding>,
+    /// Pairs of shapes that hit in the plans tried, and where.
+    pub collisions: Vec<BlockingPair>,
     /// Whether the caller stopped the search before its end.
     pub interrupted: bool,
 }
@@ -38,6 +72,7 @@ impl std::fmt::Display for Infeasible {
             self.placement.yaw.to_degrees()
         )?;
         self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
+        self.collisions.iter().try_for_each(|pair| write!(f, "\n  {pair}"))?;
         if self.searched {
             write!(f, "\na search may miss a small feasible region: more population and generations look closer")?;
         }
@@ -61,6 +96,12 @@ pub(super) fn infeasible(
         none.blocked_points.truncate(AFTER_STOP / planner.problem().redundancy.beta_count);
         none.broken_segments.truncate(1);
     }
-    let findings = none.map(|none| diagnose(planner.problem(), placement, scheme, &none)).unwrap_or_default();
-    Infeasible { placement: *placement, searched, findings, interrupted }
+    let problem = planner.problem();
+    let collisions = none.iter().flat_map(|none| &none.collisions).filter_map(|(pair, points)| {
+        let names = problem.scene.as_deref()?.pair(*pair)?.names.as_ref().clone();
+        Some(BlockingPair { names, points: points.iter().copied().collect() })
+    });
+    let collisions = collisions.collect();
+    let findings = none.map(|none| diagnose(problem, placement, scheme, &none)).unwrap_or_default();
+    Infeasible { placement: *placement, searched, findings, collisions, interrupted }
 }

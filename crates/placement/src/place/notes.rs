@@ -2,7 +2,7 @@
 
 use crate::criterion::Criterion;
 use crate::feed::CutFeed;
-use crate::outcome::{CANCELLATION, Plan};
+use crate::outcome::{CANCELLATION, Cycle, Plan};
 use crate::problem::Problem;
 use stead_model::plausibility;
 use stead_numerics::digits::figures;
@@ -56,4 +56,24 @@ fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {
 
 pub(super) fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
+}
+
+/// That moves between segments have no free way, where they hit.
+pub(super) fn blocked_moves(problem: &Problem, cycle: &Cycle) -> Option<Warning> {
+    let scene = problem.scene.as_deref()?;
+    let blocked: Vec<String> = cycle
+        .transfers
+        .iter()
+        .filter_map(|transfer| {
+            let pair = scene.pair(transfer.way.as_ref()?.blocked_by?)?;
+            Some(format!("after segment {} ({pair})", transfer.after_segment))
+        })
+        .collect();
+    (!blocked.is_empty()).then(|| {
+        let moves = blocked.join(", ");
+        Warning::new(
+            "blocked-move",
+            format!("no free way was found for the move {moves}: its time is that of the straight move"),
+        )
+    })
 }

@@ -79,6 +79,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 surface_part: s.surface_part,
                 score: s.score(),
                 deviation: s.own.deviation,
+                clearance: problem.state_clearance(point, placement, &plan.joints[place]),
             });
         }
     }
@@ -94,6 +95,8 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         deflection: DeflectionFigures::of(scored),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
+        clearance: problem.plan_clearance(&points),
         points,
+        axes: problem.axis_paths(),
     }
 }

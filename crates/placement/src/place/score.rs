@@ -9,6 +9,7 @@ use crate::redundancy::Planner;
 use crate::refine::planned;
 use crate::sense::Sense;
 use crate::settings::TransferSettings;
+use crate::setup::Setup;
 use crate::transfer::cycle;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
@@ -18,6 +19,10 @@ use stead_numerics::monitor::{Monitor, Progress};
 pub struct Score {
     /// The placement.
     pub placement: Placement,
+    /// How part and external axes are set up for it.
+    pub setup: Setup,
+    /// The name of the orientation of the part, where the run says several.
+    pub orientation: Option<String>,
     /// The best plan.
     pub best: Plan,
     /// The worst plan.
@@ -40,6 +45,8 @@ impl Score {
             placement_sense: Sense::Min,
             plan_sense,
             placement: self.placement,
+            setup: self.setup.clone(),
+            orientation: self.orientation.clone(),
             plan: plan.clone(),
             cycle: cycle.clone(),
             active_bounds: None,
@@ -64,11 +71,14 @@ pub fn score(
     let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
-    let warnings = cancellation(problem, best.objective).into_iter().collect();
+    let cancelled = cancellation(problem, best.objective);
     let plan = detailed(problem, placement, &best.plans);
-    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, transfer, plans));
+    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, placement, transfer, plans));
+    let warnings = cancelled.into_iter().chain(notes::blocked_moves(problem, &cycles[0])).collect();
     Ok(Score {
         placement: *placement,
+        setup: problem.setup.clone(),
+        orientation: problem.orientation().map(|orientation| orientation.name.clone()),
         notes: notes::of(problem, &plan, &cycles[0].feed),
         best: plan,
         worst: detailed(problem, placement, &worst),

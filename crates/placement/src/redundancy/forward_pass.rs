@@ -184,7 +184,7 @@ impl Planner<'_> {
 
     /// Takes the cheapest predecessors of a knot's states; false when no state is reached.
     fn reach(&self, pass: Pass<'_>, point: usize, knot: Knot, class: PostureClass, workspace: &mut Workspace) -> bool {
-        let Workspace { before, now, record, run_costs } = workspace;
+        let Workspace { before, now, record, run_costs, .. } = workspace;
         let step = self.step_over(point, knot.change, knot.points, pass.sense);
         let way = record.way(knot.number, class);
         if knot.points == 1 {
@@ -192,6 +192,14 @@ impl Planner<'_> {
         }
         let between = run_costs.of(class, knot.change.min, self.joining(pass));
         advance_over(before, now, class, &step, between, way)
+    }
+
+    /// Evaluates a path point in some posture classes, without the states in which something hits.
+    pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
+        let Workspace { now, forbidden, .. } = workspace;
+        pass.evaluator.evaluate_classes(point, pass.placement, classes, now);
+        self.tool_hits.apply(point, now);
+        forbidden.apply(point, now);
     }
 
     /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one posture. With
@@ -209,7 +217,7 @@ impl Planner<'_> {
             .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
         workspace.record.costs.clear();
         for point in pass.span.clone() {
-            pass.evaluator.evaluate_classes(point, pass.placement, asked, &mut workspace.now);
+            self.evaluate(pass, point, asked, workspace);
             if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
                 forward_pass.blocked.push(point);
             }
@@ -309,7 +317,7 @@ impl Planner<'_> {
         let first = block * workspace.record.block;
         let last = (first + workspace.record.block).min(self.knot_count(pass) - 1);
         for point in self.knot(pass, first)..=self.knot(pass, last) {
-            pass.evaluator.evaluate_classes(point, pass.placement, asked, &mut workspace.now);
+            self.evaluate(pass, point, asked, workspace);
             match self.place(pass, point) {
                 Place::Between { .. } => {
                     self.add_between(pass, point, class, workspace);

@@ -13,9 +13,13 @@
 //! 3. `turns_dp`: only where that fails, dynamic programming over beta, the flip and the turns.
 //! 4. [`off_grid`]: beta off the grid, by dynamic programming on ever narrower grids around the plan.
 
+pub mod axis_path;
 mod between;
+mod collision_free;
 mod follow;
+mod forbidden;
 mod forward_pass;
+mod grid;
 mod joint_turns;
 mod knots;
 mod obstruction;
@@ -26,7 +30,11 @@ mod reference_dp;
 mod segment;
 pub mod transition;
 mod turns_dp;
+mod unchanging;
 
+pub use collision_free::Collisions;
+pub(crate) use collision_free::forbid;
+pub use forbidden::Forbidden;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
 
@@ -34,9 +42,11 @@ use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Placement, Problem, Redundancy};
 use super::sense::Sense;
+use grid::finer;
 use off_grid::Spacing;
 use rayon::prelude::*;
 use std::ops::Range as Span;
+use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::simd::Instructions;
 
@@ -63,6 +73,15 @@ pub struct NoFeasiblePlan {
     /// Segments (from 0) whose points are all allowed but that no posture gets through, with the first point that cannot
     /// be reached from the segment's start by the posture that gets farthest.
     pub broken_segments: Vec<(usize, usize)>,
+    /// Pairs of the scene that hit in plans tried, and where.
+    pub collisions: Collisions,
+}
+
+impl NoFeasiblePlan {
+    /// With nothing that fails.
+    pub(crate) fn empty() -> Self {
+        Self { blocked_points: Vec::new(), broken_segments: Vec::new(), collisions: Collisions::new() }
+    }
 }
 
 /// The planner of one problem: what does not change from one placement to the next.
@@ -80,6 +99,10 @@ pub struct Planner<'a> {
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
     instructions: Instructions,
+    /// States in which spindle or holder hit part or fixture.
+    tool_hits: Arc<Forbidden>,
+    /// Whether plans are free between their points too.
+    checks_motions: bool,
 }
 
 /// Space of one thread to plan in.
@@ -89,6 +112,8 @@ pub struct Workspace {
     now: StateGrid,
     record: forward_pass::Record,
     run_costs: between::RunCosts,
+    /// States that hit, of the placement that is planned.
+    forbidden: Forbidden,
 }
 
 impl<'a> Planner<'a> {
@@ -126,6 +151,8 @@ impl<'a> Planner<'a> {
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
+            tool_hits: Arc::new(Forbidden::of_tool(problem, &grid)),
+            checks_motions: room.neighbours == FINAL_ROOM.neighbours,
         }
     }
 
@@ -168,6 +195,7 @@ impl<'a> Planner<'a> {
             before,
             record: forward_pass::Record::new(longest, count),
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
+            forbidden: Forbidden::default(),
         }
     }
 
@@ -184,6 +212,9 @@ impl<'a> Planner<'a> {
         if !schemes.is_empty() {
             let of = |scheme: Vec<Posture>| self.objective(placement, sense, Some(&scheme), workspace);
             return best_of(sense, schemes.into_iter().map(of));
+        }
+        if self.problem.scene.is_some() {
+            return self.free_objective(placement, sense, scheme, workspace);
         }
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
@@ -227,10 +258,13 @@ impl<'a> Planner<'a> {
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let rules = &self.problem.postures;
+        let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
         self.unchanging(scheme, sense, |scheme| {
-            let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
-            let choices = self.choices(placement, sense, scheme, workspace, margin)?;
-            Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+            self.until_free(placement, workspace, |workspace| {
+                let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+                let choices = self.without_hitting_ways(placement, choices);
+                Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+            })
         })
     }
 
@@ -252,46 +286,21 @@ impl<'a> Planner<'a> {
         let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
         let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
         self.unchanging(scheme, sense, |scheme| {
-            let choices = self.choices(placement, sense, scheme, workspace, margin)?;
-            let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
-                let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), classes);
-                Some(driven).filter(|driven| !driven.is_empty())
-            };
-            let refined = match self.is_parallel() {
-                true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
-                false => choices.into_iter().enumerate().filter_map(refined).collect(),
-            };
-            Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
+            self.until_free(placement, workspace, |workspace| {
+                let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+                let choices = self.without_hitting_ways(placement, choices);
+                let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
+                    let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), classes);
+                    Some(driven).filter(|driven| !driven.is_empty())
+                };
+                let refined = match self.is_parallel() {
+                    true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
+                    false => choices.into_iter().enumerate().filter_map(refined).collect(),
+                };
+                let refined = self.without_hitting_ways(placement, refined);
+                Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
+            })
         })
-    }
-
-    /// What `plan` finds for a scheme, or where the posture may not change, the best of what it finds for each posture: of those
-    /// within the tie the one with the shortest moves.
-    fn unchanging(
-        &self,
-        scheme: Option<&[Posture]>,
-        sense: Sense,
-        mut plan: impl FnMut(Option<&[Posture]>) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
-    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let schemes = self.problem.unchanging_schemes(scheme);
-        if schemes.is_empty() {
-            return plan(scheme);
-        }
-        let (mut found, mut failure): (Vec<Vec<SegmentPlan>>, Option<NoFeasiblePlan>) = (Vec::new(), None);
-        for scheme in &schemes {
-            match plan(Some(scheme)) {
-                Ok(plans) => found.push(plans),
-                Err(none) => {
-                    let size = |none: &NoFeasiblePlan| (none.blocked_points.len(), none.broken_segments.len());
-                    failure = Some(match failure {
-                        Some(known) if size(&known) <= size(&none) => known,
-                        _ => none,
-                    });
-                }
-            }
-        }
-        let nothing = || NoFeasiblePlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
-        joint_turns::best_of(self.problem, sense, found).ok_or_else(|| failure.unwrap_or_else(nothing))
     }
 
     /// The plans of a segment's posture classes with beta off the grid, the best first, or the best alone where that is taken
@@ -306,7 +315,7 @@ impl<'a> Planner<'a> {
         let (rules, sign) = (&self.problem.postures, sense.sign());
         let refined = classes.into_iter().filter_map(|choice| {
             let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
-            off_grid::refine(self.problem, placement, sense, self.spacing, &mut plan);
+            self.refine_off_grid(placement, sense, &mut plan);
             Some(plan)
         });
         let mut plans: Vec<SegmentPlan> = refined.collect();
@@ -336,14 +345,17 @@ impl<'a> Planner<'a> {
         workspace: &mut Workspace,
         margin: f64,
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
-        let mut failure = NoFeasiblePlan { blocked_points: Vec::new(), broken_segments: Vec::new() };
+        let mut failure = NoFeasiblePlan::empty();
         let mut all = Vec::new();
         let of = |workspace: &mut Workspace, (index, span): (usize, &Span<usize>)| {
             self.segment(span.clone(), placement, sense, scheme.map(|s| s[index]), workspace, Some(margin))
         };
         let spans = self.problem.task.segments();
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
-            true => spans.par_iter().enumerate().map_init(|| self.workspace(), of).collect(),
+            true => {
+                let space = || Workspace { forbidden: workspace.forbidden.clone(), ..self.workspace() };
+                spans.par_iter().enumerate().map_init(space, of).collect()
+            }
             false => spans.iter().enumerate().map(|item| of(workspace, item)).collect(),
         };
         for (index, found) in options.into_iter().enumerate() {
@@ -363,24 +375,6 @@ impl<'a> Planner<'a> {
         self.problem.task.segments().len() > 1 && self.problem.task.points().len() >= PARALLEL_POINTS
     }
 }
-
-/// The grid of [`Planner::finer`], for limits on beta that may not be those of the problem.
-fn finer(problem: &Problem, grid: Redundancy) -> Redundancy {
-    let inner = problem.task.segments().iter().flat_map(|span| span.clone().skip(1));
-    let steps = inner.map(|point| problem.beta_step_within(point, &grid).half);
-    let wanted = |half: f64| (half / STEPS_PER_CHANGE).max(DENSE_STEP).min(half);
-    grid.divided(steps.filter(|step| *step >= NARROWEST_STEP).map(wanted).fold(WIDEST_STEP, f64::min))
-}
-
-/// Widest step of the grid that final plans are made on. rad
-const WIDEST_STEP: f64 = std::f64::consts::PI / 180.0;
-/// Steps of the grid that the largest change of beta between two points has at least, so that a plan that the limits on beta hold
-/// is not far from what the grid offers;
-const STEPS_PER_CHANGE: f64 = 4.0;
-/// but for this no narrower step is taken. rad
-const DENSE_STEP: f64 = WIDEST_STEP / 2.0;
-/// Narrowest step that the limits on beta may ask for. rad
-const NARROWEST_STEP: f64 = WIDEST_STEP / 8.0;
 
 /// Steps of the grid that the search wants between knots.
 const SEARCH_ROOM: knots::Room = knots::Room { neighbours: 1.0, knots: 2.0 };

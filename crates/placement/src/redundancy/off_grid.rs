@@ -76,6 +76,33 @@ struct Node {
 /// The plan given need not be one for this placement exactly: with an infinite cost, the betas of `plan` are only where the grid
 /// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
 pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
+    let allowed = |point, beta, plan: &SegmentPlan| allowed(problem, placement, point, beta, plan);
+    refine_with(problem, &allowed, sense, range, plan)
+}
+
+/// The same among states in which nothing hits.
+pub fn refine_free(
+    problem: &Problem,
+    placement: &Placement,
+    sense: Sense,
+    range: Spacing,
+    plan: &mut SegmentPlan,
+) -> bool {
+    let allowed = |point, beta, plan: &SegmentPlan| {
+        let state = allowed(problem, placement, point, beta, plan)?;
+        problem.state_hit(point, placement, &state.joints).is_none().then_some(state)
+    };
+    refine_with(problem, &allowed, sense, range, plan)
+}
+
+/// Refines among the states that `allowed` gives for a path point and beta (rad).
+fn refine_with(
+    problem: &Problem,
+    allowed: &(impl Fn(usize, f64, &SegmentPlan) -> Option<Allowed> + Sync),
+    sense: Sense,
+    range: Spacing,
+    plan: &mut SegmentPlan,
+) -> bool {
     let mut better = false;
     let mut spacing = range.first;
     let unknown = Value { beta: f64::NAN, state: None, node: None };
@@ -83,7 +110,7 @@ pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spa
     while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
-            lay(problem, placement, spacing, plan, &mut layers);
+            lay(problem, allowed, spacing, plan, &mut layers);
             if !level(problem, sense, plan, &mut layers) {
                 break;
             }
@@ -148,7 +175,13 @@ fn turned(problem: &Problem, state: &Allowed, near: &[f64; 6]) -> Option<Node> {
 }
 
 /// Lays values of beta around the plan, where that moved since.
-fn lay(problem: &Problem, placement: &Placement, spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
+fn lay(
+    problem: &Problem,
+    allowed: &(impl Fn(usize, f64, &SegmentPlan) -> Option<Allowed> + Sync),
+    spacing: f64,
+    plan: &SegmentPlan,
+    layers: &mut [Layer],
+) {
     let middle = VALUES / 2;
     let first = plan.points.start;
     layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
@@ -162,7 +195,7 @@ fn lay(problem: &Problem, placement: &Placement, spacing: f64, plan: &SegmentPla
             // Every second value was met before, at the latest spacing.
             let met = known.iter().find(|value| value.beta == beta);
             let own = met.and_then(|value| value.node).filter(|node| k == middle && node.joints == plan.joints[place]);
-            let state = met.map_or_else(|| allowed(problem, placement, first + place, beta, plan), |value| value.state);
+            let state = met.map_or_else(|| allowed(first + place, beta, plan), |value| value.state);
             let turned = |state: &Allowed| turned(problem, state, &plan.joints[place]);
             Value { beta, state, node: own.or_else(|| state.as_ref().and_then(turned)) }
         });

@@ -61,6 +61,19 @@ impl Planner<'_> {
         found
     }
 
+    /// What the best plan of each segment on the grid adds to the objective at a placement: one row where the posture may change from segment to
+    /// segment, else one for each allowed posture; `None` where there is no plan.
+    pub fn segment_costs(&self, placement: &Placement, workspace: &mut Workspace) -> Vec<Vec<Option<f64>>> {
+        let rules = &self.problem.postures;
+        let choices = if rules.may_change { vec![None] } else { rules.allowed().map(Some).collect() };
+        let spans = self.problem.task.segments();
+        let mut cost = |span: &Span<usize>, only: Option<Posture>| {
+            let found = self.segment(span.clone(), placement, Sense::Min, only, workspace, Some(0.0));
+            found.choices.first().map(|choice| choice.cost)
+        };
+        choices.into_iter().map(|only| spans.iter().map(|span| cost(span, only)).collect()).collect()
+    }
+
     /// The postures of a class that yield like the given one, itself among them.
     pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
         let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));

@@ -232,7 +232,7 @@ impl Search<'_> {
     /// Evaluates a path point in the posture class alone.
     fn evaluate(&self, point: usize, workspace: &mut Workspace) {
         let asked = PostureClass::ALL.map(|class| class == self.class);
-        self.pass.evaluator.evaluate_classes(point, self.pass.placement, asked, &mut workspace.now);
+        self.planner.evaluate(self.pass, point, asked, workspace);
     }
 
     /// The layer of the first point, where it has states.

@@ -223,7 +223,7 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
         }
         plans.push(shifted);
     }
-    Some(Solution::new(problem, placement, plans))
+    problem.is_free(&placement, &plans).then(|| Solution::new(problem, placement, plans))
 }
 
 /// The spacing in which betas settle after a step. rad

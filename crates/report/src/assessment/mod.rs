@@ -1,6 +1,7 @@
 //! What `stead assess` reports.
 
 mod json;
+mod page;
 mod tables;
 mod text;
 
@@ -8,6 +9,7 @@ pub use json::{assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::{Files, cutting, document as documents, picture};
 use std::path::PathBuf;
 use stead_assessment::comparison::{Assessment, Comparison};
@@ -34,7 +36,7 @@ pub struct AssessmentContext {
 /// Writes everything that an assessment reports into a folder: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
 /// `circularity.csv`, `optimal-zones.csv`, `middle-zones.csv`, `accuracy.csv`, `selection.csv` (Klimchik 2017, Tables 5 to
 /// 9), `indicators.svg` and `summary.json`; and, where forces were computed, `cutting.svg`, `cutting-engagement.csv` and
-/// `cutting-turn.csv`. Returns the paths in that order.
+/// `cutting-turn.csv`; last the page, `report.html`. Returns the paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -77,6 +79,7 @@ pub fn assessment_files(
         add("cutting-engagement.csv", cutting::entering(force_history)?);
         add("cutting-turn.csv", cutting::turn(force_history)?);
     }
+    add(PAGE, page::page(comparison, assessment, context).html());
     Ok(files)
 }
 

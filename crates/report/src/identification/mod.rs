@@ -1,6 +1,7 @@
 //! Reports of `stead identify fit`, and in [`plan`] those of `stead identify plan`: the robot file, the report for programs, tables, the picture, the table for people.
 
 mod json;
+mod page;
 pub mod plan;
 mod robot_file;
 mod tables;
@@ -14,6 +15,7 @@ pub use text::identify_text;
 
 use super::document as documents;
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use std::path::PathBuf;
@@ -21,7 +23,7 @@ use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
 use stead_format::IdentifyRun;
 
-/// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv` and `deflections.svg` into a folder and
+/// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv`, `deflections.svg` and `report.html` into a folder and
 /// returns their paths in that order.
 ///
 /// # Errors
@@ -42,6 +44,7 @@ pub fn identified_files(run: &IdentifyRun, found: &Identified) -> Result<Files, 
         ("compliances.csv", tables::compliances(found)?),
         ("residuals.csv", tables::residuals(run, found)?),
         ("deflections.svg", picture::deflections(found).into_bytes()),
+        (PAGE, page::page(run, found).html()),
     ]))
 }
 

@@ -44,7 +44,8 @@ pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
     text
 }
 
-fn cells<P>(estimate: &Estimate<P>, factor: f64) -> [String; 4] {
+/// Value, standard deviation, that in per cent, and the interval.
+pub(super) fn cells<P>(estimate: &Estimate<P>, factor: f64) -> [String; 4] {
     // Two digits of the standard deviation, and as many decimals of everything else.
     let deviation = estimate.deviation * factor;
     let exponent = if deviation > 0.0 { libm::floor(libm::log10(deviation)) } else { -6.0 };

@@ -16,9 +16,31 @@ pub(super) fn base64(bytes: &[u8]) -> String {
     text
 }
 
+/// The bytes behind such a text; what is no digit of it is passed over.
+pub(super) fn bytes_of(text: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut held) = (0_u32, 0);
+    for letter in text.bytes() {
+        let digit = match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => continue,
+        };
+        (bits, held) = (bits << 6 | u32::from(digit), held + 6);
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held & 255) as u8);
+        }
+    }
+    bytes
+}
+
 #[cfg(test)]
 mod tests {
-    use super::base64;
+    use super::{base64, bytes_of};
 
     #[test]
     fn the_examples_of_the_standard() {
@@ -26,6 +48,7 @@ mod tests {
             [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
         for (plain, text) in pairs {
             assert_eq!(base64(plain.as_bytes()), text);
+            assert_eq!(bytes_of(text), plain.as_bytes());
         }
         assert_eq!(base64(&[251, 255, 191]), "+/+/");
     }

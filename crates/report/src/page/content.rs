@@ -44,6 +44,12 @@ pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     names
 }
 
+/// The document and the first plan of a command, which the scene is made of beside `page-data.json`.
+pub(super) fn scene_files(command: &str) -> Option<[&'static str; 2]> {
+    let kind = KINDS.iter().find(|kind| kind.command == command)?;
+    Some([kind.document, kind.plans.first()?])
+}
+
 /// Everything that the script reads, as one JSON object.
 pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     let bytes = |name: &str| files.iter().find(|(file, _)| file == name).map(|(_, bytes)| bytes.as_slice());
@@ -116,7 +122,7 @@ fn vectors(all: &str, chosen: &[usize]) -> String {
     chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
 }
 
-fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
+pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
     let value: Value = serde_json::from_slice(bytes)
         .map_err(|cause| PageError::file(name, format!("is no JSON document: {cause}")))?;
     match value["format"].as_u64() {

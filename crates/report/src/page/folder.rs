@@ -1,6 +1,6 @@
-//! The page of a results folder, written again from its files alone.
+//! Page and scene of a results folder, written again from its files alone.
 
-use super::{DATA, PAGE, PageError, content, page};
+use super::{DATA, PageError, content, made_of};
 use crate::Files;
 use crate::output::{Folder, ReportError};
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub enum RewriteError {
 /// What is asked for, where something else is found.
 const ALLOWED: &str = "a folder that `stead place` or `stead score --out` has written with a page";
 
-/// Writes `report.html` of each result in a folder again: the same bytes as the run has left, from its files. Returns the path.
+/// Writes `report.html` and `cell.glb` of a folder again: the same bytes as the run has left, from its files. Returns the paths.
 ///
 /// # Errors
 /// [`RewriteError::Input`] for a folder that lacks a file, mixes two runs, is of another format or was changed since, with the file;
@@ -52,7 +52,7 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
         files.push((name.to_owned(), bytes));
     }
     let wrong = |error: PageError| InputError::new(&path.join(&error.file), error.problem).allowed(ALLOWED);
-    let made = vec![(PAGE.to_owned(), page(&files).map_err(wrong)?)];
+    let made = made_of(&files).map_err(wrong)?;
     let folder = Folder::create(path)?;
     let (anchor, bytes) = &files[0];
     Ok(folder.results(&set.command, &[]).joining(anchor, bytes).write(&made)?)

@@ -5,7 +5,8 @@ use serde_json::Value;
 use stead_format::input::sha256;
 
 const MARKUP: &str = include_str!("page.html");
-const STYLE: &str = include_str!("page.css");
+/// The style of all pages.
+pub(super) const STYLE: &str = include_str!("page.css");
 
 /// The script, module by module; each uses only what stands above it when it is loaded.
 const MODULES: [&str; 25] = [
@@ -43,23 +44,27 @@ pub(super) fn script() -> String {
 
 /// The page with this title and content.
 pub(super) fn html(title: &str, content: &Value) -> String {
-    let script = script();
+    document(title, STYLE, &script(), &content.to_string())
+}
+
+/// A page with this title, style and script, and with data in JSON.
+pub(super) fn document(title: &str, style: &str, script: &str, data: &str) -> String {
     let digest = |text: &str| format!("sha256-{}", base64(&from_hex(&sha256(text.as_bytes()))));
     let policy = format!(
         "default-src 'none'; script-src '{}'; style-src '{}'; img-src data:; base-uri 'none'; form-action 'none'",
-        digest(&script),
-        digest(STYLE)
+        digest(script),
+        digest(style)
     );
     // In JSON the sign stands only within texts.
-    let data = content.to_string().replace('<', "\\u003c");
+    let data = data.replace('<', "\\u003c");
     let parts = [
         ("{{policy}}", policy.as_str()),
         ("{{title}}", &escaped(title)),
-        ("{{style}}", STYLE),
+        ("{{style}}", style),
         ("{{data}}", &data),
-        ("{{script}}", &script),
+        ("{{script}}", script),
     ];
-    let mut page = String::with_capacity(data.len() + script.len() + STYLE.len() + MARKUP.len());
+    let mut page = String::with_capacity(data.len() + script.len() + style.len() + MARKUP.len());
     let mut rest = MARKUP;
     for (mark, text) in parts {
         let (before, behind) = rest.split_once(mark).unwrap_or((rest, ""));

@@ -5,13 +5,15 @@
 //! folder ([`folder`]). Its script is plain JavaScript in `script/`, a thought a file, in one scope.
 
 mod base64;
+pub mod cards;
 mod content;
 pub(crate) mod data;
 mod folder;
+pub mod gltf;
 mod html;
 mod map_data;
 mod packed;
-mod shapes;
+pub mod shapes;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -59,15 +61,20 @@ pub(crate) fn page(files: &Files) -> Result<Vec<u8>, PageError> {
     Ok(html::html(&title(&content), &content).into_bytes())
 }
 
-/// Makes the page of files that hold `page-data.json`, in place of the one among them; does nothing where they do not.
+/// Page and scene of the files of a run, which `page-data.json` is among.
+pub(crate) fn made_of(files: &Files) -> Result<Files, PageError> {
+    Ok(vec![(PAGE.to_owned(), page(files)?), (gltf::SCENE.to_owned(), gltf::scene(files)?)])
+}
+
+/// Makes page and scene of files that hold `page-data.json`, in place of those among them; does nothing where they do not.
 ///
 /// # Errors
 /// [`ReportError::Format`]: they make none.
 pub fn put_page(files: &mut Files) -> Result<(), ReportError> {
     if files.iter().any(|(name, _)| name == DATA) {
-        files.retain(|(name, _)| name != PAGE);
-        let made = page(files)?;
-        files.push((PAGE.to_owned(), made));
+        files.retain(|(name, _)| name != PAGE && name != gltf::SCENE);
+        let made = made_of(files)?;
+        files.extend(made);
     }
     Ok(())
 }

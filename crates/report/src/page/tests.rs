@@ -22,7 +22,7 @@ fn the_page_is_small_the_same_each_time_and_names_no_address() {
     let mut without = context();
     without.page = false;
     let names = placement_files(problem(), outcome(), &without).unwrap();
-    assert!(names.iter().all(|(name, _)| name != PAGE && name != DATA));
+    assert!(names.iter().all(|(name, _)| name != PAGE && name != DATA && name != gltf::SCENE));
 }
 
 #[test]
@@ -34,10 +34,14 @@ fn a_folder_gives_the_same_page_again() {
     let file = place.path().join(PAGE);
     let first = std::fs::read(&file).unwrap();
     std::fs::write(&file, "spoilt").unwrap();
-    assert_eq!(rewrite(place.path()).unwrap(), [file.clone()]);
+    let scene = place.path().join(gltf::SCENE);
+    let moving = std::fs::read(&scene).unwrap();
+    std::fs::write(&scene, "spoilt").unwrap();
+    assert_eq!(rewrite(place.path()).unwrap(), [file.clone(), scene.clone()]);
+    assert!(std::fs::read(&scene).unwrap() == moving);
     assert!(std::fs::read(&file).unwrap() == first);
     // As if never touched: the manifest too.
-    assert_eq!(rewrite(place.path()).unwrap().len(), 1);
+    assert_eq!(rewrite(place.path()).unwrap().len(), 2);
 }
 
 #[test]

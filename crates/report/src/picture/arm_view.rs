@@ -58,7 +58,7 @@ fn drawn(
     let directions = [[ahead, Vector3::z()], [Vector3::x(), Vector3::y()]];
     let flange = frames.base_from_flange.translation;
     let tip = spindle.map(|on| frames.base_from_flange.then(&on.flange_from_tool));
-    let mut arm = vec![Vector3::zeros()];
+    let mut arm = vec![robot.cell_from_base::<f64>().translation];
     arm.extend(frames.origins);
     arm.push(flange);
     let mut all = arm.clone();
@@ -68,7 +68,8 @@ fn drawn(
         all.extend((0..8).map(|corner| corner_of(cell, corner)));
     }
     picture(SIZE, |canvas| {
-        canvas.title(&format!("{}, drawn from its rows in the base frame", robot.name()), (COLUMNS[0], 24));
+        let frame = if robot.is_mounted() { "cell" } else { "base" };
+        canvas.title(&format!("{}, drawn from its rows in the {frame} frame", robot.name()), (COLUMNS[0], 24));
         let angles = joints.map(|angle| fixed(angle.to_degrees(), 1)).join(", ");
         canvas.text(&format!("joint angles {angles} deg"), (COLUMNS[0], 50), TextStyle::new(12.0).coloured(INK));
         for (((title, labels), along), left) in VIEWS.into_iter().zip(directions).zip(COLUMNS) {

@@ -45,7 +45,8 @@ pub fn cell_with(problem: &Problem, case: &Case) -> String {
 
 fn drawn(problem: &Problem, all: &[Shown<'_>]) -> String {
     picture(SIZE, |canvas| {
-        canvas.title("The cell from above, in the robot base frame", (COLUMNS[0], 24));
+        let frame = if problem.robot.is_mounted() { "cell" } else { "robot base" };
+        canvas.title(&format!("The cell from above, in the {frame} frame"), (COLUMNS[0], 24));
         let near = Region::near(problem, all);
         overview(canvas, problem, all, &near);
         legend(canvas, problem, all);
@@ -148,6 +149,8 @@ impl Region {
     /// The base, the near region, and the reach in the direction of the cell.
     fn whole(problem: &Problem, near: &Region) -> Self {
         let mut points = vec![[-BASE, -BASE], [BASE, BASE], near.from, near.to];
+        let stand = top_view(&problem.robot.cell_from_base::<f64>().translation);
+        points.extend([-BASE, BASE].map(|by| stand.map(|at| at + by)));
         let [x, y, _] = problem.cell.position;
         let root = problem.robot.geometry().root_in_base;
         let toward = Vector3::new((x.min + x.max) / 2.0 - root.x, (y.min + y.max) / 2.0 - root.y, 0.0);

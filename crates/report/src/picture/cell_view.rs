@@ -58,17 +58,27 @@ impl CellView<'_> {
         [(a, b), (b, c), (c, d), (d, a)].into_iter().for_each(|(from, to)| canvas.dashed(from, to, INK));
     }
 
-    /// The robot base with the axes of its frame.
+    /// The robot base with the axes of its frame; those of the cell frame for an arm that is mounted in it.
     pub fn base(&self, canvas: &mut Canvas) {
         let origin = self.place(&Vector3::zeros());
         let (x, y) = nearest(origin);
+        let is_mounted = self.problem.robot.is_mounted();
+        if is_mounted {
+            let (x, y) = nearest(self.place(&self.problem.robot.cell_from_base::<f64>().translation));
+            canvas.fill((x - 8, y - 8), (x + 8, y + 8), INK);
+            canvas.text("robot base", (x - 14, y - 16), TextStyle::new(12.0).coloured(INK).ending());
+        }
         canvas.arrow(origin, (origin.0 + 40.0, origin.1), GREY, 2);
         canvas.arrow(origin, (origin.0, origin.1 - 40.0), GREY, 2);
-        canvas.fill((x - 8, y - 8), (x + 8, y + 8), INK);
         let style = TextStyle::new(12.0).coloured(INK);
+        if is_mounted {
+            canvas.dot(origin, 4, GREY);
+        } else {
+            canvas.fill((x - 8, y - 8), (x + 8, y + 8), INK);
+        }
         canvas.text("x", (x + 51, y), style);
         canvas.text("y", (x + 8, y - 42), style);
-        canvas.text("robot base", (x - 14, y), style.ending())
+        canvas.text(if is_mounted { "cell" } else { "robot base" }, (x - 14, y), style.ending())
     }
 
     /// Lines from the middle of each segment to the wrist centre.
@@ -91,9 +101,9 @@ impl CellView<'_> {
     /// The numbers of the segments, to the left of their middle points.
     pub fn numbers(&self, canvas: &mut Canvas, case: &Case, colour: Colour) {
         let stride = self.problem.task.segments().len().div_ceil(NUMBERS).max(1);
-        let rotation = case.placement.base_from_workpiece().rotation;
+        let problem = self.problem.in_setup(&case.setup);
         for point in middles(self.problem, case).step_by(stride) {
-            let left = rotation * self.problem.task.points()[point.point].normal();
+            let left = problem.placed(point.point, &case.placement).axes.column(1).into_owned();
             let place = beside(self.place(&point.position), &left, 14.0);
             let style = TextStyle::new(13.0).bold().centred().coloured(colour);
             canvas.text(&point.segment.to_string(), nearest(place), style);
@@ -102,7 +112,7 @@ impl CellView<'_> {
 
     /// Origin and axes of the workpiece frame, the letters outside the right angle between the axes.
     pub fn workpiece(&self, canvas: &mut Canvas, case: &Case) {
-        let base_from_workpiece = case.placement.base_from_workpiece();
+        let base_from_workpiece = self.problem.in_setup(&case.setup).base_from_workpiece(0, &case.placement);
         let origin = self.place(&base_from_workpiece.translation);
         let [x, y] = [0, 1].map(|axis| base_from_workpiece.rotation.column(axis).into_owned());
         for (axis, other, name) in [(x, y, "x"), (y, x, "y")] {
@@ -116,7 +126,8 @@ impl CellView<'_> {
 
     /// The workpiece origin alone.
     pub fn origin(&self, canvas: &mut Canvas, case: &Case) {
-        canvas.dot(self.place(&case.placement.base_from_workpiece().translation), 4, INK)
+        let base_from_workpiece = self.problem.in_setup(&case.setup).base_from_workpiece(0, &case.placement);
+        canvas.dot(self.place(&base_from_workpiece.translation), 4, INK)
     }
 }
 

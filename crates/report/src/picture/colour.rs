@@ -59,14 +59,29 @@ const VIRIDIS: [[u8; 3]; 9] = [
 
 /// The colour of a level, dark for the smallest.
 pub(super) fn viridis(level: usize) -> Colour {
-    let place = level.min(LEVELS - 1) as f64 / (LEVELS - 1) as f64 * 8.0;
+    let [red, green, blue] = at(level.min(LEVELS - 1) as f64 / (LEVELS - 1) as f64).map(|part| part.round() as u8);
+    Colour(red, green, blue)
+}
+
+/// The colour at a place of the scale, from 0 to 1, in parts up to 255.
+fn at(place: f64) -> [f64; 3] {
+    let place = place.clamp(0.0, 1.0) * 8.0;
     let index = (place.floor() as usize).min(7);
     let part = place - index as f64;
-    let mix = |k: usize| {
+    std::array::from_fn(|k| {
         let (low, high) = (f64::from(VIRIDIS[index][k]), f64::from(VIRIDIS[index + 1][k]));
-        (low + (high - low) * part).round() as u8
-    };
-    Colour(mix(0), mix(1), mix(2))
+        low + (high - low) * part
+    })
+}
+
+/// The ends of the logarithmic scale on which scenes show deflections. m
+const DEFLECTIONS: [f64; 2] = [5e-6, 5e-3];
+
+/// The colour of a deflection (m) in scenes: red, green and blue, sRGB from 0 to 1.
+pub(crate) fn of_deflection(deflection: f64) -> [f32; 3] {
+    let [low, high] = DEFLECTIONS;
+    let place = libm::log(deflection.abs().max(low) / low) / libm::log(high / low);
+    at(place).map(|part| (part / 255.0) as f32)
 }
 
 /// Black or white, whichever stands out more from a ground.

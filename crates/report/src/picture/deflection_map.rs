@@ -107,7 +107,7 @@ impl<'a> Picture<'a> {
     }
 
     fn reasons(&self) -> BTreeSet<ConstraintKind> {
-        self.map.rows.iter().flatten().filter_map(|cell| cell.err()).collect()
+        self.map.rows.iter().flatten().filter_map(|cell| cell.err().map(|reason| reason.kind)).collect()
     }
 
     /// Borders of the segments, and above them their numbers and postures, as far as there is room.
@@ -220,7 +220,7 @@ fn cells(map: &DeflectionMap, panel: &Panel, colours: ColourRange) -> HeatMap<Ce
     let content = |row: usize, start: usize| match map.rows[(start + stride / 2).min(points - 1)][row % map.beta_count]
     {
         Ok(MapCell { score, .. }) => Cell::Level(colours.level(score)),
-        Err(blocked) => Cell::Blocked(blocked),
+        Err(blocked) => Cell::Blocked(blocked.kind),
     };
     HeatMap {
         columns: starts().chain([points]).map(|start| panel.x.pixel(start as f64 - 0.5)).collect(),

@@ -55,7 +55,7 @@ impl<T: Copy + PartialEq> HeatMap<T> {
 
 /// The range of values that the colours span.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ColourRange {
+pub(crate) struct ColourRange {
     /// Value at the dark end.
     pub from: f64,
     /// Value at the bright end.

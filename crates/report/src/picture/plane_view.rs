@@ -17,7 +17,7 @@ const SAME: f64 = 1e-9;
 
 /// A view straight onto a plane. Coordinates shown are those of the base frame where an axis of the plane is one of the base
 /// frame, else those of the plane.
-pub(super) struct PlaneView {
+pub(crate) struct PlaneView {
     plane: Plane,
     /// Coordinates shown of the origin of the plane. m
     offset: [f64; 2],
@@ -26,7 +26,7 @@ pub(super) struct PlaneView {
 }
 
 /// What of an arm lies in a plane, in coordinates shown. mm
-pub(super) struct ArmInPlane {
+pub(crate) struct ArmInPlane {
     /// Axis 2 of the arm as it reaches to the side in view.
     pub shoulder: [f64; 2],
     /// The point of axis 1 nearest to it.

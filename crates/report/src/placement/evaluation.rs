@@ -1,6 +1,9 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
 use super::Context;
+use super::json::plan_clearance;
+use super::setup::{lines, put_setup};
+use super::text::least_room;
 use crate::columns::{aligned, line};
 use crate::document::{cut_feed, deflection_mm, placement as placement_json, placement_exact, put_deviation};
 use crate::names;
@@ -8,7 +11,7 @@ use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
 use stead_placement::feasibility::{Explanation, Finding};
 use stead_placement::outcome::{Cycle, Plan};
-use stead_placement::place::{Infeasible, Score};
+use stead_placement::place::{BlockingPair, Infeasible, Score};
 use stead_placement::problem::Placement;
 
 /// Degrees with the digits that a comparison with another program needs.
@@ -31,6 +34,9 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
             "cutting_s": Unit::TIME_S.number(cycle.cutting),
             "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
         });
+        if let Some(clearance) = &plan.clearance {
+            value["clearance"] = plan_clearance(clearance);
+        }
         put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
         value
     };
@@ -42,6 +48,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
         "best": plan(&score.best, &score.cycles[0]),
         "worst": plan(&score.worst, &score.cycles[1]),
     });
+    put_setup(&mut entries, score.orientation.as_ref(), &score.setup, &score.best.axes);
     if let Some(stability) = &context.stability {
         entries["stability"] = crate::stability::path::document(stability, true);
     }
@@ -58,7 +65,7 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
             "message": finding.to_string(),
         })
     };
-    context.document().with(json!({
+    let mut document = json!({
         "placement": placement_json(&nothing.placement),
         "placement_exact": placement_exact(&nothing.placement),
         "feasible": false,
@@ -66,7 +73,12 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
         "best": Value::Null,
         "worst": Value::Null,
         "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),
-    }))
+    });
+    if !nothing.collisions.is_empty() {
+        let pair = |pair: &BlockingPair| json!({ "pair": pair.names, "points": pair.points });
+        document["collisions"] = nothing.collisions.iter().map(pair).collect();
+    }
+    context.document().with(document)
 }
 
 /// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
@@ -90,10 +102,18 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .as_ref()
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
     let mut feed = String::new();
+    for (plan, name) in [(&score.best, "best plan"), (&score.worst, "worst plan")] {
+        least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
+    }
     super::text::highest_feed(&score.cycles[0].feed).iter().for_each(|row| line(&mut feed, row));
     let feed = if feed.is_empty() { feed } else { format!("\n{feed}") };
     let stability = stability.unwrap_or_default();
-    format!("{}\n\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
+    let setup: String = lines("this placement", score.orientation.as_ref(), &score.best.axes)
+        .iter()
+        .map(|row| format!("{row}\n"))
+        .collect();
+    let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
+    format!("{}\n{setup}\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
 }
 
 /// What `stead explain --json` prints.

@@ -4,11 +4,15 @@
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
 use super::Context;
+use super::cell_json::{cell, mount};
+use super::setup::{put_setup, tried};
 use crate::document::{Timing, cut_feed, deflection_mm, placement, placement_exact, put_deviation};
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
+use stead_cell::Scene;
 use stead_format::input::InputFile;
+use stead_placement::collision::PlanClearance;
 use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
@@ -17,14 +21,14 @@ use stead_placement::outcome::{
     SetOutcome, SubsetAccuracy, Transfer,
 };
 use stead_placement::postures::PostureRules;
-use stead_placement::problem::{Interval, Problem, Redundancy};
+use stead_placement::problem::{Problem, Redundancy};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
-pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
+pub fn place_json(problem: &Problem, outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
     let mut entries = common(outcome, context, true);
-    entries.insert("cases".to_owned(), cases(outcome, true));
+    entries.insert("cases".to_owned(), cases(outcome, true, problem.scene.as_deref()));
     entries.insert("threads".to_owned(), json!(timing.threads));
     entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
@@ -45,9 +49,11 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("criterion", criterion(problem)),
         ("redundancy", redundancy(problem)),
         ("task", task(problem)),
-        ("cases", cases(outcome, false)),
+        ("cases", cases(outcome, false, problem.scene.as_deref())),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
+    entries.extend(tried(problem, outcome).map(|tried| ("setups".to_owned(), tried)));
+    entries.extend(mount(problem).map(|mount| ("mount".to_owned(), mount)));
     entries.extend(postures(problem).map(|rules| ("postures".to_owned(), rules)));
     context.document().with(Value::Object(entries))
 }
@@ -129,11 +135,11 @@ fn lookup_summary(lookup_summary: &Result<LookupSummary, Unsupported>) -> Value 
     }
 }
 
-fn cases(outcome: &Outcome, with_plans: bool) -> Value {
-    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans)).collect()
+fn cases(outcome: &Outcome, with_plans: bool, scene: Option<&Scene>) -> Value {
+    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans, scene)).collect()
 }
 
-fn case(case: &Case, with_plan: bool) -> Value {
+fn case(case: &Case, with_plan: bool, scene: Option<&Scene>) -> Value {
     let mut value = json!({
         "case": case.number(),
         "placement": placement(&case.placement),
@@ -150,9 +156,13 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "feed": cut_feed(&case.cycle.feed),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
-        "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
+        "transfers": case.cycle.transfers.iter().map(|entry| transfer(entry, scene)).collect::<Vec<_>>(),
     });
+    if let Some(clearance) = &case.plan.clearance {
+        value["clearance"] = plan_clearance(clearance);
+    }
     put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, case.plan.mean_deviation);
+    put_setup(&mut value, case.orientation.as_ref(), &case.setup, &case.plan.axes);
     if with_plan && let Value::Object(map) = &mut value {
         map.insert("plan".to_owned(), case.plan.points.iter().map(plan_point).collect());
     }
@@ -242,11 +252,29 @@ fn plan_point(point: &PlanPoint) -> Value {
     value
 }
 
-fn transfer(transfer: &Transfer) -> Value {
-    json!({
+fn transfer(transfer: &Transfer, scene: Option<&Scene>) -> Value {
+    let mut value = json!({
         "after_segment": transfer.after_segment,
         "duration_s": optional(Unit::TIME_S, transfer.duration),
         "travel_deg": number(Unit::ANGLE_DEG, transfer.travel),
+    });
+    if let Some(way) = &transfer.way {
+        let pair = way.blocked_by.and_then(|pair| scene?.pair(pair));
+        value["blocked_by"] = json!(pair.map(ToString::to_string));
+        value["joints_deg"] =
+            way.joints.iter().map(|joints| json!(joints.map(|angle| number(Unit::ANGLE_DEG, angle)))).collect();
+        value["retracts"] = json!(way.along_axis[0]);
+        value["approaches"] = json!(way.along_axis[1]);
+    }
+    value
+}
+
+/// The least room at the points of a plan.
+pub(super) fn plan_clearance(clearance: &PlanClearance) -> Value {
+    json!({
+        "point": clearance.point,
+        "distance_mm": number(Unit::PLACE_MM, clearance.distance),
+        "pair": clearance.names.as_ref(),
     })
 }
 
@@ -290,11 +318,6 @@ fn transfer_settings(context: &Context) -> Value {
         "jerk_time_s": number(Unit::TIME_S, context.transfer.jerk_time),
         "blend_mm": number(Unit::PLACE_MM, context.transfer.blend),
     })
-}
-
-fn cell(problem: &Problem) -> Value {
-    let [x, y, z] = problem.cell.position.map(|bounds| interval(Unit::PLACE_MM, &bounds));
-    json!({ "x_mm": x, "y_mm": y, "z_mm": z, "yaw_deg": interval(Unit::ANGLE_DEG, &problem.cell.yaw) })
 }
 
 /// The confidence is stated where there is something to be confident of.
@@ -356,10 +379,6 @@ fn redundancy(problem: &Problem) -> Value {
 
 fn task(problem: &Problem) -> Value {
     json!({ "points": problem.task.points().len(), "segments": problem.task.segments().len() })
-}
-
-fn interval(unit: Unit, interval: &Interval) -> Value {
-    json!([number(unit, interval.min), number(unit, interval.max)])
 }
 
 fn number(unit: Unit, value: f64) -> Value {

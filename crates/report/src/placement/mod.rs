@@ -1,7 +1,9 @@
 //! Reports of `stead place`, and in [`evaluation`] those of single evaluations, `stead score` and `stead explain`.
 
+mod cell_json;
 pub mod evaluation;
 mod json;
+pub(crate) mod setup;
 pub mod tables;
 #[cfg(test)]
 mod tests;
@@ -113,8 +115,8 @@ fn map_files(
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
 /// `placement.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
-/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json` and
-/// `report.html`. Returns the paths.
+/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json`,
+/// `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -141,9 +143,10 @@ pub fn score_files(
     context: &Context,
 ) -> Result<Files, ReportError> {
     let [best, worst] = score.cases();
+    let scene = problem.scene.as_deref();
     let mut files = vec![
-        ("best-plan.csv", tables::plan(&best.plan)?),
-        ("worst-plan.csv", tables::plan(&worst.plan)?),
+        ("best-plan.csv", tables::plan(&best.plan, scene)?),
+        ("worst-plan.csv", tables::plan(&worst.plan, scene)?),
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
@@ -162,8 +165,8 @@ pub fn score_files(
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does without, `page-data.json` and `report.html`. Where there are no maps, those of an
-/// earlier run are removed. Returns the paths of the files written.
+/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
+/// without, `page-data.json`, `report.html` and `cell.glb`. Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -185,14 +188,15 @@ pub fn write_placement(
 pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) -> Result<Files, ReportError> {
     let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
+    let scene = problem.scene.as_deref();
     let mut files = vec![
-        ("best.csv", tables::plan(&best.plan)?),
-        ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan)?),
-        ("worst.csv", tables::plan(&worst.plan)?),
-        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan)?),
+        ("best.csv", tables::plan(&best.plan, scene)?),
+        ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan, scene)?),
+        ("worst.csv", tables::plan(&worst.plan, scene)?),
+        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
-        ("transfers.csv", tables::transfers(&outcome.cases)?),
+        ("transfers.csv", tables::transfers(&outcome.cases, scene)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         (SUMMARY, bytes(&summary)),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),

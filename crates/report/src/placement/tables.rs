@@ -1,9 +1,11 @@
 //! The CSV files. One function makes one file; every column carries its unit.
 
+use super::setup;
 use crate::csv_file::{table, vector};
 use crate::names;
 use crate::output::ReportError;
 use crate::units::{Unit, fixed};
+use stead_cell::Scene;
 use stead_model::published::Published;
 use stead_model::robot::turns::turns;
 use stead_model::task::ToolPath;
@@ -46,15 +48,29 @@ const PLAN: [&str; 28] = [
 /// `best.csv`, `worst.csv` and the like: one plan, one row per path point. Places are those of the tool centre point, and all
 /// vectors are in the robot base frame; turns are full turns beyond (-180, 180] deg; `total_mm` is the size of the deflection.
 /// Behind it are `surface_mm` where the task states the normal of the surface, and `std_mm` where the robot's uncertainty is
-/// known: the standard deviation of the scored part.
+/// known: the standard deviation of the scored part; then `e1_mm` or `e1_deg` and so on where there are external axes. Among shapes of
+/// a cell, `clearance_mm` is the distance of the pair with the least room, zero where the two touch, and `nearest_pair` names it; both
+/// are empty where nothing is nearer than 1 m.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn plan(plan: &Plan) -> Result<Vec<u8>, ReportError> {
-    let mut header = PLAN.to_vec();
-    header.extend(plan.deflection.surface.map(|_| "surface_mm"));
-    header.extend(plan.mean_deviation.map(|_| "std_mm"));
-    table("the table of a plan", &header, plan.points.iter().map(plan_row))
+pub fn plan(plan: &Plan, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
+    let mut header = PLAN.map(str::to_owned).to_vec();
+    header.extend(plan.deflection.surface.map(|_| "surface_mm".to_owned()));
+    header.extend(plan.mean_deviation.map(|_| "std_mm".to_owned()));
+    header.extend(setup::columns(&plan.axes));
+    header.extend(scene.iter().flat_map(|_| ["clearance_mm", "nearest_pair"].map(str::to_owned)));
+    let rows = plan.points.iter().map(|point| {
+        let mut row = plan_row(point);
+        row.extend(setup::at_point(&plan.axes, point.point));
+        row.extend(scene.iter().flat_map(|scene| {
+            let distance = point.clearance.map(|clearance| clearance.distance);
+            let pair = point.clearance.and_then(|clearance| scene.pair(clearance.pair));
+            [Unit::PLACE_MM.text_or_empty(distance), pair.map(ToString::to_string).unwrap_or_default()]
+        }));
+        row
+    });
+    table("the table of a plan", &header, rows)
 }
 
 fn plan_row(point: &PlanPoint) -> Vec<String> {
@@ -76,7 +92,8 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 /// `placements.csv`: the four cases. Times are empty where a joint speed is not known, the reference where there is none,
 /// the ratio where case 1 is a cancellation. `mean_mm` and `max_mm` are of the scores, `objective_mm` is what was minimised. The
 /// last column, `mean_std_mm`, is there where the robot's uncertainty is known: the standard deviation of the mean of the
-/// scored part. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
+/// scored part; behind it the orientation of the part and the positions of external axes that stand still along the path, where a run has
+/// such. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -107,6 +124,9 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
     ];
     header.extend(cases.best.plan.deflection.surface.iter().flat_map(|_| ["mean_surface_mm", "max_surface_mm"]));
     header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
+    header.extend(cases.best.orientation.as_ref().map(|_| "orientation"));
+    let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
+    header.extend(setup::columns(&cases.best.plan.axes));
     let rows = cases.all().into_iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number().to_string()];
         row.extend(placement(&case.placement, true));
@@ -125,6 +145,8 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         row.push(Unit::SPEED_MM_PER_S.text_or_empty(case.cycle.feed.highest().map(|limit| limit.feed)));
         row.extend(surface.into_iter().flat_map(pair));
         row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
+        row.extend(case.orientation.clone());
+        row.extend(setup::standing(&case.plan.axes));
         row
     });
     table("the table of placements", &header, rows)
@@ -156,7 +178,9 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>, ReportError> {
-    let header = ["point", "segment", "beta_deg", "score_mm", "posture", "reason"];
+    let scene = problem.scene.as_deref();
+    let mut header = vec!["point", "segment", "beta_deg", "score_mm", "posture", "reason"];
+    header.extend(scene.map(|_| "pair"));
     let path = problem.task.path();
     let rows = map.rows.iter().enumerate().flat_map(|(point, row)| {
         row.iter().enumerate().map(move |(k, cell)| {
@@ -164,8 +188,12 @@ pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>,
             let mut fields = vec![point.to_string(), segment(path, point), fixed(beta_deg, Unit::ANGLE_DEG.decimals)];
             fields.extend(match cell {
                 Ok(cell) => [Unit::DEFLECTION_MM.text(cell.score), cell.posture.to_string(), String::new()],
-                Err(blocked) => [String::new(), String::new(), blocked.code()],
+                Err(blocked) => [String::new(), String::new(), blocked.kind.code()],
             });
+            fields.extend(scene.map(|scene| {
+                let pair = cell.err().and_then(|blocked| scene.pair(blocked.pair?));
+                pair.map(ToString::to_string).unwrap_or_default()
+            }));
             fields
         })
     });
@@ -176,20 +204,30 @@ fn segment(path: &ToolPath, point: usize) -> String {
     (path.segment_of(point) + 1).to_string()
 }
 
-/// `transfers.csv`: the joint moves between segments. The duration is empty where a joint speed is not known.
+/// `transfers.csv`: the joint moves between segments. The duration is empty where a joint speed is not known. Among shapes of a cell,
+/// `moves` is the number of straight moves that keep free, retraction and approach among them, and `blocked_by` the pair that hits where
+/// no free way was found.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn transfers(cases: &Cases) -> Result<Vec<u8>, ReportError> {
-    let header = ["case", "after_segment", "duration_s", "travel_deg"];
+pub fn transfers(cases: &Cases, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
+    let mut header = vec!["case", "after_segment", "duration_s", "travel_deg"];
+    header.extend(scene.iter().flat_map(|_| ["moves", "blocked_by"]));
     let rows = cases.all().into_iter().flat_map(|case| {
-        case.cycle.transfers.iter().map(|transfer| {
-            vec![
+        case.cycle.transfers.iter().map(move |transfer| {
+            let mut row = vec![
                 case.number().to_string(),
                 transfer.after_segment.to_string(),
                 Unit::TIME_S.text_or_empty(transfer.duration),
                 Unit::ANGLE_DEG.text(transfer.travel),
-            ]
+            ];
+            row.extend(scene.iter().flat_map(|scene| {
+                let way = transfer.way.as_ref();
+                let pair = way.and_then(|way| scene.pair(way.blocked_by?));
+                let moves = way.map_or(1, |way| way.joints.len().saturating_sub(1));
+                [moves.to_string(), pair.map(ToString::to_string).unwrap_or_default()]
+            }));
+            row
         })
     });
     table("the table of transfers", header, rows)

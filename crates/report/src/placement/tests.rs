@@ -19,7 +19,7 @@ fn column(rows: &[Vec<String>], name: &str) -> Vec<String> {
 
 #[test]
 fn a_plan_has_one_row_per_path_point() {
-    let rows = rows(&tables::plan(&outcome().cases.worst.plan).unwrap());
+    let rows = rows(&tables::plan(&outcome().cases.worst.plan, None).unwrap());
     assert_eq!(rows.len(), 1 + 105);
     assert_eq!(
         rows[0].join(","),
@@ -36,7 +36,7 @@ fn lengths_are_in_mm_angles_in_degrees_and_turns_are_whole() {
     point.normal_part = -8.3e-5;
     point.score = -0.0;
     point.joints[5] = 200.0_f64.to_radians();
-    let rows = rows(&tables::plan(&case.plan).unwrap());
+    let rows = rows(&tables::plan(&case.plan, None).unwrap());
     assert_eq!(column(&rows, "x_mm")[0], "1.0000");
     assert_eq!(column(&rows, "normal_mm")[0], "-0.0830000");
     assert_eq!(column(&rows, "score_mm")[0], "0.0000000");
@@ -75,8 +75,8 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
     }
     let pairs = [
         (
-            tables::plan(&known.cases.best_worst_plan.plan),
-            tables::plan(&outcome().cases.best_worst_plan.plan),
+            tables::plan(&known.cases.best_worst_plan.plan, None),
+            tables::plan(&outcome().cases.best_worst_plan.plan, None),
             "std_mm",
             "0.0040000",
         ),
@@ -94,10 +94,10 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
         assert_eq!(cut, without);
     }
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(&known, &context(), &timing);
+    let document = place_json(problem(), &known, &context(), &timing);
     assert_eq!(document["cases"][3]["mean_std_mm"], 0.004);
     assert_eq!(document["cases"][0]["plan"][9]["std_mm"], 0.02);
-    let bare = place_json(outcome(), &context(), &timing);
+    let bare = place_json(problem(), outcome(), &context(), &timing);
     assert!(bare["cases"][3].get("mean_std_mm").is_none() && bare["cases"][0]["plan"][9].get("std_mm").is_none());
     assert!(summary_json(problem(), outcome(), &context())["criterion"].get("confidence").is_none());
     let text = placement_text(problem(), &known, &context());
@@ -125,7 +125,7 @@ fn the_other_tables_have_their_columns() {
     assert_eq!(table[0].join(","), "search,generation,best_mm,average_mm,feasible,population,evaluations");
     assert_eq!((table.len(), table[1][2].as_str()), (1 + 2 * 52, ""));
     assert_eq!(table[1 + 52][0], "worst");
-    let table = rows(&tables::transfers(&outcome().cases).unwrap());
+    let table = rows(&tables::transfers(&outcome().cases, None).unwrap());
     assert_eq!(table[0].join(","), "case,after_segment,duration_s,travel_deg");
     assert_eq!(table.len(), 1 + 4 * 4);
     let table = rows(&tables::refinements(&outcome().refinements).unwrap());
@@ -136,7 +136,7 @@ fn the_other_tables_have_their_columns() {
 #[test]
 fn json_has_the_keys_of_the_contract() {
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(outcome(), &context(), &timing);
+    let document = place_json(problem(), outcome(), &context(), &timing);
     for key in [
         "evaluations",
         "states",

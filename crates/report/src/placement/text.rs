@@ -1,10 +1,11 @@
 //! The short table for people.
 
-use super::Context;
+use super::{Context, setup};
 use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
+use stead_placement::collision::PlanClearance;
 use stead_placement::criterion::Over;
 use stead_placement::feed::{CutFeed, FeedLimit};
 use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
@@ -23,6 +24,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     let (points, segments) = (count(points, "point"), count(segments, "segment"));
     let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
     text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    text.push_str(&setup::text(problem, outcome));
     text.push('\n');
     text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
     if let Some(reference) = &context.reference {
@@ -33,6 +35,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));
+    least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
@@ -120,6 +123,16 @@ fn stiffest(plan: &Plan) -> String {
         "joint {joint} matters most to the best placement: 1 % more stiffness changes its mean by {} % (same plan)",
         figures(share)
     )
+}
+
+/// The least room of a plan between two shapes, where there are shapes.
+pub(super) fn least_room(plan: &Plan, name: &str) -> Option<String> {
+    let PlanClearance { point, distance, names } = plan.clearance.as_ref()?;
+    let [a, b] = names.as_ref();
+    Some(format!(
+        "least clearance of the {name}: {} mm between {a} and {b}, at point {point}",
+        fixed(distance * 1e3, 1)
+    ))
 }
 
 /// The highest feed of a best plan and what decides it, a line each, where a limit of the joints is known.

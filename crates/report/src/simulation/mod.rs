@@ -1,7 +1,8 @@
-//! Reports of a simulated pass: `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg`, and a text for
-//! people.
+//! Reports of a simulated pass: `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg`,
+//! `report.html`, and a text for people.
 
 mod json;
+mod page;
 mod tables;
 mod text;
 
@@ -10,6 +11,7 @@ pub use tables::{series, wall};
 pub use text::simulation_text;
 
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::units::Unit;
@@ -32,7 +34,7 @@ pub struct Making {
     pub wall: f64,
 }
 
-/// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg` and `wall.svg`. Returns their paths in that order.
+/// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg` and `report.html`. Returns their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -58,6 +60,7 @@ pub fn simulation_files(run: &SimulationRun, found: &Simulation, making: &Making
         ("forces.svg", picture::forces(found).into_bytes()),
         ("turns.svg", picture::turns(found, run.cut.spindle_speed).into_bytes()),
         ("wall.svg", picture::wall(found).into_bytes()),
+        (PAGE, page::page(run, found).html()),
     ]))
 }
 

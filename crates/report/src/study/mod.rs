@@ -1,7 +1,8 @@
 //! Reports of `stead study report`: what it prints, and `study-ranking.csv`, `study-front.csv`, `study-effects.csv`,
-//! `study-report.json`, and pictures.
+//! `study-report.json`, pictures, and `report.html`.
 
 mod json;
+mod page;
 mod tables;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -10,18 +11,20 @@ mod tests;
 mod text;
 
 pub use json::{status_json, study_json};
+pub use page::CasePages;
 pub use tables::{effects_table, front_table, ranking_table};
 pub use text::study_text;
 
 use crate::document::bytes;
 use crate::output::{Folder, ReportError};
+use crate::page::PAGE;
 use crate::picture;
 use crate::{Files, named};
 use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_study::analysis::{Analysis, Layout};
 
-/// Writes the files of a report into the folder of its study and returns their paths. A front of nothing, a map of a single axis and
+/// Writes the files of a report into the folder of its study and returns their paths; the page leads to the pages of kept cases. A front of nothing, a map of a single axis and
 /// effects of no axis have no files.
 ///
 /// # Errors
@@ -31,15 +34,21 @@ pub fn write_study(
     name: &str,
     analysis: &Analysis,
     inputs: &[InputFile],
+    pages: &CasePages,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    folder.results("study report", inputs).write(&study_files(name, analysis, inputs)?)
+    folder.results("study report", inputs).write(&study_files(name, analysis, inputs, pages)?)
 }
 
 /// The files that [`write_study`] writes.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
-pub fn study_files(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Result<Files, ReportError> {
+pub fn study_files(
+    name: &str,
+    analysis: &Analysis,
+    inputs: &[InputFile],
+    pages: &CasePages,
+) -> Result<Files, ReportError> {
     let layouts = &analysis.layouts;
     let mut files = vec![("study-ranking.csv", ranking_table(analysis)?)];
     if let Some(front) = analysis.front.as_ref().filter(|front| !front.members.is_empty()) {
@@ -54,6 +63,7 @@ pub fn study_files(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Res
         files.push(("study-map.svg", picture::study_map(map).into_bytes()));
     }
     files.push(("study-report.json", bytes(&study_json(name, analysis, inputs))));
+    files.push((PAGE, page::page(name, analysis, inputs, pages).html()));
     Ok(named(files))
 }
 

@@ -36,12 +36,14 @@ impl CaseStatus {
 const CASES: [&str; 4] = ["best", "best_worst_plan", "worst", "worst_worst_plan"];
 
 /// Columns of what is found, behind the figures of the four cases.
-const FIGURES: [(&str, Kind); 21] = [
+const FIGURES: [(&str, Kind); 23] = [
     ("objective_mm", Kind::Number),
     ("cycle_s", Kind::Number),
     ("min_inverse_condition", Kind::Number),
     ("min_joint_margin_deg", Kind::Number),
     ("min_base_distance_mm", Kind::Number),
+    ("min_clearance_mm", Kind::Number),
+    ("nearest_pair", Kind::Text),
     ("max_feed_mm_per_s", Kind::Number),
     ("x_mm", Kind::Number),
     ("y_mm", Kind::Number),
@@ -110,13 +112,18 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
     let bounds = bounds.collect::<Vec<_>>().join(" ");
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
     let inverse_condition = smallest(&mut plan.points.iter().map(|point| point.inverse_condition));
-    let base_distance = smallest(&mut plan.points.iter().map(|point| libm::hypot(point.position.x, point.position.y)));
+    let base_distance = smallest(&mut plan.points.iter().map(|point| match problem.robot.is_mounted() {
+        true => problem.base_distance(&point.position),
+        false => libm::hypot(point.position.x, point.position.y),
+    }));
     vec![
         number(Unit::DEFLECTION_MM, Some(plan.objective)),
         number(Unit::TIME_S, cycle.total()),
         number(Unit::PLAIN, inverse_condition),
         number(Unit::ANGLE_DEG, smallest(&mut joint_margins(problem, plan))),
         number(Unit::PLACE_MM, base_distance),
+        number(Unit::PLACE_MM, plan.clearance.as_ref().map(|clearance| clearance.distance)),
+        plan.clearance.as_ref().map_or(Cell::None, |clearance| Cell::Text(clearance.names.join(" and "))),
         number(Unit::SPEED_MM_PER_S, cycle.feed.highest().map(|limit| limit.feed)),
         number(Unit::PLACE_MM, Some(placement.x)),
         number(Unit::PLACE_MM, Some(placement.y)),

@@ -1,7 +1,7 @@
 //! Where the tool has to be after every move of a program: from the task, the placement and beta, or from the corrected path.
 
-use super::super::corrected;
-use super::geometry::{Frame, Matrix, about_z, cross, flange, length};
+use super::super::{corrected, motion};
+use super::geometry::{Frame, Matrix, about_z, cross, flange, length, seen};
 use crate::input::InputError;
 use crate::plan::PlacedPlan;
 use std::path::Path;
@@ -23,6 +23,8 @@ pub(super) struct Expected {
     pub tool: Frame,
     /// Angles that those of the arm are near to. rad
     pub near: [f64; 6],
+    /// Where the external axes are. mm and deg
+    pub external: [Option<f64>; 6],
 }
 
 /// A frame of the model, in mm.
@@ -31,7 +33,7 @@ pub(super) fn frame(pose: &Pose<f64>) -> Frame {
     Frame { turn, origin: [0, 1, 2].map(|axis| pose.translation[axis] * 1e3) }
 }
 
-/// The workpiece in the base frame.
+/// The frame that is placed, in the base frame with all external axes at zero.
 pub(super) fn workpiece(placement: &Placement) -> Frame {
     let Placement { x, y, z, yaw } = *placement;
     Frame { turn: about_z(yaw), origin: [x, y, z].map(|m| m * 1e3) }
@@ -48,20 +50,25 @@ pub(super) fn moves(
     approach: f64,
 ) -> Result<Vec<Expected>, InputError> {
     let placed = workpiece(&plan.placement);
+    let external: Vec<[Option<f64>; 6]> =
+        (0..problem.task.points().len()).map(|point| motion::external_at(problem, point)).collect();
     let mut tools: Vec<(Frame, [f64; 6])> = problem
         .task
         .points()
         .iter()
         .zip(&plan.betas)
         .zip(&plan.points)
-        .map(|((point, beta), row)| (placed.of(&tool_at(point, *beta)), row.joints))
+        .zip(&external)
+        .map(|(((point, beta), row), external)| {
+            (seen(&problem.external_axes, external).of(&placed).of(&tool_at(point, *beta)), row.joints)
+        })
         .collect();
     if let Some(file) = corrected {
-        let mounted = frame(&problem.spindle.flange_from_tool);
+        let (mounted, stand) = (frame(&problem.spindle.flange_from_tool), frame(&problem.robot.cell_from_base()));
         for (tool, command) in tools.iter_mut().zip(corrected::printed_commands(file)?) {
             if command.is_corrected {
                 let joints = command.joints.map(f64::to_radians);
-                let turn = flange(problem.robot.joints(), &joints).of(&mounted).turn;
+                let turn = stand.of(&flange(problem.robot.joints(), &joints)).of(&mounted).turn;
                 *tool = (Frame { turn, origin: command.position }, joints);
             }
         }
@@ -72,7 +79,8 @@ pub(super) fn moves(
             let (tool, near) = tools[point];
             // The tool's z axis points to the workpiece.
             let tool = tool.of(&Frame::shift([0.0, 0.0, -by]));
-            Expected { segment: number + 1, point, is_joint, is_retracted: by > 0.0, tool, near }
+            let external = external[point];
+            Expected { segment: number + 1, point, is_joint, is_retracted: by > 0.0, tool, near, external }
         };
         moves.push(at(range.start, true, approach));
         let has_approach = approach > 0.0;

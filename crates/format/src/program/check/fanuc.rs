@@ -1,7 +1,7 @@
 //! TP programs: `J P[n]`, `L P[n]`, their positions, the frames in remarks, calls of parts.
 
 use super::geometry::{Frame, turned_xyz};
-use super::written::{DEEPEST, Goal, Moves, Source, frame_of, number};
+use super::written::{DEEPEST, External, Goal, Moves, Source, external, frame_of, number};
 use crate::input::InputError;
 use std::collections::BTreeMap;
 
@@ -14,6 +14,9 @@ enum Position {
     Angles([f64; 6]),
     Pose(Frame),
 }
+
+/// A position with its external axes and the numbers of its frames.
+type Placed = (Position, External, [u32; 2]);
 
 /// The moves of a program and its parts.
 ///
@@ -93,20 +96,20 @@ fn goal(
     source: &Source,
     (line, statement): (usize, &str),
     word: &str,
-    positions: &BTreeMap<u32, (Position, [u32; 2])>,
+    positions: &BTreeMap<u32, Placed>,
     (remarks, numbers): (&Remarks, [Option<u32>; 2]),
-) -> Result<Goal, InputError> {
+) -> Result<(Goal, External), InputError> {
     let wrong = |problem: &str| source.error(line, problem, statement);
     let inside = statement.split_once("P[").and_then(|(_, rest)| rest.split_once(']'));
     let number = inside.and_then(|(number, _)| number.parse::<u32>().ok());
     if ["Offset", "VOFFSET", "PTH", "INC"].iter().any(|option| statement.contains(option)) {
         return Err(wrong("has an option that moves the robot elsewhere"));
     }
-    let Some((position, of)) = number.and_then(|number| positions.get(&number)) else {
+    let Some((position, external, of)) = number.and_then(|number| positions.get(&number)) else {
         return Err(wrong("names no position of this program"));
     };
     match (word, position) {
-        ("J", Position::Angles(angles)) => Ok(Goal::Angles(*angles)),
+        ("J", Position::Angles(angles)) => Ok((Goal::Angles(*angles), *external)),
         ("L", Position::Pose(tool)) => {
             if numbers != of.map(Some) {
                 return Err(wrong("goes to a position of other frames than UFRAME_NUM and UTOOL_NUM"));
@@ -115,14 +118,14 @@ fn goal(
             let [Some(base), Some(mounted)] = frames else {
                 return Err(wrong("moves before the remarks state UFRAME and UTOOL"));
             };
-            Ok(Goal::Line { tool: *tool, frames: [base, mounted] })
+            Ok((Goal::Line { tool: *tool, frames: [base, mounted] }, *external))
         }
         _ => Err(wrong("goes to a position of the other kind")),
     }
 }
 
 /// All positions of a program with the numbers of their frames.
-fn positions(source: &Source) -> Result<BTreeMap<u32, (Position, [u32; 2])>, InputError> {
+fn positions(source: &Source) -> Result<BTreeMap<u32, Placed>, InputError> {
     let mut positions = BTreeMap::new();
     let mut open: Option<(u32, usize, String)> = None;
     for (index, whole) in source.text.lines().enumerate().skip_while(|(_, whole)| whole.trim() != "/POS").skip(1) {
@@ -153,7 +156,7 @@ fn positions(source: &Source) -> Result<BTreeMap<u32, (Position, [u32; 2])>, Inp
 }
 
 /// A position from what is in its braces.
-fn position(inside: &str) -> Option<(Position, [u32; 2])> {
+fn position(inside: &str) -> Option<Placed> {
     // What is in quotes has commas of its own.
     let plain: String = inside.split('\'').step_by(2).collect();
     let mut values = BTreeMap::new();
@@ -174,9 +177,10 @@ fn position(inside: &str) -> Option<(Position, [u32; 2])> {
     }
     let frames = ["UF", "UT"].map(|key| values.remove(key).map(|value| value as u32));
     let frames = [frames[0]?, frames[1]?];
+    let external = external(&mut values);
     if let Some(angles) = super::written::exactly(&values, ["J1", "J2", "J3", "J4", "J5", "J6"]) {
-        return Some((Position::Angles(angles), frames));
+        return Some((Position::Angles(angles), external, frames));
     }
     let [x, y, z, w, p, r] = super::written::exactly(&values, ["X", "Y", "Z", "W", "P", "R"])?;
-    Some((Position::Pose(frame_of([x, y, z], turned_xyz(w, p, r))), frames))
+    Some((Position::Pose(frame_of([x, y, z], turned_xyz(w, p, r))), external, frames))
 }

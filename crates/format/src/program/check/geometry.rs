@@ -1,6 +1,7 @@
 //! Frames, angles and forward kinematics of the reader of programs, in mm. It shares none of them with the writer, nor with the
 //! kinematics that plans are made by.
 
+use stead_model::external_axis::{AxisKind, Carried, ExternalAxis};
 use stead_model::robot::{Controller, Joint};
 
 /// Three rows of three.
@@ -109,6 +110,27 @@ pub(super) fn flange(rows: &[Joint; 6], theta: &[f64; 6]) -> Frame {
         let turn = Frame { turn: about_z(*theta), origin: [0.0, 0.0, row.d * 1e3] };
         frame.of(&twist).of(&turn)
     })
+}
+
+/// Where an external axis brings what it carries, at a position in mm or deg.
+fn carried(axis: &ExternalAxis, position: f64) -> Frame {
+    let direction: [f64; 3] = axis.direction.into();
+    if axis.kind == AxisKind::Rail {
+        return Frame::shift(direction.map(|part| part * position));
+    }
+    let (s, c) = libm::sincos(position.to_radians() / 2.0);
+    let turn = turned_by_quaternion([c, s * direction[0], s * direction[1], s * direction[2]]).unwrap_or(IDENTITY);
+    let point = <[f64; 3]>::from(axis.point).map(|m| m * 1e3);
+    Frame::shift(point).of(&Frame::turned(turn)).of(&Frame::shift(point.map(|mm| -mm)))
+}
+
+/// The workpiece as the robot sees it with external axes at positions in mm and deg: what carries the robot moves it the other way.
+pub(super) fn seen(axes: &[ExternalAxis], positions: &[Option<f64>; 6]) -> Frame {
+    let of = |what: Carried| {
+        let own = axes.iter().zip(positions).filter(|(axis, _)| axis.carries == what);
+        own.fold(Frame::turned(IDENTITY), |frame, (axis, position)| frame.of(&carried(axis, position.unwrap_or(0.0))))
+    };
+    of(Carried::Robot).inverted().of(&of(Carried::Workpiece))
 }
 
 /// The angles of the rows (rad) for those of a controller (deg).

@@ -1,7 +1,7 @@
 //! KRL: `$BASE`, `$TOOL`, `PTP {A1 ..}`, `LIN {X ..}`, calls of parts.
 
 use super::geometry::{Frame, turned_xyz};
-use super::written::{DEEPEST, Goal, Moves, Source, entries, exactly, frame_of};
+use super::written::{DEEPEST, External, Goal, Moves, Source, entries, exactly, external, frame_of};
 use crate::input::InputError;
 
 /// Words that begin a statement whose effect on the path is not understood.
@@ -107,16 +107,21 @@ fn frame(source: &Source, line: usize, statement: &str) -> Result<Frame, InputEr
     found.ok_or_else(|| source.error(line, "is no frame {X ..,Y ..,Z ..,A ..,B ..,C ..}", statement))
 }
 
-fn joint(source: &Source, line: usize, statement: &str) -> Result<Goal, InputError> {
-    let angles = braces(statement)
-        .filter(|(_, behind)| behind.is_empty())
-        .and_then(|(inside, _)| exactly(&entries(inside)?, ["A1", "A2", "A3", "A4", "A5", "A6"]));
-    angles.map(Goal::Angles).ok_or_else(|| source.error(line, "is no joint move PTP {A1 ..,.. A6 ..}", statement))
+fn joint(source: &Source, line: usize, statement: &str) -> Result<(Goal, External), InputError> {
+    let found = braces(statement).filter(|(_, behind)| behind.is_empty()).and_then(|(inside, _)| {
+        let mut entries = entries(inside)?;
+        let external = external(&mut entries);
+        Some((Goal::Angles(exactly(&entries, ["A1", "A2", "A3", "A4", "A5", "A6"])?), external))
+    });
+    found.ok_or_else(|| source.error(line, "is no joint move PTP {A1 ..,.. A6 ..}", statement))
 }
 
-fn linear(source: &Source, line: usize, statement: &str, frames: [Frame; 2]) -> Result<Goal, InputError> {
-    let found = braces(statement).filter(|(_, behind)| ["", "C_DIS"].contains(behind));
-    let tool = found.and_then(|(inside, _)| pose(inside));
-    let goal = tool.map(|tool| Goal::Line { tool, frames });
-    goal.ok_or_else(|| source.error(line, "is no linear move LIN {X ..,Y ..,Z ..,A ..,B ..,C ..} C_DIS", statement))
+fn linear(source: &Source, line: usize, statement: &str, frames: [Frame; 2]) -> Result<(Goal, External), InputError> {
+    let found = braces(statement).filter(|(_, behind)| ["", "C_DIS"].contains(behind)).and_then(|(inside, _)| {
+        let mut entries = entries(inside)?;
+        let external = external(&mut entries);
+        let [x, y, z, a, b, c] = exactly(&entries, ["X", "Y", "Z", "A", "B", "C"])?;
+        Some((Goal::Line { tool: frame_of([x, y, z], turned_xyz(c, b, a)), frames }, external))
+    });
+    found.ok_or_else(|| source.error(line, "is no linear move LIN {X ..,Y ..,Z ..,A ..,B ..,C ..} C_DIS", statement))
 }

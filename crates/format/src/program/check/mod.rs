@@ -18,9 +18,11 @@ use crate::input::{InputError, InputFile, input_file};
 use crate::plan::read_plan;
 use crate::run::Run;
 use expected::{Expected, frame, workpiece};
-use geometry::{Frame, apart, flange, of_rows};
+use geometry::{Frame, apart, flange, of_rows, seen};
+use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
-use stead_model::robot::{Controller, Robot};
+use stead_model::external_axis::ExternalAxis;
+use stead_model::robot::{Controller, Pose, Robot};
 use written::{Goal, Source, Written};
 
 /// How far the tool may be off. mm
@@ -95,6 +97,7 @@ pub fn check(
     let source = Source::read(program)?;
     let format = format_of(program)?;
     let (plan, plan_file) = read_plan(plan, &run.problem)?;
+    let problem = run.problem.in_setup(&plan.setup);
     let mut inputs = run.inputs.clone();
     inputs.push(plan_file);
     if let Some(path) = corrected {
@@ -102,9 +105,10 @@ pub fn check(
             base_from_tool: point.base_from_tool,
             posture: point.posture,
             joints: point.joints,
+            external: [None; 6],
         };
         let planned: Vec<Target> = plan.points.iter().map(target).collect();
-        inputs.push(corrected_targets(&run.problem, &planned, path)?.2);
+        inputs.push(corrected_targets(&problem, &planned, path)?.2);
     }
     let written = match format {
         ProgramFormat::Krl => krl::moves(&source)?,
@@ -113,13 +117,17 @@ pub fn check(
         ProgramFormat::Csv => table::moves(&source)?,
     };
     inputs.push(input_file("program", program.to_string_lossy().replace('\\', "/"), source.text.as_bytes()));
-    let expected = expected::moves(&run.problem, &plan, corrected.map(|path| path.file), approach * 1e3)?;
-    let robot = &run.problem.robot;
+    let expected = expected::moves(&problem, &plan, corrected.map(|path| path.file), approach * 1e3)?;
+    let robot = &problem.robot;
+    let lying = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
+    let lying = Pose { rotation: lying, translation: Vector3::zeros() };
     let arm = Arm {
         robot,
         controller: robot.controller(),
-        mounted: frame(&run.problem.spindle.flange_from_tool),
-        placed: workpiece(&plan.placement),
+        mounted: frame(&problem.spindle.flange_from_tool),
+        stand: frame(&robot.cell_from_base()),
+        placed: workpiece(&plan.placement).of(&frame(&lying)),
+        axes: &problem.external_axes,
     };
     let mut result = arm.compared(&source, &written.all, &expected)?;
     result.inputs = inputs;
@@ -142,8 +150,11 @@ struct Arm<'a> {
     controller: Option<&'a Controller>,
     /// The tool on the flange, as the run has it.
     mounted: Frame,
-    /// The workpiece in the base frame.
+    /// The base frame of the rows in the cell frame.
+    stand: Frame,
+    /// The workpiece of the task file in the cell frame, with all external axes at zero.
     placed: Frame,
+    axes: &'a [ExternalAxis],
 }
 
 impl Arm<'_> {
@@ -189,13 +200,20 @@ impl Arm<'_> {
             let point = wanted.point;
             return Some(format!("{place} is {found}, and at point {point} the plan asks for {expected}"));
         }
+        if let Some(axis) = (0..6).find(|axis| is_off(one.external[*axis], wanted.external[*axis])) {
+            return Some(format!(
+                "{place}: external axis E{} is not where the plan has it at point {}",
+                axis + 1,
+                wanted.point
+            ));
+        }
         let (Goal::Angles(angles) | Goal::Row { angles: Some(angles), .. }) = one.goal else { return None };
         let rows = of_rows(self.controller?, &angles);
         let far = (0..6).find(|axis| (rows[*axis] - wanted.near[*axis]).abs() > std::f64::consts::PI)?;
         Some(format!("{place}: axis {} is a turn away from the plan at point {}", far + 1, wanted.point))
     }
 
-    /// Where a move brings the tool of the run, in the base frame, by each way in which the program says it.
+    /// Where a move brings the tool of the run, in the cell frame, by each way in which the program says it.
     fn tools(&self, one: &Written) -> Result<Vec<Frame>, InputError> {
         let unknown = |what: &str| {
             InputError::new(&one.file, format!("cannot be compared, since the robot file has no {what}"))
@@ -204,22 +222,36 @@ impl Arm<'_> {
         };
         let by_angles = |angles: &[f64; 6]| {
             let controller = self.controller.ok_or_else(|| unknown("[controller]"))?;
-            Ok(flange(self.robot.joints(), &of_rows(controller, angles)).of(&self.mounted))
+            Ok(self.stand.of(&flange(self.robot.joints(), &of_rows(controller, angles))).of(&self.mounted))
         };
         match &one.goal {
             Goal::Angles(angles) => Ok(vec![by_angles(angles)?]),
             Goal::Row { tool, angles, .. } => {
-                let mut tools = vec![self.placed.of(tool)];
+                let mut tools = vec![seen(self.axes, &one.external).of(&self.placed).of(tool)];
                 tools.extend(angles.as_ref().map(by_angles).transpose()?);
                 Ok(tools)
             }
             Goal::Line { tool, frames: [base, mounted] } => {
                 let root = self.controller.and_then(|controller| controller.root_from_base);
                 let root = frame(&root.ok_or_else(|| unknown("[root]"))?);
-                let flange = root.inverted().of(base).of(tool).of(&mounted.inverted());
+                let flange = seen(self.axes, &one.external)
+                    .of(&self.stand)
+                    .of(&root.inverted())
+                    .of(base)
+                    .of(tool)
+                    .of(&mounted.inverted());
                 Ok(vec![flange.of(&self.mounted)])
             }
         }
+    }
+}
+
+/// Whether an external axis is elsewhere, by more than the tool may be. mm or deg
+fn is_off(found: Option<f64>, wanted: Option<f64>) -> bool {
+    match (found, wanted) {
+        (None, None) => false,
+        (Some(found), Some(wanted)) => (found - wanted).abs() > POSITION_MM,
+        _ => true,
     }
 }
 

@@ -1,7 +1,7 @@
 //! RAPID: tool and work object data, `MoveAbsJ`, `MoveL`, calls of parts.
 
 use super::geometry::{Frame, turned_by_quaternion};
-use super::written::{DEEPEST, Goal, Moves, Source, frame_of, number};
+use super::written::{DEEPEST, External, Goal, Moves, Source, frame_of, number};
 use crate::input::InputError;
 use std::collections::BTreeMap;
 
@@ -120,17 +120,22 @@ fn declare(source: &Source, line: usize, statement: &str, data: &mut Data) -> Re
     Ok(())
 }
 
-fn joint(source: &Source, line: usize, statement: &str) -> Result<Goal, InputError> {
-    let angles = list(statement).and_then(|(numbers, _)| {
-        let angles: [f64; 6] = numbers.get(..6)?.try_into().ok()?;
-        (numbers.len() == 12 && angles.iter().all(|angle| angle.is_finite())).then_some(angles)
-    });
-    angles
-        .map(Goal::Angles)
-        .ok_or_else(|| source.error(line, "is no joint move MoveAbsJ [[..],[9E9,..]],..", statement))
+/// The last six numbers of a goal, those that are axes.
+fn external(numbers: &[f64]) -> Option<External> {
+    let last = numbers.last_chunk::<6>()?;
+    Some(last.map(|position| Some(position).filter(|position| position.is_finite())))
 }
 
-fn linear(source: &Source, line: usize, statement: &str, data: &Data) -> Result<Goal, InputError> {
+fn joint(source: &Source, line: usize, statement: &str) -> Result<(Goal, External), InputError> {
+    let found = list(statement).and_then(|(numbers, _)| {
+        let angles: [f64; 6] = numbers.get(..6)?.try_into().ok()?;
+        let is_whole = numbers.len() == 12 && angles.iter().all(|angle| angle.is_finite());
+        is_whole.then_some(Goal::Angles(angles)).zip(external(&numbers))
+    });
+    found.ok_or_else(|| source.error(line, "is no joint move MoveAbsJ [[..],[9E9,..]],..", statement))
+}
+
+fn linear(source: &Source, line: usize, statement: &str, data: &Data) -> Result<(Goal, External), InputError> {
     let wrong = || source.error(line, "is no linear move MoveL [[..],[..],[..],[..]],..,tool\\WObj:=wobj", statement);
     let (numbers, behind) = list(statement).ok_or_else(wrong)?;
     let tool = numbers.get(..7).and_then(pose).filter(|_| numbers.len() == 17).ok_or_else(wrong)?;
@@ -140,5 +145,5 @@ fn linear(source: &Source, line: usize, statement: &str, data: &Data) -> Result<
     let (Some(base), Some(mounted)) = (data.workpieces.get(&workpiece), data.tools.get(&named)) else {
         return Err(source.error(line, "names a tool or a work object that is not declared before", statement));
     };
-    Ok(Goal::Line { tool, frames: [*base, *mounted] })
+    Ok((Goal::Line { tool, frames: [*base, *mounted] }, external(&numbers).ok_or_else(wrong)?))
 }

@@ -23,6 +23,9 @@ pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
     let [a, b, c] = try_each(["a_deg", "b_deg", "c_deg"], column)?;
     let quaternion = try_each(["q_w", "q_x", "q_y", "q_z"], column)?;
     let axes = try_each(["a1_deg", "a2_deg", "a3_deg", "a4_deg", "a5_deg", "a6_deg"], column)?;
+    let external: [Option<usize>; 6] = std::array::from_fn(|axis| {
+        ["mm", "deg"].into_iter().find_map(|unit| table.column(&format!("e{}_{unit}", axis + 1)))
+    });
     while let Some(row) = table.next_row()? {
         let origin = try_each(position, |column| row.number(column))?;
         let by_angles = frame_of(origin, turned_xyz(row.number(c)?, row.number(b)?, row.number(a)?));
@@ -41,7 +44,8 @@ pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
             "linear" => false,
             _ => return Err(row.fail(kind, "no such move", "joint, linear")),
         };
-        moves.push(source, row.line(), Goal::Row { tool, angles, is_joint })?;
+        let external = try_each(external, |column| column.map(|column| row.number(column)).transpose())?;
+        moves.push(source, row.line(), (Goal::Row { tool, angles, is_joint }, external))?;
     }
     Ok(moves)
 }

@@ -12,6 +12,16 @@ pub(super) struct Written {
     /// Line in the file, from 1.
     pub line: usize,
     pub goal: Goal,
+    /// Where the external axes go that the move names, in mm and deg.
+    pub external: External,
+}
+
+/// Positions of external axes E1 to E6, in mm and deg.
+pub(super) type External = [Option<f64>; 6];
+
+/// Takes the external axes out of the entries of a move.
+pub(super) fn external(entries: &mut BTreeMap<String, f64>) -> External {
+    std::array::from_fn(|axis| entries.remove(&format!("E{}", axis + 1)))
 }
 
 /// Where a move goes.
@@ -109,11 +119,12 @@ impl Moves {
     ///
     /// # Errors
     /// [`InputError`] where there are more than anyone has.
-    pub fn push(&mut self, source: &Source, line: usize, goal: Goal) -> Result<(), InputError> {
+    pub fn push(&mut self, source: &Source, line: usize, goal: (Goal, External)) -> Result<(), InputError> {
+        let (goal, external) = goal;
         if self.all.len() >= MOST {
             return Err(source.error(line, format!("is beyond {MOST} moves"), ""));
         }
-        self.all.push(Written { file: source.file.clone(), line, goal });
+        self.all.push(Written { file: source.file.clone(), line, goal, external });
         Ok(())
     }
 }

@@ -1,14 +1,17 @@
 //! A run and a plan on an arm imported from a URDF fixture.
 
+use crate::plan::axis_column;
 use crate::program::check::{ProgramCheck, check};
 use crate::program::{ExportError, ExportOptions, Program, ProgramFormat, export};
 use crate::urdf::{ImportOptions, ImportedRobot, import_robot_text};
 use crate::{Run, read_run};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use stead_model::external_axis::AxisKind;
 use stead_model::robot::turns::Range;
 use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::setup::{AxisPositions, Setup};
 
 /// Fixtures of the makers with a form of their own.
 pub const ARMS: [(&str, &str, ProgramFormat); 3] = [
@@ -63,6 +66,11 @@ pub struct Bench {
 impl Bench {
     /// On the arm of one of [`ARMS`], with its controller filled in.
     pub fn new(name: &str) -> Self {
+        Self::with(name, "", |_| Vec::new())
+    }
+
+    /// The same with more tables in the run, and external axes that are at positions (m or rad) at each point.
+    pub fn with(name: &str, tables_of_run: &str, positions: impl Fn(usize) -> Vec<f64>) -> Self {
         let (kind, urdf, format) = *ARMS.iter().find(|(known, ..)| *known == name).unwrap();
         let options = ImportOptions { stiffness_like: Some("kuka-kr270-2"), ..ImportOptions::default() };
         let imported = import_robot_text(Path::new("arm.urdf"), urdf, &options).unwrap();
@@ -72,9 +80,15 @@ impl Bench {
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write("arm.toml", &format!("{rows}[controller]\n{tables}"));
         write("task.csv", TASK);
-        write("run.toml", RUN);
+        write("run.toml", &format!("{RUN}{tables_of_run}"));
         let run = read_run(&folder.path().join("run.toml")).unwrap_or_else(|error| panic!("{error}"));
-        write("plan.csv", &plan(&run.problem));
+        let rows: Vec<Vec<f64>> = (0..run.problem.task.points().len()).map(positions).collect();
+        let positions = match &run.problem.external_axes[..] {
+            [] => run.problem.setup.positions.clone(),
+            _ => AxisPositions::PerPoint(rows),
+        };
+        let setup = Setup { positions, ..run.problem.setup.clone() };
+        write("plan.csv", &plan(&run.problem.in_setup(&setup)));
         let plan = folder.path().join("plan.csv");
         Self { plan, folder, run, format, imported }
     }
@@ -113,8 +127,10 @@ fn plan(problem: &Problem) -> String {
             let rows: Option<Vec<String>> = (0..4).map(|segment| segment_rows(problem, &placement, segment)).collect();
             if let Some(rows) = rows {
                 let header = "point,segment,x_mm,y_mm,z_mm,beta_deg,posture,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,\
-                              theta6_deg,force_x_n,force_y_n,force_z_n\n";
-                return format!("{header}{}", rows.concat());
+                              theta6_deg,force_x_n,force_y_n,force_z_n";
+                let axes = problem.external_axes.iter().zip(1..);
+                let axes: String = axes.map(|(axis, number)| format!(",{}", axis_column(number, axis.kind))).collect();
+                return format!("{header}{axes}\n{}", rows.concat());
             }
         }
     }
@@ -170,5 +186,9 @@ fn row(
     write!(text, ",{posture}").unwrap();
     joints.iter().for_each(|angle| write!(text, ",{:.4}", angle.to_degrees()).unwrap());
     placed.force.iter().for_each(|value| write!(text, ",{value:.4}").unwrap());
+    for (axis, position) in problem.external_axes.iter().zip(problem.axis_positions(point)) {
+        let shown = if axis.kind == AxisKind::Rail { position * 1e3 } else { position.to_degrees() };
+        write!(text, ",{shown:.4}").unwrap();
+    }
     Some(text + "\n")
 }

@@ -1,6 +1,7 @@
 //! Imported rows against the URDF and against the arms that fixtures are made of; what is refused; fixtures with mutations.
 
 mod arms;
+mod collision;
 mod mutations;
 mod program;
 mod refusals;

@@ -220,6 +220,7 @@ impl Robot {
             joint.compliance = compliance.into();
         }
         let robot = Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())?;
+        let robot = robot.mounted(&self.cell_from_base());
         Ok(match self.dynamics() {
             Some(dynamics) => robot.with_dynamics(*dynamics),
             None => robot,

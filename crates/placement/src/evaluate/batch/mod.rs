@@ -200,7 +200,7 @@ impl<'a> BatchEvaluator<'a> {
     fn point_geometry(&self, point: usize, placement: &Placement) -> PointGeometry {
         let g = self.problem.robot.geometry();
         let root_from_base = g.base_from_root.transpose();
-        let workpiece = placement.base_from_workpiece();
+        let workpiece = self.problem.base_from_workpiece(point, placement);
         let path_point = &self.problem.task.points()[point];
         let wrench = &self.problem.task.wrenches()[point];
         let rotation = root_from_base * workpiece.rotation;

@@ -52,6 +52,18 @@ impl StateGrid {
         self.alive[class.index()] = false;
     }
 
+    /// Marks states of a class, by their numbers of beta, as not allowed.
+    pub fn forbid(&mut self, class: PostureClass, betas: impl Iterator<Item = usize>) {
+        let (pad, count) = (self.pad, self.count);
+        let scores = &mut self.scores_mut(class)[pad..pad + count];
+        for beta in betas.filter(|beta| *beta < count) {
+            scores[beta] = f64::INFINITY;
+        }
+        if !scores.iter().any(|score| score.is_finite()) {
+            self.clear(class);
+        }
+    }
+
     /// Scores with their cyclic continuation. m, infinite where not allowed
     pub fn scores(&self, class: PostureClass) -> &[f64] {
         self.row(class, 0)

@@ -1,0 +1,295 @@
+//! An arm in its surroundings: which shapes can meet, and whether they do.
+
+mod build;
+mod motion;
+mod quick;
+#[cfg(test)]
+mod tests;
+
+pub use build::SceneError;
+pub use motion::MotionHit;
+
+use crate::collider::Collider;
+use crate::cover::{Cover, lower_bound};
+use crate::shape::{Attachment, TrackedPoint};
+use crate::surroundings::Surroundings;
+use nalgebra::Vector3;
+use quick::Quick;
+use std::sync::Arc;
+use stead_model::robot::{Pose, Robot};
+
+/// Frames that shapes are attached to: the base, six links, the workpiece, and external axes.
+const FRAMES: usize = 8 + MAX_AXES;
+/// External axes that shapes can be attached to, at the most.
+pub const MAX_AXES: usize = 3;
+const WORKPIECE: usize = 7;
+
+/// Where all that moves stands in one configuration, in the base frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Poses {
+    frames: [Pose<f64>; FRAMES],
+}
+
+impl Poses {
+    /// The arm at its joint angles (rad), and the workpiece at a pose in the base frame (m).
+    pub fn new(robot: &Robot, joints: &[f64; 6], base_from_workpiece: &Pose<f64>) -> Self {
+        let mut frames = [Pose::identity(); FRAMES];
+        frames[1..=6].copy_from_slice(&robot.link_frames(joints));
+        frames[WORKPIECE] = *base_from_workpiece;
+        Self { frames }
+    }
+
+    /// The flange and the workpiece at poses in one frame (m), for pairs of these two alone: all else is left at the origin.
+    pub fn of_tool(base_from_flange: &Pose<f64>, base_from_workpiece: &Pose<f64>) -> Self {
+        let mut frames = [Pose::identity(); FRAMES];
+        frames[6] = *base_from_flange;
+        frames[WORKPIECE] = *base_from_workpiece;
+        Self { frames }
+    }
+
+    /// The same with what stands in the cell at a pose in the base frame: where an external axis carries the robot.
+    pub fn with_cell(mut self, base_from_cell: Pose<f64>) -> Self {
+        self.frames[0] = base_from_cell;
+        self
+    }
+
+    /// The same with what an external axis carries at a pose in the base frame.
+    pub fn with_axis(mut self, number: usize, base_from_axis: Pose<f64>) -> Self {
+        if number < MAX_AXES {
+            self.frames[8 + number] = base_from_axis;
+        }
+        self
+    }
+
+    /// The pose of what shapes are attached to, in the base frame.
+    pub fn of(&self, attached: Attachment) -> &Pose<f64> {
+        &self.frames[frame(attached)]
+    }
+}
+
+fn frame(attached: Attachment) -> usize {
+    match attached {
+        Attachment::Base => 0,
+        Attachment::Link(number) => usize::from(number).clamp(1, 6),
+        Attachment::Flange => 6,
+        Attachment::Workpiece => WORKPIECE,
+        Attachment::Axis(number) => 8 + usize::from(number).min(MAX_AXES - 1),
+    }
+}
+
+/// What the distance of a pair depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PairKind {
+    /// On path point and free angle alone: spindle, holder or link 6 against part or fixture.
+    ToolWorkpiece,
+    /// On the placement alone: part or fixture against what stands in the cell.
+    WorkpieceCell,
+    /// On joints 2 to 6 alone: links and spindle among themselves.
+    ArmArm,
+    /// On the joints: links and spindle against what stands in the cell, and points of the arm against zones.
+    ArmCell,
+    /// On joints and placement: links 1 to 5 against part or fixture.
+    ArmWorkpiece,
+}
+
+impl PairKind {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::ToolWorkpiece, Self::WorkpieceCell, Self::ArmArm, Self::ArmCell, Self::ArmWorkpiece];
+    /// Those that depend on more than the placement.
+    pub const OF_STATES: [Self; 4] = [Self::ToolWorkpiece, Self::ArmArm, Self::ArmCell, Self::ArmWorkpiece];
+}
+
+/// A shape made ready.
+#[derive(Debug, Clone)]
+struct Body {
+    frame: usize,
+    collider: Collider,
+    cover: Cover,
+    /// From the frame of its attachment to that of the box of its cover.
+    box_from_attachment: Pose<f64>,
+}
+
+/// Two shapes that can meet, or a point of the arm and a zone.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    /// Their names.
+    pub names: Arc<[String; 2]>,
+    /// What their distance depends on.
+    pub kind: PairKind,
+    /// The distance that they have to keep. m
+    pub required: f64,
+    members: Members,
+    /// Whether turning joints 4 and 6 by half a turn and joint 5 to the other side, which leaves the tool where it is, changes the
+    /// distance: something is attached to link 4 or 5.
+    pub knows_flips: bool,
+    /// By how much the two can come nearer for each radian of a joint, at the most. m
+    reach: [f64; 6],
+}
+
+impl std::fmt::Display for Pair {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} and {}", self.names[0], self.names[1])
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Members {
+    /// The spheres of the first are held against the box of the second.
+    Bodies(usize, usize),
+    Zone(usize, TrackedPoint),
+}
+
+/// The least room that a configuration leaves between two shapes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clearance {
+    /// Their distance; zero or less where they touch. m
+    pub distance: f64,
+    /// Number of the pair ([`Scene::pair`]).
+    pub pair: usize,
+}
+
+/// An arm with the shapes on it and around it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    surroundings: Surroundings,
+    robot: Robot,
+    flange_from_tool: Pose<f64>,
+    bodies: Vec<Body>,
+    pairs: Vec<Pair>,
+}
+
+impl PartialEq for Scene {
+    fn eq(&self, other: &Self) -> bool {
+        self.surroundings == other.surroundings
+            && self.robot == other.robot
+            && self.flange_from_tool == other.flange_from_tool
+    }
+}
+
+/// Distances above this are not told apart. m
+pub const FAR: f64 = 1.0;
+
+impl Scene {
+    /// The shapes and zones.
+    pub fn surroundings(&self) -> &Surroundings {
+        &self.surroundings
+    }
+
+    /// All pairs that can meet.
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs
+    }
+
+    /// A pair by its number; `None` where there is none.
+    pub fn pair(&self, number: usize) -> Option<&Pair> {
+        self.pairs.get(number)
+    }
+
+    /// Links, from 1 to 5, that no shape is attached to: the arm is not checked there.
+    pub fn unchecked_links(&self) -> Vec<u8> {
+        let has_shape = |link: u8| self.bodies.iter().any(|body| body.frame == usize::from(link));
+        (1..=5).filter(|link| !has_shape(*link)).collect()
+    }
+
+    /// The arm at its joint angles (rad), and the workpiece at a pose in the base frame (m).
+    pub fn poses(&self, joints: &[f64; 6], base_from_workpiece: &Pose<f64>) -> Poses {
+        Poses::new(&self.robot, joints, base_from_workpiece)
+    }
+
+    /// The first pair of some kinds that is nearer than it may be: covers first, then the shapes themselves.
+    pub fn first_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
+        let quick = Quick::new(self, poses);
+        (0..self.pairs.len()).find(|number| {
+            let pair = &self.pairs[*number];
+            kinds.contains(&pair.kind) && !quick.keeps_apart(self, pair) && !self.keeps_apart(*number, poses)
+        })
+    }
+
+    /// A pair of some kinds that is nearer than it may be: `likely` is looked at first, since what hits in one state often hits in the
+    /// next.
+    pub fn any_hit(&self, poses: &Poses, kinds: &[PairKind], likely: Option<usize>) -> Option<usize> {
+        let is_hit = |number: &usize| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses);
+        likely.filter(is_hit).or_else(|| self.first_hit(poses, kinds))
+    }
+
+    /// The first such pair by the covers alone, which may refuse what the shapes allow.
+    pub fn first_covered_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
+        let is_hit = |pair: &Pair| self.bound(pair, poses, pair.required) < pair.required;
+        (0..self.pairs.len()).find(|number| kinds.contains(&self.pairs[*number].kind) && is_hit(&self.pairs[*number]))
+    }
+
+    /// Whether a pair is as far apart as it has to be.
+    pub fn keeps_apart(&self, number: usize, poses: &Poses) -> bool {
+        let pair = &self.pairs[number];
+        let is_apart = |distance: f64| distance >= pair.required && !self.is_touching(number, distance);
+        is_apart(self.bound(pair, poses, pair.required.max(f64::MIN_POSITIVE)))
+            || is_apart(self.distance(number, poses, pair.required.max(f64::MIN_POSITIVE)))
+    }
+
+    /// Whether a distance means that two shapes touch; a point may lie on the edge of a zone.
+    fn is_touching(&self, number: usize, distance: f64) -> bool {
+        distance <= 0.0 && matches!(self.pairs[number].members, Members::Bodies(..))
+    }
+
+    /// A lower bound of the distance of a pair by its covers, where it is below `enough`; else a value not below that. m
+    fn bound(&self, pair: &Pair, poses: &Poses, enough: f64) -> f64 {
+        match pair.members {
+            Members::Bodies(a, b) => {
+                let (a, b) = (&self.bodies[a], &self.bodies[b]);
+                lower_bound(&a.cover, &poses.frames[a.frame], &b.cover, &poses.frames[b.frame], enough)
+            }
+            Members::Zone(zone, point) => self.zone_distance(zone, point, poses),
+        }
+    }
+
+    /// The distance of a pair, where it is below `limit`; else a value not below that. m
+    pub fn distance(&self, number: usize, poses: &Poses, limit: f64) -> f64 {
+        match self.pairs[number].members {
+            Members::Bodies(a, b) => {
+                let (a, b) = (&self.bodies[a], &self.bodies[b]);
+                a.collider.distance(&poses.frames[a.frame], &b.collider, &poses.frames[b.frame], limit)
+            }
+            Members::Zone(zone, point) => self.zone_distance(zone, point, poses),
+        }
+    }
+
+    fn zone_distance(&self, zone: usize, point: TrackedPoint, poses: &Poses) -> f64 {
+        let point = self.tracked(point, poses);
+        self.surroundings.zones()[zone].zone.distance(&poses.frames[0].inverse().point(&point))
+    }
+
+    /// Where a tracked point of the arm is, in the base frame. m
+    fn tracked(&self, point: TrackedPoint, poses: &Poses) -> Vector3<f64> {
+        match point {
+            TrackedPoint::Tool => poses.frames[6].point(&self.flange_from_tool.translation),
+            TrackedPoint::Wrist => poses.frames[4].translation,
+            TrackedPoint::Elbow => poses.frames[3].translation,
+        }
+    }
+
+    /// The pair of some kinds with the least room beyond what it has to keep; `None` where there is no pair nearer than [`FAR`].
+    pub fn clearance(&self, poses: &Poses, kinds: &[PairKind]) -> Option<Clearance> {
+        let mut bounds: Vec<(f64, usize)> = (0..self.pairs.len())
+            .filter(|number| kinds.contains(&self.pairs[*number].kind))
+            .map(|number| {
+                let pair = &self.pairs[number];
+                (self.bound(pair, poses, f64::INFINITY) - pair.required, number)
+            })
+            .collect();
+        bounds.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best: Option<(f64, Clearance)> = None;
+        for (bound, number) in bounds {
+            let known = best.map_or(FAR, |(margin, _)| margin);
+            if bound >= known {
+                break;
+            }
+            let required = self.pairs[number].required;
+            let distance = self.distance(number, poses, known + required);
+            if distance - required < known {
+                best = Some((distance - required, Clearance { distance, pair: number }));
+            }
+        }
+        best.map(|(_, clearance)| clearance)
+    }
+}

@@ -1,0 +1,161 @@
+//! Joint motions: whether all pairs keep apart all along.
+//!
+//! No point of a body moves faster than its reach times the speeds of the joints. So two bodies keep apart on a whole interval
+//! where the room that they have at both ends together is not less than what they can move towards each other in between. Where
+//! that does not decide, the interval is halved. In the end nothing moves farther between two states looked at than the
+//! resolution, and both states keep the distance asked for.
+
+use super::{FRAMES, Members, Poses, Scene};
+use stead_model::robot::Pose;
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
+
+/// Where a motion brings two shapes nearer than they may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionHit {
+    /// The share of the motion.
+    pub share: f64,
+    /// Number of the pair.
+    pub pair: usize,
+}
+
+/// The resolution where no clearance is asked for, and at the finest. m
+const FINEST: f64 = 5e-4;
+
+/// What shapes that are not on the arm do in a motion.
+#[derive(Debug, Clone, Copy, Default)]
+struct Drift {
+    /// How far the origin of their frame goes. m
+    length: f64,
+    /// By what angle it turns. rad
+    angle: f64,
+}
+
+/// A motion: straight in the joints, all else moving evenly from one pose to another.
+struct Motion<'a> {
+    from: (&'a [f64; 6], &'a Poses),
+    to: (&'a [f64; 6], &'a Poses),
+    /// Steps of the joints. rad
+    steps: [f64; 6],
+    drifts: [Drift; FRAMES],
+}
+
+impl<'a> Motion<'a> {
+    fn new(from: (&'a [f64; 6], &'a Poses), to: (&'a [f64; 6], &'a Poses)) -> Self {
+        let steps = std::array::from_fn(|j| (to.0[j] - from.0[j]).abs());
+        let drifts = std::array::from_fn(|frame| {
+            let [a, b] = [from.1, to.1].map(|poses| &poses.frames[frame]);
+            if (1..=6).contains(&frame) || a == b {
+                return Drift::default();
+            }
+            let turn = rotation_vector(&(b.rotation * a.rotation.transpose()));
+            Drift { length: (b.translation - a.translation).norm(), angle: turn.norm() }
+        });
+        Self { from, to, steps, drifts }
+    }
+
+    /// Where all stands at a share of the motion.
+    fn at(&self, scene: &Scene, share: f64) -> Poses {
+        let joints: [f64; 6] = std::array::from_fn(|j| self.from.0[j] + (self.to.0[j] - self.from.0[j]) * share);
+        let mut poses = *self.from.1;
+        poses.frames[1..=6].copy_from_slice(&scene.robot.link_frames(&joints));
+        for (frame, drift) in self.drifts.iter().enumerate() {
+            if drift.length == 0.0 && drift.angle == 0.0 {
+                continue;
+            }
+            let [a, b] = [self.from.1, self.to.1].map(|poses| &poses.frames[frame]);
+            let turn = rotation_vector(&(b.rotation * a.rotation.transpose())) * share;
+            poses.frames[frame] = Pose {
+                rotation: rotation_from_vector(&turn) * a.rotation,
+                translation: a.translation + (b.translation - a.translation) * share,
+            };
+        }
+        poses
+    }
+}
+
+impl Scene {
+    /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than it may be; `None` where all
+    /// pairs keep apart all along. Each end has its joint angles and where all stands there.
+    pub fn motion(&self, from: (&[f64; 6], &Poses), to: (&[f64; 6], &Poses)) -> Option<MotionHit> {
+        let motion = Motion::new(from, to);
+        let mut open = Vec::new();
+        for number in 0..self.pairs.len() {
+            let travel = self.travel(number, &motion);
+            let rooms = [from.1, to.1].map(|poses| self.room(number, poses, travel));
+            for (share, room) in [(0.0, rooms[0]), (1.0, rooms[1])] {
+                if room < 0.0 {
+                    return Some(MotionHit { share, pair: number });
+                }
+            }
+            if rooms[0] + rooms[1] < travel {
+                open.push((number, rooms));
+            }
+        }
+        if open.is_empty() { None } else { self.halved(&motion, (0.0, 1.0), &open) }
+    }
+
+    /// The same between two shares of a motion, for pairs that are open there, with their room at both.
+    fn halved(&self, motion: &Motion<'_>, (start, end): (f64, f64), open: &[(usize, [f64; 2])]) -> Option<MotionHit> {
+        let middle = (start + end) / 2.0;
+        let poses = motion.at(self, middle);
+        let mut halves = [Vec::new(), Vec::new()];
+        for (number, rooms) in open {
+            let travel = self.travel(*number, motion) * (end - start) / 2.0;
+            let room = self.room(*number, &poses, travel);
+            if room < 0.0 {
+                return Some(MotionHit { share: middle, pair: *number });
+            }
+            if travel <= self.pairs[*number].required.max(FINEST) {
+                continue;
+            }
+            for (half, ends) in halves.iter_mut().zip([[rooms[0], room], [room, rooms[1]]]) {
+                if ends[0] + ends[1] < travel {
+                    half.push((*number, ends));
+                }
+            }
+        }
+        for (half, interval) in halves.iter().zip([(start, middle), (middle, end)]) {
+            if !half.is_empty() {
+                let hit = self.halved(motion, interval, half);
+                if hit.is_some() {
+                    return hit;
+                }
+            }
+        }
+        None
+    }
+
+    /// The room of a pair beyond the distance that it has to keep, where it is below `enough`; else a value not below that. Where
+    /// shapes touch it is less than nothing. m
+    fn room(&self, number: usize, poses: &Poses, enough: f64) -> f64 {
+        let pair = &self.pairs[number];
+        let wanted = (enough + pair.required).max(f64::MIN_POSITIVE);
+        let bound = self.bound(pair, poses, wanted);
+        let distance = if bound >= wanted { bound } else { self.distance(number, poses, wanted) };
+        if self.is_touching(number, distance) {
+            (distance - pair.required).min(-f64::MIN_POSITIVE)
+        } else {
+            distance - pair.required
+        }
+    }
+
+    /// How far the two of a pair can move towards each other in a motion. m
+    fn travel(&self, number: usize, motion: &Motion<'_>) -> f64 {
+        let pair = &self.pairs[number];
+        let by_joints: f64 = pair.reach.iter().zip(motion.steps).map(|(reach, step)| reach * step).sum();
+        let of = |frame: usize, farthest: f64| {
+            let drift = motion.drifts[frame];
+            drift.length + drift.angle * farthest
+        };
+        by_joints
+            + match pair.members {
+                Members::Bodies(a, b) => {
+                    [a, b].iter().map(|body| of(self.bodies[*body].frame, self.bodies[*body].cover.farthest())).sum()
+                }
+                // A zone turns with the cell about the base: no point of the arm is farther from that than its reach and spindle.
+                Members::Zone(..) => {
+                    of(0, self.robot.geometry().reach() + self.flange_from_tool.translation.norm() + 1.0)
+                }
+            }
+    }
+}

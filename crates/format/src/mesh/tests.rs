@@ -1,0 +1,105 @@
+use super::*;
+
+const BINARY: &[u8] = include_bytes!("fixtures/wedge.stl");
+const ASCII: &str = include_str!("fixtures/wedge-ascii.stl");
+const OBJ: &str = include_str!("fixtures/wedge.obj");
+const HOUSE: &str = include_str!("fixtures/house.obj");
+
+fn read(file: &str, bytes: &[u8]) -> Result<TriangleMesh, String> {
+    read_mesh(file.as_ref(), bytes, MeshUnit::Millimetre).map_err(|error| error.to_string())
+}
+
+/// The area. m^2
+fn area(mesh: &TriangleMesh) -> f64 {
+    let corners = |t: &[u32; 3]| t.map(|number| mesh.vertices()[number as usize]);
+    mesh.triangles().iter().map(corners).map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum()
+}
+
+#[test]
+fn one_wedge_in_four_files_is_one_mesh() {
+    let files: [(&str, &[u8]); 4] =
+        [("a.stl", BINARY), ("a.STL", ASCII.as_bytes()), ("a.obj", OBJ.as_bytes()), ("a.OBJ", HOUSE.as_bytes())];
+    for (file, bytes) in files {
+        let mesh = read(file, bytes).unwrap();
+        assert!(mesh.is_closed(), "{file}");
+        assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (6, 8), "{file}");
+        let slope = libm::hypot(100.0, 40.0);
+        assert!((area(&mesh) * 1e6 - (100.0 * 60.0 + 40.0 * 60.0 + 100.0 * 40.0 + slope * 60.0)).abs() < 1e-6);
+        assert!((volume(&mesh) * 1e9 - 0.5 * 100.0 * 40.0 * 60.0).abs() < 1e-6, "{file}");
+    }
+    let metres = read_mesh("a.stl".as_ref(), BINARY, MeshUnit::Metre).unwrap();
+    assert_eq!(metres.vertices()[2].x, 100.0);
+}
+
+#[test]
+fn what_is_no_stl_is_refused_where_it_stops_being_one() {
+    let changed = |from: &str, to: &str| ASCII.replacen(from, to, 1);
+    for (text, parts) in [
+        (String::new(), &["a.stl: is too short", "found 0 bytes"][..]),
+        (
+            "some text about a part, long enough to have a count of triangles in it, as it were, in its 84 bytes"
+                .to_owned(),
+            &["not as long as its"],
+        ),
+        ("solid a\nendsolid a\n".to_owned(), &["has no triangles"]),
+        (changed("endsolid wedge", ""), &[":57:", "cut off", "endsolid"]),
+        (changed("vertex 0 0 0e0", "vertex 0 nan 0"), &[":4:", "three finite numbers", "found 'vertex 0 nan 0'"]),
+        (changed("vertex 0 0 0e0", "vertex 0 0"), &[":4:", "three finite numbers"]),
+        (changed("vertex 0 0 0e0", "vertex 0 0 0 0"), &[":4:", "three finite numbers"]),
+        (changed("vertex 0 0 0e0", "vertex 0 1e7 0"), &["beyond 1000 m in vertex 1", "found 10000000", "unit"]),
+        (changed("vertex 0 0 0e0", "vortex 0 0 0"), &[":4:", "not what an STL has here", "found 'vortex 0 0 0'"]),
+        (changed("      vertex 0 0 0e0\n", ""), &[":6:", "three vertices", "found 'endloop'"]),
+        (changed("    outer loop\n", ""), &[":3:", "not what an STL has here"]),
+    ] {
+        let message = read("a.stl", text.as_bytes()).unwrap_err();
+        for part in parts.iter().chain(&["a.stl", "; allowed: "]) {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+    }
+    let mut bytes = BINARY.to_vec();
+    bytes.truncate(300);
+    let message = read("a.stl", &bytes).unwrap_err();
+    assert!(message.contains("cut off") && message.contains("found 300 bytes; allowed: 484 bytes"), "{message}");
+    let mut bytes = BINARY.to_vec();
+    // The first coordinate of the second triangle.
+    bytes[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
+    let message = read("a.stl", &bytes).unwrap_err();
+    assert!(message.contains("not a finite number in triangle 2, found NaN; allowed: "), "{message}");
+}
+
+#[test]
+fn what_is_no_obj_is_refused_where_it_stops_being_one() {
+    let changed = |from: &str, to: &str| OBJ.replacen(from, to, 1);
+    for (text, parts) in [
+        (String::new(), &["has no faces"][..]),
+        (changed("v 0 0 0", "v 0 0 inf"), &[":4:", "three finite numbers", "found 'v 0 0 inf'"]),
+        (changed("v 0 0 0", "v 0 0"), &[":4:", "three finite numbers"]),
+        (changed("f 1 4 3 2", "f 1 4"), &[":14:", "fewer than three corners"]),
+        (changed("f 1 4 3 2", "f 1 4 0"), &[":14:", "names a vertex that there cannot be"]),
+        (changed("f 1 4 3 2", "f 1 4 -7"), &[":14:", "names a vertex that there cannot be"]),
+        (changed("f 1 4 3 2", "f 1 4 7"), &[":14:", "names vertex 7, and there are 6"]),
+        (changed("f 1 4 3 2", "f 1 4 x"), &[":14:", "names a vertex that there cannot be"]),
+        (changed("s off", "curv 0 1 1 2"), &[":13:", "is a statement that is not read", "found 'curv 0 1 1 2'"]),
+    ] {
+        let message = read("a.obj", text.as_bytes()).unwrap_err();
+        for part in parts.iter().chain(&["a.obj", "; allowed: "]) {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+    }
+}
+
+/// Triangles that face inwards are turned, so that the inside of a closed mesh is inside.
+#[test]
+fn a_closed_mesh_faces_outwards_whatever_the_file_says() {
+    let turned: String = HOUSE.lines().fold(String::new(), |text, line| match line.strip_prefix("f ") {
+        Some(corners) if !corners.ends_with('\\') => {
+            let words: Vec<&str> = corners.split(' ').rev().collect();
+            format!("{text}f {}\n", words.join(" "))
+        }
+        _ => format!("{text}{line}\n"),
+    });
+    // The face that goes on in the next line.
+    let turned = turned.replacen("f -6 -3 \\\n  -4 -5", "f -5 -4 -3 -6", 1);
+    let mesh = read("a.obj", turned.as_bytes()).unwrap();
+    assert!(mesh.is_closed() && (volume(&mesh) * 1e9 - 120_000.0).abs() < 1e-6);
+}

@@ -1,0 +1,83 @@
+//! The ways in which the part may lie: `[cell] orientations` and `orientation`.
+
+use super::tables::CellTable;
+use crate::input::InputError;
+use crate::orientation::{Quaternion, orientation_keys};
+use crate::place::Place;
+use crate::shapes::{Matrix, Vector};
+use crate::units::Deg;
+use nalgebra::Matrix3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use stead_model::task::Task;
+use stead_placement::setup::Orientation;
+
+/// A way in which the part may lie: turned before it is placed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrientationTable {
+    /// Its name, as results and `--orientation` have it.
+    pub name: String,
+    /// Rotation from the workpiece frame of the task to the frame that is placed, by rows; at most one of this and the four keys
+    /// below, as in the task where none is there.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
+}
+
+/// What a name is.
+pub(super) const NAME: &str = "a text on one line that is not empty";
+
+/// Whether a text may be the name of something.
+pub(super) fn is_name(name: &str) -> bool {
+    !name.trim().is_empty() && !name.chars().any(char::is_control)
+}
+
+impl CellTable {
+    /// The orientations of the part among which one is chosen: all that are listed, or the one that is named; none where none is listed.
+    ///
+    /// # Errors
+    /// [`InputError`] for an empty list, a name that is there twice or is none, a rotation that is none, and the name of an orientation that
+    /// is not in the list.
+    pub(super) fn orientations(&self, task: &Task, at: &Place<'_>) -> Result<Arc<[Orientation]>, InputError> {
+        let list = at.key("orientations");
+        let Some(tables) = &self.orientations else {
+            let unlisted =
+                || at.key("orientation").error("names an orientation, and none is listed", "orientations beside it");
+            return if self.orientation.is_some() { Err(unlisted()) } else { Ok([].into()) };
+        };
+        if tables.is_empty() {
+            return Err(list.error("is empty", "one orientation or more: { name = \"..\", rpy_deg = [..] }"));
+        }
+        let mut found: Vec<Orientation> = Vec::with_capacity(tables.len());
+        for (table, number) in tables.iter().zip(1..) {
+            let at = list.element(number);
+            if !is_name(&table.name) {
+                return Err(at.key("name").error("is no name", NAME));
+            }
+            if found.iter().any(|known| known.name == table.name) {
+                return Err(at.key("name").error("is there twice", "a name of its own for each orientation"));
+            }
+            let keys = orientation_keys!(table);
+            let rotation = if keys.is_given() { keys.rotation(&at)? } else { Matrix3::identity() };
+            let is_as_in_the_task = rotation == Matrix3::identity();
+            let task = Arc::new(if is_as_in_the_task { task.clone() } else { task.turned(&rotation) });
+            found.push(Orientation { name: table.name.clone(), rotation, task });
+        }
+        if let Some(name) = &self.orientation {
+            let names: Vec<String> = found.iter().map(|known| format!("\"{}\"", known.name)).collect();
+            found.retain(|known| known.name == *name);
+            if found.is_empty() {
+                return Err(at.key("orientation").error("is not among the orientations", names.join(", ")));
+            }
+        }
+        Ok(found.into())
+    }
+}

@@ -1,0 +1,175 @@
+//! What stands around a robot and on it, from the tables of a run file and of the file that its key `surroundings` names.
+
+mod notes;
+mod solid;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+pub use tables::{
+    CapsuleTable, CollisionTable, CylinderTable, HalfSpaceTable, KeepOutTable, ShapeTable, SurroundingsFile,
+};
+
+use crate::input::{InputError, InputFile};
+use crate::place::Place;
+use std::sync::Arc;
+use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
+use stead_model::robot::{Robot, Spindle};
+pub(crate) use tables::{CLEARANCE, attachment};
+
+/// The scene of a run, where it has one.
+#[derive(Debug, Default)]
+pub(crate) struct SceneRead {
+    pub scene: Option<Arc<Scene>>,
+    /// The files that it was read from.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know of it, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// The tables of one file, with the place of the table that they are in.
+struct Part<'a> {
+    tables: SurroundingsFile,
+    at: Place<'a>,
+}
+
+/// The role of mesh files among the inputs of a run.
+pub(crate) const MESH: &str = "mesh";
+
+/// The scene of a run file: the shapes and zones of its own tables and of the file that it names, joined with its arm.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a shape or zone that cannot be, a mesh that cannot be read, two of one name, a pair of
+/// unknown names, a clearance that is stated twice or for nothing, shapes that touch in every posture.
+pub(crate) fn read_scene(
+    own: SurroundingsFile,
+    at: &Place<'_>,
+    robot: &Robot,
+    spindle: &Spindle,
+) -> Result<SceneRead, InputError> {
+    let named = at.key("surroundings");
+    let mut read = SceneRead::default();
+    let source = if named.is_given() { Some(named.named_toml("surroundings")?) } else { None };
+    let document = source.as_ref().map(|(source, _)| source.parse()).transpose()?;
+    let mut parts = Vec::new();
+    if let (Some((_, input)), Some(document)) = (&source, &document) {
+        read.inputs.push(input.clone());
+        parts.push(Part { tables: document.read()?, at: document.root() });
+    }
+    parts.push(Part { tables: own, at: at.clone() });
+    let Some(around) = surroundings(&parts, &mut read.inputs)? else { return Ok(read) };
+    let scene = Scene::new(robot, &spindle.flange_from_tool, around).map_err(|error| no_scene(&parts, &error))?;
+    read.notes = notes::notes(&scene, robot, spindle);
+    read.scene = Some(Arc::new(scene));
+    Ok(read)
+}
+
+/// All shapes and zones; the mesh files read are added to the inputs. Nothing where there are none.
+fn surroundings(parts: &[Part<'_>], inputs: &mut Vec<InputFile>) -> Result<Option<Surroundings>, InputError> {
+    let (mut shapes, mut zones, mut ignored) = (Vec::new(), Vec::new(), Vec::new());
+    let mut clearance: Option<f64> = None;
+    for Part { tables, at } in parts {
+        for (table, number) in tables.shape.iter().flatten().zip(1..) {
+            let at = at.key("shape").element(number);
+            let (attached, pose) = table.attached_at(&at)?;
+            let (solid, file) = table.solid(&at)?;
+            inputs.extend(file.filter(|file| !inputs.contains(file)));
+            shapes.push(Shape { name: table.name.clone(), attached, solid, pose });
+        }
+        for (table, number) in tables.keep_out.iter().flatten().zip(1..) {
+            zones.push(table.keep_out(&at.key("keep_out").element(number))?);
+        }
+        let Some(collision) = &tables.collision else { continue };
+        if let (Some(_), Some(_)) = (clearance, collision.clearance()) {
+            let at = at.key("collision").key("clearance_mm");
+            return Err(at.error(
+                "is stated in another file too",
+                "collision.clearance_mm in the run file or in its surroundings",
+            ));
+        }
+        clearance = clearance.or(collision.clearance());
+        ignored.extend(collision.ignored());
+    }
+    if shapes.is_empty() && zones.is_empty() {
+        return match parts.iter().find(|part| part.at.key("collision").is_given()) {
+            Some(part) => {
+                let at = part.at.key("collision");
+                Err(at
+                    .error("is there without anything that could collide", "[[shape]] or [[keep_out]] beside it")
+                    .found_if(None))
+            }
+            None => Ok(None),
+        };
+    }
+    let around = Surroundings::new(shapes, zones, clearance.unwrap_or(CLEARANCE), ignored);
+    around.map(Some).map_err(|error| no_surroundings(parts, &error))
+}
+
+/// The places of all shapes and zones of a name, in the order of the files.
+fn named<'a>(parts: &'a [Part<'a>], name: &'a str) -> impl Iterator<Item = Place<'a>> {
+    parts.iter().flat_map(move |Part { tables, at }| {
+        let shapes = tables.shape.iter().flatten().map(|table| &table.name).zip(1..).map(|entry| ("shape", entry));
+        let zones = tables.keep_out.iter().flatten().map(|table| &table.name).zip(1..).map(|entry| ("keep_out", entry));
+        let of_name = shapes.chain(zones).filter(move |(_, (known, _))| *known == name);
+        of_name.map(move |(key, (_, number))| at.key(key).element(number))
+    })
+}
+
+/// The first table `[collision]`, or where it would be.
+fn collision<'a>(parts: &'a [Part<'a>]) -> Option<Place<'a>> {
+    let mut places = parts.iter().map(|part| part.at.key("collision"));
+    places.clone().find(Place::is_given).or_else(|| places.next())
+}
+
+/// What is wrong with all together, at its place.
+fn no_surroundings(parts: &[Part<'_>], error: &SurroundingsError) -> InputError {
+    match error {
+        SurroundingsError::SameName(name) => {
+            let place = named(parts, name).last().map(|place| place.key("name"));
+            located(place, "is the name of another shape or zone too", "a name that no other has")
+        }
+        SurroundingsError::UnknownName(name) => {
+            let place = parts.iter().find_map(|part| {
+                let at = part.at.key("collision").key("ignore");
+                let pairs = part.tables.collision.iter().flat_map(|table| table.ignored()).zip(1..);
+                let found =
+                    pairs.filter_map(|(pair, number)| Some((number, pair.iter().position(|known| known == name)? + 1)));
+                found.map(|(pair, side)| at.element(pair).element(side)).next()
+            });
+            let names = parts.iter().flat_map(|part| part.tables.shape.iter().flatten());
+            let known: Vec<&str> = names.map(|table| table.name.as_str()).take(20).collect();
+            let allowed = format!("names of shapes ({}), or what shapes are attached to", known.join(", "));
+            located(place, "is no shape, and nothing is attached to it", &allowed)
+        }
+        SurroundingsError::Clearance => located(collision(parts), &error.to_string(), "a clearance not below 0"),
+    }
+}
+
+/// Why shapes and arm are no scene, at the shape.
+fn no_scene(parts: &[Part<'_>], error: &SceneError) -> InputError {
+    match error {
+        SceneError::FlatHull(name) => {
+            let place = named(parts, name).next().map(|place| place.key("hull"));
+            located(
+                place,
+                "has all its vertices in a plane, so that they have no hull",
+                "mesh in place of hull, or another file",
+            )
+        }
+        SceneError::AlwaysTouching(pairs) => {
+            let place = pairs.first().and_then(|[first, _]| named(parts, first).next());
+            let lines: Vec<String> = pairs.iter().map(|pair| format!("[{:?}, {:?}]", pair[0], pair[1])).collect();
+            let allowed = format!("room between them, or [collision] ignore = [{}]", lines.join(", "));
+            let touch: Vec<String> = pairs.iter().map(|[a, b]| format!("{a:?} and {b:?}")).collect();
+            let problem = format!("is nearer than the clearance in every posture tried: {}", touch.join(", "));
+            located(place, &problem, &allowed).found_if(None)
+        }
+    }
+}
+
+fn located(place: Option<Place<'_>>, problem: &str, allowed: &str) -> InputError {
+    match place {
+        Some(place) => place.error(problem, allowed),
+        None => InputError::new("".as_ref(), problem).allowed(allowed),
+    }
+}

@@ -1,0 +1,95 @@
+//! The file of surroundings of an imported arm.
+
+use super::collision::{LinkShape, LinkShapes};
+use super::xml::one_line;
+use crate::mesh::MeshUnit;
+use nalgebra::Vector3;
+use std::fmt::Write;
+use std::path::{Component, Path, PathBuf};
+use stead_cell::Solid;
+use stead_numerics::rotation::quaternion_from_rotation;
+use toml::Value;
+
+/// The text of a file of surroundings at a path, from whose folder mesh files are named; `urdf` is the file that they come from.
+pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
+    let mut text = format!(
+        "# The links of an arm, by `stead import robot --collision` from {}: its <collision> shapes in the frames of the rows.\n\
+         # A run file takes it by surroundings = \"{}\"; fence, table and spindle are added beside it.\n",
+        one_line(urdf),
+        one_line(&file.file_name().unwrap_or_default().to_string_lossy()),
+    );
+    links.shapes.iter().for_each(|link| shape(&mut text, link, file));
+    if !links.ignored.is_empty() {
+        text.push_str(
+            "\n# These touch in every posture tried, or at joint values zero of the URDF.\n[collision]\nignore = [\n",
+        );
+        for [a, b] in &links.ignored {
+            let _ = writeln!(text, "    [{}, {}],", Value::from(a.as_str()), Value::from(b.as_str()));
+        }
+        text.push_str("]\n");
+    }
+    text
+}
+
+/// Writing to a text cannot fail.
+fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
+    let _ =
+        writeln!(text, "\n[[shape]]\nname = {}\nattached = \"{}\"", Value::from(shape.name.as_str()), shape.attached);
+    let round = |radius: f64, length: f64| format!("{{ radius = {:?}, length = {:?} }}", mm(radius), mm(length));
+    let _ = match &shape.solid {
+        Solid::Box(edges) => writeln!(text, "box_mm = {}", vector(edges)),
+        Solid::Cylinder { radius, length } => writeln!(text, "cylinder_mm = {}", round(*radius, *length)),
+        Solid::Capsule { radius, length } => writeln!(text, "capsule_mm = {}", round(*radius, *length)),
+        Solid::Hull(_) | Solid::Mesh(_) => {
+            let key = if matches!(shape.solid, Solid::Hull(_)) { "hull" } else { "mesh" };
+            let (path, unit) = file
+                .as_ref()
+                .map_or(("", MeshUnit::Millimetre), |(path, unit)| (path.as_path().to_str().unwrap_or(""), *unit));
+            let name = relative(out.parent().unwrap_or(Path::new("")), Path::new(path));
+            let unit = if unit == MeshUnit::Metre { "\nunit = \"m\"" } else { "" };
+            writeln!(text, "{key} = {}{unit}", Value::from(name))
+        }
+    };
+    let _ = writeln!(text, "xyz_mm = {}", vector(&shape.pose.translation));
+    let turn = quaternion_from_rotation(&shape.pose.rotation).map(|value| (value * 1e15).round() / 1e15 + 0.0);
+    if turn != [1.0, 0.0, 0.0, 0.0] {
+        let _ = writeln!(text, "quaternion_wxyz = {turn:?}");
+    }
+}
+
+/// A length in mm, to 1e-9 mm.
+fn mm(value: f64) -> f64 {
+    (value * 1e12).round() / 1e9 + 0.0
+}
+
+fn vector(value: &Vector3<f64>) -> String {
+    format!("{:?}", [value.x, value.y, value.z].map(mm))
+}
+
+/// A path as it is named from a folder, with forward slashes; as it is where the two have nothing in common.
+fn relative(folder: &Path, file: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let (folder, file) = (absolute(folder), absolute(file));
+    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+    let has_common = folder.components().take(common).any(|part| matches!(part, Component::RootDir));
+    let named: PathBuf = if has_common {
+        let up = folder.components().skip(common).map(|_| Component::ParentDir);
+        up.chain(file.components().skip(common)).collect()
+    } else {
+        file
+    };
+    named.to_string_lossy().replace('\\', "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_named_from_the_folder_of_the_file() {
+        let named = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
+        assert_eq!(named("my", "my/meshes/a.stl"), "meshes/a.stl");
+        assert_eq!(named("my/cells", "robots/a.stl"), "../../robots/a.stl");
+        assert_eq!(named("", "a.stl"), "a.stl");
+    }
+}

@@ -1,0 +1,158 @@
+//! Collisions of states and plans: whether the shapes of the scene keep their distance.
+//!
+//! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made as if nothing stood around, and
+//! looked at; what hits is forbidden, and the plan made again ([`crate::redundancy`]). Forbidding states makes no plan cheaper, so a
+//! plan that is free is as good as if all states had been looked at.
+
+use crate::constraints::Measured;
+use crate::outcome::PlanPoint;
+use crate::problem::{Placement, Problem};
+use crate::redundancy::SegmentPlan;
+use std::ops::Range as Span;
+use std::sync::Arc;
+use stead_cell::{Clearance, PairKind, Poses, Scene};
+use stead_model::robot::Posture;
+
+/// A state of a plan in which two shapes are nearer than they may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanHit {
+    /// The path point; of a hit between two points the later one.
+    pub point: usize,
+    /// Whether it is on the way from the point before.
+    pub is_between: bool,
+    /// Number of the pair in the scene.
+    pub pair: usize,
+}
+
+/// The least room at the points of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanClearance {
+    /// The path point.
+    pub point: usize,
+    /// The distance of the pair; zero or less where the two touch. m
+    pub distance: f64,
+    /// Their names.
+    pub names: Arc<[String; 2]>,
+}
+
+impl Problem {
+    /// The point of a plan at which a pair has the least room beyond what it has to keep.
+    pub(crate) fn plan_clearance(&self, points: &[PlanPoint]) -> Option<PlanClearance> {
+        let scene = self.scene.as_deref()?;
+        let rooms = points.iter().filter_map(|point| {
+            let clearance = point.clearance?;
+            let pair = scene.pair(clearance.pair)?;
+            Some((clearance.distance - pair.required, point.point, clearance.distance, pair.names.clone()))
+        });
+        let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(PlanClearance { point, distance, names })
+    }
+
+    /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the base frame, in which
+    /// the cell moves the other way where an external axis carries the robot.
+    pub(crate) fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {
+        let poses = scene.poses(joints, &self.base_from_part(point, placement));
+        if self.external_axes.is_empty() { poses } else { poses.with_cell(self.cell_from_carriage(point).inverse()) }
+    }
+
+    /// The first pair that is nearer than it may be whatever the arm does, for the workpiece at a placement; `None` also where there is
+    /// no scene.
+    pub fn placement_hit(&self, placement: &Placement) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        let joints = self.robot.mid_range();
+        // Axes move the part along the path; without them all points are alike.
+        let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
+        let hit = |point| scene.first_hit(&self.poses(scene, point, placement, &joints), &[PairKind::WorkpieceCell]);
+        (0..points).find_map(hit)
+    }
+
+    /// The first pair that is nearer than it may be at a path point with the arm at joint angles (rad); `None` also where there is no scene.
+    pub fn state_hit(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        scene.first_hit(&self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
+    }
+
+    /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
+    pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
+        self.likely_hit((point, beta), placement, posture, None)
+    }
+
+    /// Any such pair: `likely` is looked at first.
+    pub(crate) fn likely_hit(
+        &self,
+        (point, beta): (usize, f64),
+        placement: &Placement,
+        posture: Posture,
+        likely: Option<usize>,
+    ) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
+        scene.any_hit(&self.poses(scene, point, placement, &joints), &PairKind::OF_STATES, likely)
+    }
+
+    /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.
+    pub fn state_clearance(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Clearance> {
+        let scene = self.scene.as_deref()?;
+        scene.clearance(&self.poses(scene, point, placement, joints), &PairKind::ALL)
+    }
+
+    /// The same as a constraint: that of the pair with the least room; `None` where there is no scene, or nothing is near.
+    pub fn clearance_constraint(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Measured> {
+        let scene = self.scene.as_deref()?;
+        let Clearance { distance, pair } = self.state_clearance(point, placement, joints)?;
+        let pair = scene.pair(pair)?;
+        Some(Measured::Clearance { names: pair.names.clone(), distance, required: pair.required })
+    }
+
+    /// Whether spindle and holder are too near to the part or its fixture at a path point and free angle (rad), wherever the part
+    /// stands.
+    pub fn tool_hits_workpiece(&self, point: usize, beta: f64) -> bool {
+        let Some(scene) = self.scene.as_deref() else { return false };
+        let at_origin = Placement::from([0.0; 4]);
+        let part = self.base_from_part(point, &at_origin);
+        let poses = Poses::of_tool(&self.base_from_flange(point, &at_origin, beta), &part);
+        scene.first_hit(&poses, &[PairKind::ToolWorkpiece]).is_some()
+    }
+
+    /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
+    pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
+        self.path_hits(placement, &plan.points, &plan.joints, with_motions).collect()
+    }
+
+    /// The same of joint angles (rad) at path points of a segment, one after the other.
+    pub(crate) fn path_hits(
+        &self,
+        placement: &Placement,
+        points: &Span<usize>,
+        joints: &[[f64; 6]],
+        with_motions: bool,
+    ) -> impl Iterator<Item = PlanHit> {
+        let mut is_free_before = false;
+        let hit = move |(place, point): (usize, usize)| {
+            let scene = self.scene.as_deref()?;
+            let poses = self.poses(scene, point, placement, &joints[place]);
+            let pair = scene.first_hit(&poses, &PairKind::OF_STATES);
+            let was_free = std::mem::replace(&mut is_free_before, pair.is_none());
+            if let Some(pair) = pair {
+                return Some(PlanHit { point, is_between: false, pair });
+            }
+            if !with_motions || !was_free {
+                return None;
+            }
+            let before = self.poses(scene, point - 1, placement, &joints[place - 1]);
+            let hit = scene.motion((&joints[place - 1], &before), (&joints[place], &poses))?;
+            Some(PlanHit { point, is_between: true, pair: hit.pair })
+        };
+        points.clone().enumerate().filter_map(hit)
+    }
+
+    /// Whether nothing hits along the plans of all segments, between points too.
+    pub fn is_free(&self, placement: &Placement, plans: &[SegmentPlan]) -> bool {
+        self.scene.is_none()
+            || (self.placement_hit(placement).is_none()
+                && plans.iter().all(|plan| self.plan_hits(placement, plan, true).is_empty()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! The lookup table among shapes: a way through a segment is found, its states are looked at, those that hit are forbidden, and the
+//! way is found again ([`crate::redundancy`] does the same with the planner).
+//!
+//! The table does not tell the two flips of the wrist apart, so a state is forbidden where something hits in both.
+
+use super::objective::Workspace;
+use super::polar::PlacedPath;
+use super::{BetaGrid, LookupTable};
+use crate::problem::Placement;
+use crate::redundancy::forbid;
+use std::cell::Cell;
+use std::ops::Range as Span;
+use stead_model::robot::PostureClass;
+
+/// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
+const MAX_ROUNDS: usize = 30;
+
+impl LookupTable<'_> {
+    /// [`LookupTable::best_class`] among the ways in which nothing hits.
+    pub(super) fn best_free_class(
+        &self,
+        placement: &Placement,
+        placed: &PlacedPath,
+        (index, span): (usize, &Span<usize>),
+        asked: &impl Fn(usize) -> bool,
+        grid: &BetaGrid,
+        workspace: &mut Workspace,
+    ) -> Option<(f64, usize)> {
+        for _ in 0..MAX_ROUNDS {
+            let (cost, class) = self.best_class(placed, (index, span), asked, grid, workspace)?;
+            let betas = traced(&workspace.best_costs, &grid.changes[span.clone()], grid.count);
+            let mut is_free = true;
+            for (point, beta) in span.clone().zip(betas) {
+                let likely = Cell::new(None);
+                let hits = |k: usize| self.hits(placement, (point, class), grid.beta(k), &likely);
+                if hits(beta) {
+                    is_free = false;
+                    forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, &mut workspace.forbidden);
+                }
+            }
+            if is_free {
+                return Some((cost, class));
+            }
+        }
+        None
+    }
+
+    /// Whether something hits at a path point in both flips of a posture class, at a free angle (rad); the pair that does is what is
+    /// likely to hit nearby.
+    fn hits(
+        &self,
+        placement: &Placement,
+        (point, class): (usize, usize),
+        beta: f64,
+        likely: &Cell<Option<usize>>,
+    ) -> bool {
+        let [plain, flipped] = PostureClass::ALL[class].postures();
+        let hit = |posture| self.problem.likely_hit((point, beta), placement, posture, likely.get());
+        let Some(pair) = hit(plain) else { return false };
+        likely.set(Some(pair));
+        let knows_flips =
+            self.problem.scene.as_deref().and_then(|scene| scene.pair(pair)).is_some_and(|p| p.knows_flips);
+        !knows_flips || hit(flipped).is_some()
+    }
+}
+
+/// The numbers of beta on the way with the least cost at its end, from the costs after each point.
+fn traced(kept: &[f32], changes: &[crate::redundancy::BetaChange], count: usize) -> Vec<usize> {
+    let rows: Vec<&[f32]> = kept.chunks_exact(count).collect();
+    let least = |betas: &mut dyn Iterator<Item = usize>, row: &[f32]| {
+        betas.min_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(0)
+    };
+    let mut betas = vec![0; rows.len()];
+    for place in (0..rows.len()).rev() {
+        betas[place] = match betas.get(place + 1) {
+            None => least(&mut (0..count), rows[place]),
+            Some(next) => {
+                let change = changes[place + 1];
+                let before = |by: i32| (*next as i32 - by).rem_euclid(count as i32) as usize;
+                let widest = change.min..=change.max.min(change.min + count as i32 - 1);
+                least(&mut widest.map(before), rows[place])
+            }
+        };
+    }
+    betas
+}

@@ -1,0 +1,321 @@
+//! Where the external axes stand: from one position for the path over one for each segment to a position for each point.
+//!
+//! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a richer use is never
+//! worse.
+
+use crate::evaluator::Evaluator;
+use crate::path_subset::PathSubset;
+use crate::problem::{Placement, Problem};
+use crate::redundancy::Planner;
+use crate::redundancy::axis_path::AxisGrid;
+use crate::refine::{Solution, planned, refine};
+use crate::sense::Sense;
+use crate::setup::{AxisPositions, Setup};
+use rayon::prelude::*;
+use stead_model::external_axis::{AxisUse, ExternalAxis};
+use stead_numerics::monitor::{Monitor, Progress};
+
+/// Positions of an axis that are tried first, over its whole range.
+pub(super) const GRID: usize = 5;
+/// Positions of an axis that moves along the path, at each point.
+const PATH_GRID: usize = 13;
+/// A step of a position that is this share of the range is the last.
+const LAST_STEP: f64 = 1e-3;
+/// Rounds of axes and placement.
+const ROUNDS: usize = 3;
+/// A round that gains less (relative) is the last.
+const GAIN: f64 = 1e-4;
+/// How often the positions of an axis along the path are narrowed down.
+const NARROWINGS: usize = 3;
+/// With more path points the placement is not refined again for other positions of the axes.
+const MOST_REFINED: usize = 5000;
+/// Steps of the positions of an axis at the most.
+const STEPS: usize = 60;
+/// Points that are left of a segment at least, where the axis is planned on some of the points of a dense path.
+const KEPT: usize = 4;
+
+/// A placement in a setup, with its best plan.
+#[derive(Debug, Clone)]
+pub(super) struct Improved {
+    pub setup: Setup,
+    pub solution: Solution,
+}
+
+/// Improves the positions of the axes at a placement, and the placement with them, by turns; nothing where that gains nothing.
+pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -> Option<Improved> {
+    let mut best = Improved { setup: problem.setup.clone(), solution: start.clone() };
+    let axes = || problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
+    for round in 0..ROUNDS {
+        if monitor.should_stop() || axes().next().is_none() {
+            break;
+        }
+        monitor.report(Progress::Steps { stage: "external axes", done: round, total: ROUNDS });
+        let before = best.solution.objective;
+        for (number, axis) in axes() {
+            if let Some(better) = by_segments(problem, &best, number, axis, monitor) {
+                best = better;
+            }
+            if axis.axis_use == AxisUse::Continuous
+                && let Some(better) = along_path(problem, &best, number, axis, monitor)
+            {
+                best = better;
+            }
+        }
+        if let Some(better) = refined(problem, &best, monitor) {
+            best = better;
+        }
+        if before - best.solution.objective < GAIN * before {
+            break;
+        }
+    }
+    (best.solution.objective < start.objective).then_some(best)
+}
+
+/// The plan in another setup, where it is better.
+fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Option<Improved> {
+    let setup = Setup { positions, ..known.setup };
+    let set_up = problem.in_setup(&setup);
+    let planner = Planner::finer(&set_up);
+    let solution = planned(&planner, &known.solution.placement, None, &mut planner.workspace())?;
+    (solution.objective < known.solution.objective).then_some(Improved { setup, solution })
+}
+
+/// The placement refined with the axes where they stand.
+fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Improved> {
+    let is_long = problem.task.points().len() > MOST_REFINED;
+    if problem.cell.pinned().is_some() || is_long || monitor.should_stop() {
+        return None;
+    }
+    let set_up = problem.in_setup(&known.setup);
+    let planner = Planner::finer(&set_up);
+    let evaluator = Evaluator::new(&planner, None);
+    let (solution, _) = refine(&evaluator, &known.solution.placement, Sense::Min, None, monitor)?;
+    (solution.objective < known.solution.objective).then(|| Improved { setup: known.setup.clone(), solution })
+}
+
+/// Another position of an axis for the path, or for each segment: first anywhere in its range, then by ever smaller steps.
+fn by_segments(
+    problem: &Problem,
+    known: &Improved,
+    number: usize,
+    axis: &ExternalAxis,
+    monitor: &Monitor,
+) -> Option<Improved> {
+    let path = problem.task.path();
+    let rows = known.setup.positions.spread(&problem.task);
+    let placement = &known.solution.placement;
+    let is_one = axis.axis_use == AxisUse::Fixed;
+    // For an axis that moves along segments already only shifts as a whole are tried.
+    let mut now = Shifts { rows, shifts: vec![0.0; path.segments().len()], number, axis };
+    let mut costs = costs(problem, known, &now, placement, &vec![0.0; now.shifts.len()])?;
+    let mut step = (axis.max - axis.min) / (GRID - 1) as f64;
+    let mut offsets: Vec<f64> = (1..GRID).flat_map(|k| [step * k as f64, -step * k as f64]).collect();
+    for _ in 0..STEPS {
+        if step <= LAST_STEP * (axis.max - axis.min) || monitor.should_stop() {
+            break;
+        }
+        let tried: Vec<(f64, Vec<Vec<Option<f64>>>)> = offsets
+            .par_iter()
+            .filter_map(|offset| {
+                let moved: Vec<f64> = vec![*offset; now.shifts.len()];
+                Some((*offset, self::costs(problem, known, &now, placement, &moved)?))
+            })
+            .collect();
+        let chosen = if is_one { one_for_all(problem, &costs, &tried) } else { for_each(problem, &costs, &tried) };
+        match chosen {
+            Some(moves) => {
+                now.shifts.iter_mut().zip(&moves).for_each(|(shift, by)| *shift += by);
+                costs = self::costs(problem, known, &now, placement, &vec![0.0; now.shifts.len()])?;
+            }
+            None => step /= 2.0,
+        }
+        offsets = vec![step, -step];
+    }
+    if now.shifts.iter().all(|shift| *shift == 0.0) {
+        return None;
+    }
+    better(problem, known, now.positions(problem, &vec![0.0; now.shifts.len()]))
+}
+
+/// The positions of the axes, those of one of them shifted segment by segment.
+struct Shifts<'a> {
+    /// For every point.
+    rows: Vec<Vec<f64>>,
+    /// For every segment.
+    shifts: Vec<f64>,
+    number: usize,
+    axis: &'a ExternalAxis,
+}
+
+impl Shifts<'_> {
+    /// Shifted once more, within the range of the axis.
+    fn positions(&self, problem: &Problem, by: &[f64]) -> AxisPositions {
+        let mut rows = self.rows.clone();
+        for (segment, span) in problem.task.segments().iter().enumerate() {
+            for row in &mut rows[span.clone()] {
+                let moved = row[self.number] + self.shifts[segment] + by[segment];
+                row[self.number] = moved.max(self.axis.min).min(self.axis.max);
+            }
+        }
+        AxisPositions::shortest(rows, &problem.task)
+    }
+}
+
+/// What each segment adds to the objective, for each choice of postures ([`Planner::segment_costs`]), with the axis shifted; nothing
+/// where the range of the axis leaves no shift.
+fn costs(
+    problem: &Problem,
+    known: &Improved,
+    now: &Shifts<'_>,
+    placement: &Placement,
+    by: &[f64],
+) -> Option<Vec<Vec<Option<f64>>>> {
+    let positions = now.positions(problem, by);
+    let is_shifted = by.iter().any(|by| *by != 0.0);
+    if is_shifted && positions == now.positions(problem, &vec![0.0; by.len()]) {
+        return None;
+    }
+    let setup = Setup { positions, ..known.setup };
+    let set_up = problem.in_setup(&setup);
+    let planner = Planner::new(&set_up);
+    Some(planner.segment_costs(placement, &mut planner.workspace()))
+}
+
+/// The objective of the best choice of postures.
+fn objective(problem: &Problem, costs: &[Vec<Option<f64>>]) -> f64 {
+    let of =
+        |row: &Vec<Option<f64>>| row.iter().copied().collect::<Option<Vec<f64>>>().map(|row| problem.objective(row));
+    costs.iter().filter_map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// The one shift of all segments that is better than none.
+fn one_for_all(
+    problem: &Problem,
+    costs: &[Vec<Option<f64>>],
+    tried: &[(f64, Vec<Vec<Option<f64>>>)],
+) -> Option<Vec<f64>> {
+    let best = tried.iter().min_by(|a, b| objective(problem, &a.1).total_cmp(&objective(problem, &b.1)))?;
+    let count = costs.first()?.len();
+    (objective(problem, &best.1) < objective(problem, costs) * (1.0 - ROUNDING)).then(|| vec![best.0; count])
+}
+
+/// Differences that are less (relative) are none.
+const ROUNDING: f64 = 1e-9;
+
+/// The shift of each segment, in the choice of postures that is best then.
+fn for_each(problem: &Problem, costs: &[Vec<Option<f64>>], tried: &[(f64, Vec<Vec<Option<f64>>>)]) -> Option<Vec<f64>> {
+    let of_choice = |choice: usize| {
+        let mut shifts = Vec::with_capacity(costs[choice].len());
+        let mut least = Vec::with_capacity(costs[choice].len());
+        for (segment, own) in costs[choice].iter().enumerate() {
+            let mut best = (own.map_or(f64::INFINITY, |own| own * (1.0 - ROUNDING)), 0.0);
+            for (shift, other) in tried {
+                if let Some(cost) = other[choice][segment]
+                    && cost < best.0
+                {
+                    best = (cost, *shift);
+                }
+            }
+            least.push(best.0);
+            shifts.push(best.1);
+        }
+        (problem.objective(least), shifts)
+    };
+    let best = (0..costs.len()).map(of_choice).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let is_better = best.0 < objective(problem, costs) * (1.0 - ROUNDING) && best.1.iter().any(|shift| *shift != 0.0);
+    is_better.then_some(best.1)
+}
+
+/// An axis that moves along the path: over its whole range on a grid, then about the way found.
+fn along_path(
+    problem: &Problem,
+    known: &Improved,
+    number: usize,
+    axis: &ExternalAxis,
+    monitor: &Monitor,
+) -> Option<Improved> {
+    let set_up = problem.in_setup(&known.setup);
+    let kept = stride(&set_up, axis);
+    let thinned = (kept.len() < set_up.task.points().len()).then(|| PathSubset::of_points(kept.clone()).of(&set_up));
+    let coarse = thinned.as_ref().unwrap_or(&set_up);
+    let all: Vec<Vec<f64>> = known.setup.positions.spread(&set_up.task);
+    let mut way: Vec<f64> = kept.iter().map(|point| all[*point][number]).collect();
+    let mut width = axis.max - axis.min;
+    let mut best: Option<Improved> = None;
+    for narrowing in 0..=NARROWINGS {
+        if monitor.should_stop() {
+            break;
+        }
+        let positions = way.iter().map(|at| around(axis, *at, width)).collect();
+        let grid = AxisGrid { problem: coarse, axis: number, positions };
+        let Some(paths) = grid.paths(&known.solution.placement) else { break };
+        let found: Vec<f64> = paths.into_iter().flat_map(|path| path.positions).collect();
+        let rows = between(&set_up, &all, number, (&kept, &found));
+        let positions = AxisPositions::shortest(rows, &problem.task);
+        let candidate = better(problem, best.as_ref().unwrap_or(known), positions);
+        if candidate.is_none() && narrowing > 0 {
+            break;
+        }
+        best = candidate.or(best);
+        way = found;
+        width *= 3.0 / (PATH_GRID - 1) as f64;
+    }
+    best
+}
+
+/// Positions about one, as far as the range allows; with the one itself among them.
+fn around(axis: &ExternalAxis, at: f64, width: f64) -> Vec<f64> {
+    let from = (at - width / 2.0).max(axis.min).min((axis.max - width).max(axis.min));
+    let step = width.min(axis.max - axis.min) / (PATH_GRID - 1) as f64;
+    let mut positions: Vec<f64> = (0..PATH_GRID).map(|k| (from + step * k as f64).min(axis.max)).collect();
+    let off = |position: &f64| (position - at).abs();
+    if let Some(nearest) = (0..PATH_GRID).min_by(|a, b| off(&positions[*a]).total_cmp(&off(&positions[*b]))) {
+        positions[nearest] = at;
+    }
+    positions
+}
+
+/// The points on which the axis is planned: all, or on a dense path so few that axis and beta can take a step of their grids from one to
+/// the next; every segment keeps its ends.
+fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
+    let grid = (axis.max - axis.min) / (PATH_GRID - 1) as f64;
+    let mut kept = Vec::new();
+    for span in problem.task.segments() {
+        let steps = span.len().saturating_sub(1).max(1) as f64;
+        let time: f64 =
+            span.clone().skip(1).map(|point| problem.step_time(point)).filter(|time| time.is_finite()).sum();
+        let length: f64 = span.clone().skip(1).map(|point| problem.step_length(point)).sum();
+        let by_axis = grid / (axis.max_speed.unwrap_or(f64::INFINITY) * time / steps);
+        let rate = problem.redundancy.max_beta_rate.unwrap_or(f64::INFINITY);
+        let by_beta = problem.redundancy.beta_step() / (rate * length / steps);
+        let wanted = by_axis.max(by_beta).ceil();
+        let most = (span.len() / KEPT).max(1);
+        let stride = if wanted.is_finite() { (wanted.max(1.0) as usize).min(most) } else { most };
+        kept.extend(span.clone().step_by(stride));
+        if kept.last() != Some(&(span.end - 1)) {
+            kept.push(span.end - 1);
+        }
+    }
+    kept
+}
+
+/// The positions of all axes at every point, those of one of them in proportion to the time between the points where it is known.
+fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, (kept, found): (&[usize], &[f64])) -> Vec<Vec<f64>> {
+    let mut rows = rows.to_vec();
+    for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
+        let (first, last) = (pair[0], pair[1]);
+        rows[first][number] = positions[0];
+        rows[last][number] = positions[1];
+        if problem.task.path().segment_of(first) != problem.task.path().segment_of(last) {
+            continue;
+        }
+        let times: Vec<f64> = (first + 1..=last).map(|point| problem.step_time(point)).collect();
+        let whole: f64 = times.iter().sum();
+        let mut done = 0.0;
+        for (point, time) in (first + 1..last).zip(&times) {
+            done += time;
+            rows[point][number] = positions[0] + (positions[1] - positions[0]) * done / whole;
+        }
+    }
+    rows
+}

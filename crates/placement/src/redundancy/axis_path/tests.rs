@@ -1,0 +1,109 @@
+//! The plan over (beta, axis) against a reference: every pair of neighbouring states, with the limits asked one by one.
+
+use super::*;
+use crate::testing::five_segments;
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
+use stead_model::robot::{Joint, Robot};
+use stead_model::task::{Task, ToolPath};
+
+/// The cheapest cost of a segment over all postures: every state against every state of the point before.
+fn reference(grid: &AxisGrid<'_>, placement: &Placement, span: &Span<usize>) -> Option<f64> {
+    let problems: Vec<Problem> = (0..grid.count()).map(|number| grid.problem_at(number)).collect();
+    let redundancy = &grid.problem.redundancy;
+    let axis = &grid.problem.external_axes[grid.axis];
+    let of = |posture: Posture| -> Option<f64> {
+        let mut before: Vec<Node> = Vec::new();
+        for point in span.clone() {
+            let mut layer = Vec::new();
+            for (position, problem) in problems.iter().enumerate() {
+                for beta in 0..redundancy.beta_count {
+                    let state = (point, placement, redundancy.beta(beta), posture);
+                    nodes_of(problem, state, (position, beta), &mut layer);
+                }
+            }
+            for node in &mut layer {
+                if point == span.start {
+                    node.cost = node.score;
+                    continue;
+                }
+                let time = grid.problem.step_time(point);
+                let at = |point: usize, node: &Node| grid.positions[point][node.position];
+                let is_edge = |old: &&Node| {
+                    let change = redundancy.beta(node.beta) - redundancy.beta(old.beta);
+                    let speed = (at(point, node) - at(point - 1, old)).abs() / time;
+                    grid.problem.beta_step_within(point, redundancy).allows(change)
+                        && speed <= axis.max_speed.unwrap() * (1.0 + 1e-9)
+                        && joint_steps_hold(&old.joints, &node.joints, &grid.problem.joint_steps(point))
+                };
+                let least = before.iter().filter(is_edge).map(|old| old.cost).fold(f64::INFINITY, f64::min);
+                node.cost = least + node.score;
+            }
+            layer.retain(|node| node.cost.is_finite());
+            before = layer;
+        }
+        before.iter().map(|node| node.cost).reduce(f64::min)
+    };
+    Posture::ALL.into_iter().filter_map(of).reduce(f64::min)
+}
+
+/// A short path with an axis, drawn from a seed.
+fn drawn(seed: u64) -> (Problem, Placement, Vec<Vec<f64>>) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut problem = five_segments();
+    let first = random.random_range(0..15);
+    let points = problem.task.points()[first..first + 5].iter().map(|point| (1, *point)).collect::<Vec<_>>();
+    let wrenches = problem.task.wrenches()[first..first + 5].to_vec();
+    problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
+    problem.redundancy.beta_count = 24;
+    problem.redundancy.max_beta_rate = Some(random.random_range(0.8..4.0_f64).to_radians() * 1e3);
+    let mut joints: [Joint; 6] = problem.robot.joints().clone();
+    joints.iter_mut().for_each(|joint| joint.max_speed = Some(random.random_range(0.3..3.0)));
+    problem.robot = Robot::new("slow", joints).unwrap();
+    let is_rail = random.random_range(0..2) == 0;
+    let width = if is_rail { 0.3 } else { 0.6 };
+    let grid: Vec<f64> = (0..4).map(|k| width * (f64::from(k) / 3.0 - 0.5)).collect();
+    let step_time = problem.step_time(1);
+    problem.external_axes = vec![ExternalAxis {
+        name: "axis".to_owned(),
+        kind: if is_rail { AxisKind::Rail } else { AxisKind::Turntable },
+        carries: if random.random_range(0..2) == 0 { Carried::Robot } else { Carried::Workpiece },
+        direction: Vector3::from_fn(|_, _| random.random_range(-1.0..1.0)).normalize(),
+        point: Vector3::new(0.0, -1.9, -0.4),
+        min: grid[0],
+        max: grid[3],
+        max_speed: Some(random.random_range(0.5..2.5) * width / 3.0 / step_time),
+        axis_use: AxisUse::Continuous,
+    }];
+    problem.setup = Setup::at_rest(&problem.external_axes);
+    let placement = Placement {
+        x: random.random_range(-0.3..0.3),
+        y: random.random_range(-2.1..-1.64),
+        z: random.random_range(-0.6..-0.2),
+        yaw: random.random_range(-3.0..3.0),
+    };
+    (problem, placement, vec![grid; 5])
+}
+
+#[test]
+fn equal_to_the_reference_on_fifty_small_problems() {
+    let (mut feasible, mut moving) = (0, 0);
+    for seed in 0..50 {
+        let (problem, placement, positions) = drawn(seed);
+        let grid = AxisGrid { problem: &problem, axis: 0, positions };
+        let found = grid.paths(&placement);
+        let expected = reference(&grid, &placement, &(0..5));
+        match (&found, expected) {
+            (None, None) => {}
+            (Some(found), Some(expected)) => {
+                assert!((found[0].cost - expected).abs() <= 1e-12 * expected, "{seed}: {found:?} {expected}");
+                feasible += 1;
+                moving += usize::from(found[0].positions.windows(2).any(|pair| pair[0] != pair[1]));
+            }
+            _ => panic!("{seed}: {found:?} {expected:?}"),
+        }
+    }
+    assert!(feasible > 20 && moving > 10, "{feasible} {moving}");
+}

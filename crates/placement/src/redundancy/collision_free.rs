@@ -1,0 +1,192 @@
+//! Plans in which nothing hits.
+//!
+//! A plan is made, its states are looked at, those that hit are forbidden with their neighbours in beta that hit too, and the plan
+//! is made again until nothing hits. A plan over fewer states is never better, so the first one that is free is the best free one of
+//! its grid. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
+
+use super::joint_turns::SegmentChoice;
+use super::{Forbidden, NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};
+use crate::candidate::Objective;
+use crate::collision::PlanHit;
+use crate::problem::Placement;
+use crate::sense::Sense;
+use std::cell::Cell;
+use std::collections::{BTreeMap, BTreeSet};
+use stead_model::robot::{Posture, PostureClass};
+
+/// Plans made for one placement, at the most; one that still hits after that counts as none.
+const MAX_ROUNDS: usize = 60;
+
+/// Which pairs of the scene hit at which path points.
+pub type Collisions = BTreeMap<usize, BTreeSet<usize>>;
+
+/// Forbids a state that hits, on a grid of `count` values of beta, and its neighbours in beta as far as they hit too.
+pub(crate) fn forbid(
+    (point, class): (usize, PostureClass),
+    (beta, count): (usize, usize),
+    hits: impl Fn(usize) -> bool,
+    forbidden: &mut Forbidden,
+) {
+    forbidden.add(point, class, beta);
+    for side in [1, count - 1] {
+        let mut next = (beta + side) % count;
+        while !forbidden.contains(point, class, next) && hits(next) {
+            forbidden.add(point, class, next);
+            next = (next + side) % count;
+        }
+    }
+}
+
+impl Planner<'_> {
+    /// The plan that `plan` makes, again and again without the states that hit, until nothing does.
+    pub(super) fn until_free(
+        &self,
+        placement: &Placement,
+        workspace: &mut Workspace,
+        mut plan: impl FnMut(&mut Workspace) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
+    ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        if self.problem.scene.is_none() {
+            return plan(workspace);
+        }
+        workspace.forbidden.clear();
+        let mut collisions = Collisions::new();
+        if let Some(pair) = self.problem.placement_hit(placement) {
+            return Err(self.blocked_by(pair));
+        }
+        for _ in 0..MAX_ROUNDS {
+            let plans = plan(workspace).map_err(|none| NoFeasiblePlan { collisions: collisions.clone(), ..none })?;
+            let hits = self.hits(placement, &plans);
+            if hits.is_empty() {
+                return Ok(plans);
+            }
+            for (segment, hit) in &hits {
+                collisions.entry(hit.pair).or_default().insert(hit.point);
+                self.forbid_hit(placement, &plans[*segment], hit, &mut workspace.forbidden);
+            }
+        }
+        let points: BTreeSet<usize> = collisions.values().flatten().copied().collect();
+        Err(NoFeasiblePlan { blocked_points: points.into_iter().collect(), broken_segments: Vec::new(), collisions })
+    }
+
+    /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
+    pub(super) fn free_objective(
+        &self,
+        placement: &Placement,
+        sense: Sense,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace,
+    ) -> Objective {
+        let plans = self.until_free(placement, workspace, |workspace| {
+            let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
+            let choices = self.without_hitting_ways(placement, choices);
+            Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+        });
+        match plans {
+            Ok(plans) => Objective::Feasible(self.problem.objective(plans.iter().map(|plan| plan.cost))),
+            Err(none) if none.blocked_points.is_empty() => {
+                Objective::Infeasible { points: 0, segments: none.broken_segments.len() }
+            }
+            Err(none) => Objective::Infeasible { points: none.blocked_points.len(), segments: 0 },
+        }
+    }
+
+    /// [`Planner::objective`] without some states.
+    #[cfg(test)]
+    pub fn objective_without(&self, placement: &Placement, sense: Sense, forbidden: &Forbidden) -> Objective {
+        let mut workspace = Workspace { forbidden: forbidden.clone(), ..self.workspace() };
+        self.objective(placement, sense, None, &mut workspace)
+    }
+
+    /// Takes beta of a plan off the grid. Where nothing hits on the grid, but something does off it, the states around the plan are
+    /// looked at one by one.
+    pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
+        let is_free = |plan: &SegmentPlan| self.problem.plan_hits(placement, plan, false).is_empty();
+        if self.problem.scene.is_none() {
+            off_grid::refine(self.problem, placement, sense, self.spacing, plan);
+        } else if is_free(plan) {
+            let mut refined = plan.clone();
+            off_grid::refine(self.problem, placement, sense, self.spacing, &mut refined);
+            if is_free(&refined) {
+                *plan = refined;
+            } else {
+                off_grid::refine_free(self.problem, placement, sense, self.spacing, plan);
+            }
+        }
+    }
+
+    /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others are left. Turns of
+    /// the joints change nothing about collisions.
+    pub(super) fn without_hitting_ways(
+        &self,
+        placement: &Placement,
+        choices: Vec<Vec<SegmentChoice>>,
+    ) -> Vec<Vec<SegmentChoice>> {
+        if self.problem.scene.is_none() {
+            return choices;
+        }
+        let free = |mut choice: SegmentChoice| {
+            let postures: BTreeSet<Posture> = choice.joint_paths.iter().map(|path| path.posture).collect();
+            if postures.len() > 1 {
+                let hits = |posture: &Posture| {
+                    let path = choice.joint_paths.iter().find(|path| path.posture == *posture);
+                    path.is_none_or(|path| {
+                        self.problem.path_hits(placement, &choice.points, &path.joints, false).next().is_some()
+                    })
+                };
+                let free: BTreeSet<Posture> = postures.iter().copied().filter(|posture| !hits(posture)).collect();
+                if !free.is_empty() {
+                    choice.joint_paths.retain(|path| free.contains(&path.posture));
+                }
+            }
+            choice
+        };
+        choices.into_iter().map(|plans| plans.into_iter().map(free).collect()).collect()
+    }
+
+    /// No plan, since two shapes are too near to each other whatever the arm does.
+    pub(super) fn blocked_by(&self, pair: usize) -> NoFeasiblePlan {
+        let points = 0..self.problem.task.points().len();
+        NoFeasiblePlan {
+            blocked_points: points.clone().collect(),
+            broken_segments: Vec::new(),
+            collisions: Collisions::from([(pair, points.collect())]),
+        }
+    }
+
+    /// What hits along plans, with the number of the segment: the states, and the motions from point to point unless the path is a
+    /// subset of points.
+    fn hits(&self, placement: &Placement, plans: &[SegmentPlan]) -> Vec<(usize, PlanHit)> {
+        let with_motions = self.checks_motions && !self.problem.task.path().is_thinned();
+        let of = |(segment, plan)| {
+            self.problem.plan_hits(placement, plan, with_motions).into_iter().map(move |hit| (segment, hit))
+        };
+        plans.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Forbids the states of the grid next to one of a plan that hits.
+    fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut Forbidden) {
+        let count = self.grid.beta_count;
+        let place = hit.point - plan.points.start;
+        let class = plan.posture.class();
+        // Of a motion that hits, the state at its end; once that is forbidden, the one at its start.
+        for place in if hit.is_between { vec![place, place - 1] } else { vec![place] } {
+            let point = plan.points.start + place;
+            let share = (plan.betas[place] - self.grid.beta(0)) / self.grid.beta_step();
+            let nearest = (share.round() as i64).rem_euclid(count as i64) as usize;
+            let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
+            for beta in [nearest, other] {
+                if !forbidden.contains(point, class, beta) {
+                    let likely = Cell::new(Some(hit.pair));
+                    let hits = |k| {
+                        let found =
+                            self.problem.likely_hit((point, self.grid.beta(k)), placement, plan.posture, likely.get());
+                        likely.set(found.or(likely.get()));
+                        found.is_some()
+                    };
+                    forbid((point, class), (beta, count), hits, forbidden);
+                    return;
+                }
+            }
+        }
+    }
+}

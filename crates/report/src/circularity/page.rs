@@ -1,0 +1,99 @@
+//! `report.html` of a roundness.
+
+use super::circles;
+use crate::page::cards::{Axis, Card, Cell, Chart, Column, Page, Polar, PolarChoice, Series, Table, Tile, Tiles};
+use crate::units::{figures, fixed};
+use stead_assessment::roundness::Roundness;
+use stead_format::PointFile;
+
+/// The polar plot about each of the four circles, and the circles beside each other.
+pub(super) fn page(file: &PointFile, found: &Roundness) -> Page {
+    let (all, kept) = (found.points.len(), found.kept().count());
+    let zone = &found.circles.mzc;
+    let lead = format!(
+        "All points counted lie between two circles about one centre that are {} mm apart in radius, about a mean radius of {} mm.",
+        figures(zone.circularity),
+        fixed(zone.circle.radius, 4)
+    );
+    let none: [&str; 0] = [];
+    let subtitle = format!("roundness · {all} points, {} left out", all - kept);
+    let mut page = Page::new(&file.input.name, subtitle, lead, std::slice::from_ref(&file.input))
+        .messages(&found.warnings(), &none)
+        .with(tiles(found))
+        .with(polar(found))
+        .with(table(found));
+    if found.plane.is_some() {
+        page = page.with(heights(found));
+    }
+    page
+}
+
+fn tiles(found: &Roundness) -> Card {
+    let tile = |(_, name, fit): (&str, &str, &stead_assessment::circle::Fit)| {
+        Tile::new(name, figures(fit.circularity), "mm", format!("radius {} mm", fixed(fit.circle.radius, 4)))
+    };
+    let mut tiles: Vec<Tile> = circles(found).into_iter().map(tile).collect();
+    let flatness =
+        found.flatness().map(|flatness| Tile::new("flatness", figures(flatness), "mm", "of the plane fitted"));
+    tiles.extend(flatness);
+    Card::Tiles(Tiles { tiles })
+}
+
+fn polar(found: &Roundness) -> Card {
+    let degrees = |angle: f64| angle.to_degrees().rem_euclid(360.0);
+    let choice = |(_, name, fit): (&str, &str, &stead_assessment::circle::Fit)| {
+        let [x, y] = fit.circle.center;
+        let deviation = |place: [f64; 2]| libm::hypot(place[0] - x, place[1] - y) - fit.circle.radius;
+        PolarChoice {
+            name: name.to_owned(),
+            detail: format!(
+                "circularity {} mm; solid: the reference circle, dashed: the smallest and the largest radius of the points counted",
+                fixed(fit.circularity, 6)
+            ),
+            deviations: found.points.iter().map(|point| deviation(point.place)).collect(),
+            band: [fit.smallest - fit.circle.radius, fit.largest - fit.circle.radius],
+        }
+    };
+    Card::Polar(Polar {
+        title: "Deviation from the reference circle".to_owned(),
+        detail: "grey: left out".to_owned(),
+        unit: "mm".to_owned(),
+        choices: circles(found).into_iter().map(choice).collect(),
+        angles: found.points.iter().map(|point| degrees(point.angle)).collect(),
+        excluded: found.points.iter().map(|point| point.is_excluded).collect(),
+    })
+}
+
+fn table(found: &Roundness) -> Card {
+    let names = ["circularity mm", "radius mm", "center x mm", "center y mm"].map(Column::number);
+    let row = |(_, name, fit): (&str, &str, &stead_assessment::circle::Fit)| {
+        let ([x, y], _) = found.center(fit);
+        let numbers = [fixed(fit.circularity, 6), fixed(fit.circle.radius, 5), fixed(x, 5), fixed(y, 5)];
+        std::iter::once(Cell::Text(name.to_owned())).chain(numbers.map(Cell::Number)).collect()
+    };
+    Card::Table(Table {
+        title: "Reference circles".to_owned(),
+        columns: std::iter::once(Column::text("reference circle")).chain(names).collect(),
+        rows: circles(found).into_iter().map(row).collect(),
+        ..Table::default()
+    })
+}
+
+/// How far the points are out of their plane.
+fn heights(found: &Roundness) -> Card {
+    let of = |is_excluded: bool| {
+        let points = found.points.iter().filter(move |point| point.is_excluded == is_excluded);
+        points.map(|point| [point.angle.to_degrees().rem_euclid(360.0), point.height])
+    };
+    let mut series = vec![Series::dots("counted", 0, of(false))];
+    if found.points.iter().any(|point| point.is_excluded) {
+        series.push(Series::dots("left out", 2, of(true)));
+    }
+    Card::Chart(Chart {
+        title: "Height above the plane".to_owned(),
+        x: Axis::new("angle (deg)"),
+        y: Axis::new("height (mm)"),
+        series,
+        ..Chart::default()
+    })
+}

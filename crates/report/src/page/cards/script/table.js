@@ -1,0 +1,53 @@
+// Tables that sort by a click on a heading and show the rows with a word in them.
+
+/** Rows that are shown at once; the others come when asked for. */
+const ROWS = 500;
+
+/**
+ * @param {TableCard} card
+ * @returns {HTMLElement}
+ */
+function tableCard(card) {
+  const text = (/** @type {null | string | [string, string]} */ cell) => cell === null ? '' : typeof cell === 'string' ? cell : cell[0];
+  const [body, counted] = [element('tbody'), element('span', { class: 'sub', role: 'status' })];
+  let [rows, sorted, isFalling, limit, words] = [[...card.rows], -1, false, ROWS, ''];
+  const show = () => {
+    const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+    const found = rows.filter(row => wanted.every(word => row.some(cell => text(cell).toLowerCase().includes(word))));
+    counted.textContent = wanted.length > 0 || found.length > limit ? `${Math.min(found.length, limit)} of ${card.rows.length} rows` : '';
+    body.replaceChildren(...found.slice(0, limit).map(row => element('tr', {}, ...row.map((cell, k) => {
+      const kind = card.columns[k].is_number ? 'number' : 'words';
+      return element('td', { class: kind }, typeof cell === 'object' && cell ? element('a', { href: cell[1] }, cell[0]) : text(cell));
+    }))));
+    more.hidden = found.length <= limit;
+  };
+  const more = element('button', { type: 'button', class: 'chip' }, 'Show all rows');
+  more.addEventListener('click', () => { limit = Infinity; show(); });
+  const headings = card.columns.map((column, k) => {
+    const button = element('button', { type: 'button' }, column.name);
+    const heading = element('th', { scope: 'col', class: column.is_number ? 'number' : 'words' }, button);
+    button.addEventListener('click', () => {
+      isFalling = sorted === k && !isFalling;
+      sorted = k;
+      const order = (/** @type {string} */ a, /** @type {string} */ b) => column.is_number ? Number(a) - Number(b) : a.localeCompare(b, 'en');
+      // What is empty stays at the end.
+      rows = [...card.rows].sort((a, b) => {
+        const [left, right] = [text(a[k]), text(b[k])];
+        return !left || !right ? Number(!left) - Number(!right) : order(left, right) * (isFalling ? -1 : 1);
+      });
+      headings.forEach((other, n) => other.setAttribute('aria-sort', n === k ? isFalling ? 'descending' : 'ascending' : 'none'));
+      show();
+    });
+    return heading;
+  });
+  const head = element('div', { class: 'head' }, element('h2', {}, card.title), element('span', { class: 'sub' }, card.detail), counted);
+  if (card.can_filter) {
+    const field = /** @type {HTMLInputElement} */ (
+      element('input', { type: 'search', placeholder: 'filter rows', 'aria-label': `Filter rows: ${card.title}` }));
+    field.addEventListener('input', () => { words = field.value; show(); });
+    head.append(field);
+  }
+  const table = element('table', {}, element('caption', { class: 'sr' }, card.title), element('thead', {}, element('tr', {}, ...headings)), body);
+  show();
+  return element('section', { class: 'card wide', 'aria-label': card.title }, head, element('div', { class: 'scroll', tabindex: '0' }, table), more);
+}

@@ -1,0 +1,190 @@
+//! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along its best plan.
+//!
+//! glTF has y upwards: the node of the base is turned by -90 deg about x, and everything below it is in the robot's own frames, in m.
+//! Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated.
+
+mod buffer;
+mod document;
+mod kept;
+mod motion;
+mod path;
+
+pub(crate) use kept::scene;
+pub use motion::{Motion, Stop};
+
+use super::shapes::{BodyFrame, BodyMesh, shaded};
+use buffer::Buffer;
+use document::{Animation, Asset, Channel, Document, Extras, Material, Mesh, Node, Primitive, Sampler, Scene, Target};
+use motion::{quaternion, turn_about_z};
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
+use stead_model::robot::Pose;
+
+/// `cell.glb`.
+pub(crate) const SCENE: &str = "cell.glb";
+
+/// What a scene shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The frame of each row at joint angle zero in that before it.
+    pub rows: [Pose<f64>; 6],
+    /// The tool frame in frame 6.
+    pub flange_from_tool: Pose<f64>,
+    /// The workpiece frame in the base frame.
+    pub base_from_workpiece: Pose<f64>,
+    /// All shapes.
+    pub bodies: &'a [BodyMesh],
+    /// What the arm does.
+    pub motion: &'a Motion,
+}
+
+/// A scene as the bytes of a `.glb` file.
+pub fn glb(cell: &Cell) -> Vec<u8> {
+    let mut writer = Writer::default();
+    let base = writer.add_node(Node {
+        name: "base (z up)".to_owned(),
+        rotation: Some(turn_about_x(-FRAC_PI_2)),
+        ..Node::default()
+    });
+    writer.document.scenes.push(Scene { name: cell.name.to_owned(), nodes: vec![base] });
+    let joints = writer.add_arm(&cell.rows, base);
+    let tool = writer.add_frame("tool", &cell.flange_from_tool, joints[5]);
+    let workpiece = writer.add_frame("workpiece", &cell.base_from_workpiece, base);
+    for body in cell.bodies {
+        let parent = match body.frame {
+            BodyFrame::Base => base,
+            BodyFrame::Link(number) => joints[usize::from(number.clamp(1, 6)) - 1],
+            BodyFrame::Tool => tool,
+            BodyFrame::Workpiece => workpiece,
+        };
+        writer.add_body(body, parent);
+    }
+    writer.add_path(&path::tubes(cell.motion), base);
+    writer.add_animation(cell.motion, &joints);
+    writer.finish()
+}
+
+/// A turn about x, as the quaternion x, y, z, w.
+fn turn_about_x(angle: f64) -> [f32; 4] {
+    let (sine, cosine) = libm::sincos(angle / 2.0);
+    [sine as f32, 0.0, 0.0, cosine as f32]
+}
+
+#[derive(Default)]
+struct Writer {
+    document: Document,
+    buffer: Buffer,
+}
+
+impl Writer {
+    fn add_node(&mut self, node: Node) -> usize {
+        self.document.nodes.push(node);
+        self.document.nodes.len() - 1
+    }
+
+    fn add_child(&mut self, node: Node, parent: usize) -> usize {
+        let child = self.add_node(node);
+        self.document.nodes[parent].children.push(child);
+        child
+    }
+
+    /// A node for a frame given in that of its parent.
+    fn add_frame(&mut self, name: &str, parent_from_frame: &Pose<f64>, parent: usize) -> usize {
+        let node = Node {
+            name: name.to_owned(),
+            translation: Some(single(&parent_from_frame.translation)),
+            rotation: Some(quaternion(&parent_from_frame.rotation)),
+            ..Node::default()
+        };
+        self.add_child(node, parent)
+    }
+
+    /// The nodes of the rows; returns those of the joints.
+    fn add_arm(&mut self, rows: &[Pose<f64>; 6], base: usize) -> [usize; 6] {
+        let mut parent = base;
+        std::array::from_fn(|j| {
+            let row = self.add_frame(&format!("row {}", j + 1), &rows[j], parent);
+            // Animated nodes state their rotation, else viewers show what a node is at rest differently.
+            let rest = Some([0.0, 0.0, 0.0, 1.0]);
+            parent = self.add_child(Node { name: format!("joint {}", j + 1), rotation: rest, ..Node::default() }, row);
+            parent
+        })
+    }
+
+    fn add_body(&mut self, body: &BodyMesh, parent: usize) {
+        let drawn = shaded(body);
+        if drawn.triangles.is_empty() {
+            return;
+        }
+        let [red, green, blue] = body.color.map(linear);
+        let material = self.material(Material::new(&body.name, [red, green, blue, 1.0], 0.1, 0.45));
+        let primitive = Primitive::new(&mut self.buffer, &drawn, None, material);
+        let extras = body.is_illustration.then_some(Extras { is_illustration: true });
+        self.add_mesh(&body.name, primitive, extras, parent);
+    }
+
+    fn add_path(&mut self, tubes: &path::Tubes, parent: usize) {
+        if tubes.mesh.triangles.is_empty() {
+            return;
+        }
+        let material = self.material(Material::new("tool path by deflection", [1.0; 4], 0.0, 0.8));
+        let primitive = Primitive::new(&mut self.buffer, &tubes.mesh, Some(&tubes.colors), material);
+        self.add_mesh("tool path", primitive, None, parent);
+    }
+
+    fn add_mesh(&mut self, name: &str, primitive: Primitive, extras: Option<Extras>, parent: usize) {
+        self.document.meshes.push(Mesh { name: name.to_owned(), primitives: vec![primitive] });
+        let mesh = Some(self.document.meshes.len() - 1);
+        self.add_child(Node { name: name.to_owned(), mesh, extras, ..Node::default() }, parent);
+    }
+
+    /// The number of a material: of one that looks the same where there is one.
+    fn material(&mut self, material: Material) -> usize {
+        let materials = &mut self.document.materials;
+        if let Some(known) = materials.iter().position(|known| known.looks_like(&material)) {
+            return known;
+        }
+        materials.push(material);
+        materials.len() - 1
+    }
+
+    /// A rotation track for each joint.
+    fn add_animation(&mut self, motion: &Motion, joints: &[usize; 6]) {
+        let keys = motion.keys();
+        if keys.is_empty() {
+            return;
+        }
+        let times: Vec<f32> = keys.iter().map(|key| key.time).collect();
+        let input = self.buffer.times(&times);
+        let mut animation = Animation { name: motion.name.clone(), ..Animation::default() };
+        for (joint, node) in joints.iter().enumerate() {
+            let turns: Vec<[f32; 4]> = keys.iter().map(|key| turn_about_z(key.joints[joint])).collect();
+            animation.samplers.push(Sampler { input, output: self.buffer.rotations(&turns), interpolation: "LINEAR" });
+            animation.channels.push(Channel { sampler: joint, target: Target { node: *node, path: "rotation" } });
+        }
+        self.document.animations.push(animation);
+    }
+
+    fn finish(self) -> Vec<u8> {
+        let Self { mut document, buffer } = self;
+        document.asset = Asset { version: "2.0", generator: concat!("stead ", env!("CARGO_PKG_VERSION")) };
+        buffer.finish(document)
+    }
+}
+
+/// A vector in single precision.
+fn single(vector: &Vector3<f64>) -> [f32; 3] {
+    [vector.x as f32, vector.y as f32, vector.z as f32]
+}
+
+/// A part of a colour from sRGB to linear (IEC 61966-2-1).
+fn linear(part: f32) -> f32 {
+    let part = f64::from(part);
+    let linear = if part <= 0.04045 { part / 12.92 } else { libm::pow((part + 0.055) / 1.055, 2.4) };
+    linear as f32
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,103 @@
+//! What the arm does: a plan with its times, and the keys of its animation.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// Time of a move, or of a turn in place, whose time is not known. s
+pub(super) const UNKNOWN_MOVE: f64 = 1.0;
+/// Shortest time that a move between segments is shown in. s
+pub(super) const SHORTEST_MOVE: f64 = 0.15;
+/// Keys of a move between segments at least: it starts and ends at rest.
+const KEYS_OF_MOVE: usize = 16;
+/// Points of a plan that an animation has at most; of more, so many are left out that these remain.
+pub(super) const MAX_STOPS: usize = 6000;
+
+/// The arm at a path point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Joint angles. rad
+    pub joints: [f64; 6],
+    /// The tool centre point in the base frame. m
+    pub position: Vector3<f64>,
+    /// Number of the segment, from 1.
+    pub segment: usize,
+    /// The score: what the path is coloured by. m
+    pub score: f64,
+    /// Time since the first point. s
+    pub time: f64,
+}
+
+/// A plan as it is driven.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// What is shown.
+    pub name: String,
+    /// Its path points; times rise.
+    pub stops: Vec<Stop>,
+}
+
+/// Joint angles (rad) at a time (s) of the animation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Key {
+    pub time: f32,
+    pub joints: [f64; 6],
+}
+
+impl Motion {
+    /// The stops that are shown: all, or of a long path every so-manieth of each segment and the ends.
+    pub(super) fn shown(&self) -> Vec<Stop> {
+        let stride = self.stops.len().div_ceil(MAX_STOPS).max(1);
+        let is_end = |index: usize| {
+            let segment = |index: usize| self.stops.get(index).map(|stop| stop.segment);
+            let own = segment(index);
+            segment(index + 1) != own || index.checked_sub(1).and_then(segment) != own
+        };
+        let shown = self.stops.iter().enumerate().filter(|(index, _)| index % stride == 0 || is_end(*index));
+        shown.map(|(_, stop)| *stop).collect()
+    }
+
+    /// The keys of the animation, at strictly rising times. Viewers turn a joint the short way round from key to key, so no joint turns
+    /// by more than 90 deg between two of them; moves between segments start and end at rest.
+    pub(super) fn keys(&self) -> Vec<Key> {
+        let stops = self.shown();
+        let mut keys: Vec<Key> = Vec::new();
+        // A key at the time of the one before, in the precision of the file, takes its place.
+        let mut put = |time: f64, joints: [f64; 6]| {
+            let key = Key { time: time as f32, joints };
+            match keys.last_mut() {
+                Some(last) if last.time >= key.time => *last = Key { time: last.time, joints },
+                _ => keys.push(key),
+            }
+        };
+        if let Some(first) = stops.first() {
+            put(first.time, first.joints);
+        }
+        for pair in stops.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let turns: [f64; 6] = std::array::from_fn(|j| to.joints[j] - from.joints[j]);
+            let largest = turns.iter().fold(0.0_f64, |largest, turn| largest.max(turn.abs()));
+            let is_move = from.segment != to.segment;
+            // The smooth start makes the steps in the middle of a move half as large again.
+            let parts = ((largest * 1.5 / FRAC_PI_2).ceil() as usize).max(if is_move { KEYS_OF_MOVE } else { 1 });
+            for part in 1..=parts {
+                let share = part as f64 / parts as f64;
+                let done = if is_move { share * share * (3.0 - 2.0 * share) } else { share };
+                let time = from.time + (to.time - from.time) * share;
+                put(time, std::array::from_fn(|j| from.joints[j] + turns[j] * done));
+            }
+        }
+        keys
+    }
+}
+
+/// A turn about z, as the quaternion x, y, z, w.
+pub(super) fn turn_about_z(angle: f64) -> [f32; 4] {
+    let (sine, cosine) = libm::sincos(angle / 2.0);
+    [0.0, 0.0, sine as f32, cosine as f32]
+}
+
+/// A rotation as the quaternion x, y, z, w.
+pub(super) fn quaternion(rotation: &Matrix3<f64>) -> [f32; 4] {
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*rotation));
+    [rotation.i as f32, rotation.j as f32, rotation.k as f32, rotation.w as f32]
+}

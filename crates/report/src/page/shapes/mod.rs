@@ -1,0 +1,88 @@
+//! The shapes that stand for a robot, its spindle and the work: bodies made from the rows of the robot alone.
+//!
+//! A robot file states axes and lengths, not what the links look like. These bodies show where the rows have them, with widths in
+//! proportion to the arm; they are illustrations ([`BodyMesh::is_illustration`]), and nothing is checked against them.
+
+mod arm;
+mod attached;
+mod loft;
+mod shading;
+
+pub use arm::{arm_bodies, scale};
+pub use attached::{block_of, spindle_bodies};
+pub use shading::{Shaded, shaded};
+
+use loft::Solid;
+use stead_placement::problem::Problem;
+
+/// The frame that a body is fixed in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BodyFrame {
+    /// The base frame of the robot.
+    Base,
+    /// Frame i (1 to 6) of the modified Denavit-Hartenberg rows, which turns with joint i.
+    Link(u8),
+    /// The tool frame: origin at the tool centre point, z out of the spindle.
+    Tool,
+    /// The workpiece frame.
+    Workpiece,
+}
+
+/// A closed surface, or several, that moves with one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyMesh {
+    /// What it stands for.
+    pub name: String,
+    /// What it is fixed to.
+    pub frame: BodyFrame,
+    /// Red, green and blue, sRGB from 0 to 1.
+    pub color: [f32; 3],
+    /// Corners in that frame. m
+    pub positions: Vec<[f32; 3]>,
+    /// Corners of each triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether it only stands for the thing, its real shape not being known.
+    pub is_illustration: bool,
+}
+
+/// The bodies of the arm, its base first, and of its spindle. What it works on is [`block_of`].
+pub fn bodies(problem: &Problem) -> Vec<BodyMesh> {
+    let mut bodies = arm_bodies(&problem.robot, &problem.spindle);
+    bodies.extend(spindle_bodies(&problem.robot, &problem.spindle));
+    bodies
+}
+
+/// The paints of the illustrations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Paint {
+    Body,
+    Dark,
+    Steel,
+    Spindle,
+    Tool,
+    Part,
+}
+
+impl Paint {
+    /// Red, green and blue, sRGB from 0 to 1.
+    fn color(self) -> [f32; 3] {
+        let bytes: [u8; 3] = match self {
+            Self::Body => [232, 112, 38],
+            Self::Dark => [58, 64, 74],
+            Self::Steel => [176, 186, 198],
+            Self::Spindle => [43, 92, 138],
+            Self::Tool => [214, 178, 72],
+            Self::Part => [186, 197, 209],
+        };
+        bytes.map(|byte| f32::from(byte) / 255.0)
+    }
+}
+
+/// An illustration out of closed surfaces.
+fn illustration(name: &str, frame: BodyFrame, paint: Paint, solid: Solid) -> BodyMesh {
+    let Solid { positions, triangles } = solid;
+    BodyMesh { name: name.to_owned(), frame, color: paint.color(), positions, triangles, is_illustration: true }
+}
+
+#[cfg(test)]
+mod tests;

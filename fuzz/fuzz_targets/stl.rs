@@ -1,0 +1,10 @@
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use stead_format::fuzzing::Reader;
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Err(broken) = Reader::Stl.check(bytes) {
+        panic!("{broken}");
+    }
+});

@@ -1,0 +1,184 @@
+//! Mount, orientations of the part and external axes from outside.
+
+use crate::common::{Bench, Ended, RUN};
+
+const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";
+const CONTROLLER: &str = "\
+    [controller]\nkind = 'kuka'\nsign = [-1, -1, -1, -1, -1, -1]\noffset_deg = [0, 0, -90, 0, 0, 0]\n\
+    [root]\nxyz_mm = [0, 0, 750]\nabc_deg = [0, 0, 0]\n";
+
+/// On a wall, the base frame turned about x of the cell by a right angle.
+const WALL: &str = "[mount]\nxyz_mm = [0, 0, 2500]\nrpy_deg = [90, 0, 0]\n[cell]\n";
+const RAIL: &str = "\
+    [[external_axis]]\nname = 'rail'\nkind = 'rail'\ncarries = 'robot'\ndirection = [1, 0, 0]\nrange_mm = [-200, 200]\n\
+    speed_mm_per_s = 500\nuse = 'continuous'\n";
+const TABLE: &str = "\
+    [[external_axis]]\nname = 'table'\nkind = 'turntable'\ncarries = 'workpiece'\naxis = [0, 0, 1]\nxyz_mm = [0, -1940, 0]\n\
+    range_deg = [-90, 90]\nspeed_deg_per_s = 60\nuse = 'indexed'\n";
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    let mut robot: toml::Table = bench.read(ROBOT).parse().unwrap();
+    robot.retain(|key, _| key != "controller" && key != "root");
+    robot.extend(CONTROLLER.parse::<toml::Table>().unwrap());
+    bench.write(ROBOT, &toml::to_string(&robot).unwrap());
+    bench.replace(RUN, "generations = 3", "generations = 1");
+    bench.replace(RUN, "basins = 2", "basins = 1");
+    bench.replace(RUN, "q4 = [-1.0, 1.0]", "q4 = [0.0, 0.0]");
+    bench.replace(RUN, "[reference]", "[output]\nmaps = false\n[reference]");
+    bench
+}
+
+fn ok(ended: &Ended) -> &str {
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    &ended.stdout
+}
+
+fn place(bench: &Bench) -> serde_json::Value {
+    let ended = bench.stead(&["place", RUN, "--json", "--out", "r"]);
+    ok(&ended);
+    ended.json()
+}
+
+/// Programs of the best plan in a form, and their check.
+fn assert_exported(bench: &Bench, format: &str, file: &str) {
+    ok(&bench.stead(&["export", RUN, "r/best.csv", "--format", format, "--out", "p/PART", "--approach-mm", "5"]));
+    let file = format!("p/{file}");
+    let checked = bench.stead(&["export", RUN, "r/best.csv", "--check", &file, "--approach-mm", "5"]);
+    ok(&checked);
+}
+
+fn columns<'a>(csv: &'a str, name: &str) -> Vec<&'a str> {
+    let mut lines = csv.lines();
+    let place = lines.next().unwrap().split(',').position(|column| column == name).unwrap_or_else(|| panic!("{name}"));
+    lines.map(|line| line.split(',').nth(place).unwrap()).collect()
+}
+
+#[test]
+fn a_robot_on_a_wall_is_placed_exported_and_checked() {
+    let bench = bench();
+    let floor = place(&bench)["cases"][0]["mean_mm"].as_f64().unwrap();
+    // The cell and the part turned with the robot: y of the base is z of the cell, z of the base is against y.
+    bench.replace(RUN, "[cell]", WALL);
+    bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [214.0, 602.0]");
+    bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [260.0, 860.0]");
+    bench.replace(RUN, "q4 =", "orientations = [{ name = 'as the robot', rpy_deg = [90, 0, 0] }]\nq4 =");
+    let checked = bench.stead(&["check", RUN]);
+    let text = ok(&checked);
+    for part in ["mount     base frame in the cell frame at x 0.0, y 0.0, z 2500.0 mm", "leans 90.0 deg from upright"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    let wall = place(&bench);
+    let found = wall["cases"][0]["mean_mm"].as_f64().unwrap();
+    assert!((found / floor - 1.0).abs() < 0.02, "{found} {floor}");
+    assert_eq!(wall["cases"][0]["orientation"], "as the robot");
+    assert_exported(&bench, "krl", "PART.src");
+    let summary: serde_json::Value = serde_json::from_str(&bench.read("r/summary.json")).unwrap();
+    assert_eq!(summary["mount"]["rpy_deg"][0], 90.0);
+    // A mount elsewhere is another cell; the plan is then none of the run.
+    let moved = bench.stead(&["check", RUN, "--set", "mount.xyz_mm[3]=500"]);
+    assert!(ok(&moved).contains("z 500.0 mm"), "{}", moved.stdout);
+}
+
+#[test]
+fn axes_are_in_plans_results_and_programs() {
+    let bench = bench();
+    bench.replace(RUN, "[constraints]", &format!("{RAIL}{TABLE}[constraints]"));
+    bench.replace(RUN, "x_mm = [-300.0, 300.0]", "x_mm = [0.0, 0.0]");
+    bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-1800.0, -1800.0]");
+    bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [-500.0, -500.0]");
+    let document = place(&bench);
+    let axes = &document["cases"][0]["external_axes"];
+    assert_eq!((&axes["axes"][0]["name"], &axes["axes"][1]["unit"]), (&"rail".into(), &"deg".into()));
+    let plan = bench.read("r/best.csv");
+    assert_eq!((columns(&plan, "e1_mm").len(), columns(&plan, "e2_deg").len()), (105, 105));
+    assert!(columns(&bench.read("r/placements.csv"), "e1_mm").len() == 4);
+    // What was found is found again from the results.
+    let again = bench.stead(&["score", RUN, "--placement-of", "r", "--json"]).json();
+    let [a, b] = [&document["cases"][0], &again["best"]].map(|entry| entry["mean_mm"].as_f64().unwrap());
+    assert!((a - b).abs() < 2e-7, "{a} {b}");
+    assert_exported(&bench, "krl", "PART.src");
+    assert_exported(&bench, "csv", "PART.csv");
+    let text = bench.read("p/PART_01.src");
+    let line = text.lines().find(|line| line.starts_with("LIN")).unwrap();
+    let (before, after) = line.split_once("E1 ").unwrap();
+    let (position, behind) = after.split_once(',').unwrap();
+    let off = position.parse::<f64>().unwrap() + 0.05;
+    bench.replace("p/PART_01.src", line, &format!("{before}E1 {off},{behind}"));
+    let tampered = bench.stead(&["export", RUN, "r/best.csv", "--check", "p/PART.src", "--approach-mm", "5"]);
+    assert_eq!(tampered.code, Some(1));
+    assert!(tampered.stdout.contains("external axis E1 is not where the plan has it"), "{}", tampered.stdout);
+}
+
+#[test]
+fn an_orientation_is_named_where_there_are_several() {
+    let bench = bench();
+    let two = "orientations = [{ name = 'flat' }, { name = 'turned', rpy_deg = [0, 0, 90] }]\nq4 =";
+    bench.replace(RUN, "q4 =", two);
+    let at = ["--x-mm", "0", "--y-mm", "-1800", "--z-mm", "-500", "--yaw-deg", "0"];
+    let score = |more: &[&str]| bench.stead(&[&["score", RUN, "--json"], &at[..], more].concat());
+    let without = score(&[]);
+    assert_eq!(without.code, Some(2));
+    without.assert_says(&["--orientation: is missing; allowed: flat, turned"]);
+    let unknown = score(&["--orientation", "upside down"]);
+    assert_eq!(unknown.code, Some(2));
+    unknown.assert_says(&["--orientation", "upside down", "allowed: flat, turned"]);
+    let turned = score(&["--orientation", "turned"]).json();
+    assert_eq!(turned["orientation"], "turned");
+    // Turned by the part or by the yaw is the same.
+    bench.replace(RUN, "q4 = [0.0, 0.0]", "q4 = [-1.0, 1.0]");
+    let by_yaw = [&["score", RUN, "--json", "--orientation", "flat"], &at[..7], &["90"]].concat();
+    let by_yaw = bench.stead(&by_yaw).json();
+    let [a, b] = [&turned, &by_yaw].map(|entry| entry["best"]["mean_mm"].as_f64().unwrap());
+    assert!((a - b).abs() < 2e-7, "{a} {b}");
+    let only =
+        bench.stead(&[&["score", RUN, "--json", "--set", "cell.orientation=\"turned\""], &at[..]].concat()).json();
+    assert_eq!(only["best"], turned["best"]);
+}
+
+#[test]
+fn bad_input_says_where_and_what() {
+    let bench = bench();
+    let good = bench.read(RUN);
+    let refused = |from: &str, to: &str, parts: &[&str]| {
+        bench.write(RUN, &good.replacen("[constraints]", &format!("{RAIL}{TABLE}[constraints]"), 1));
+        let line = bench.replace(RUN, from, to);
+        let ended = bench.stead(&["place", RUN, "--out", "never"]);
+        assert_eq!(ended.code, Some(2), "{to}: {}", ended.stderr);
+        assert_eq!(ended.said().lines().count(), 1, "{}", ended.stderr);
+        ended.assert_says(parts);
+        assert!(!bench.path("never").exists() || bench.names("never").is_empty());
+        line
+    };
+    refused("range_mm = [-200, 200]\n", "", &["external_axis[1].range_mm: is missing", "; allowed: "]);
+    let line = refused(
+        "range_mm = [-200, 200]",
+        "range_mm = [200, -200]",
+        &["external_axis[1].range_mm", "above its upper end"],
+    );
+    refused("range_mm = [-200, 200]", "range_mm = [200, -200]", &[&format!("run.toml:{line}: ")]);
+    refused("kind = 'rail'", "kind = 'crane'", &["external_axis[1].kind", "allowed: rail, turntable"]);
+    refused("name = 'table'", "name = 'rail'", &["external_axis[2].name: is there twice"]);
+    refused("direction = [1, 0, 0]", "direction = [0, 0, 0]", &["external_axis[1].direction: is no direction"]);
+    refused("direction = [1, 0, 0]", "axis = [1, 0, 0]", &["external_axis[1].axis: is no key of a rail"]);
+    refused("speed_mm_per_s = 500\n", "", &["external_axis[1].speed_mm_per_s: is missing"]);
+    refused("use = 'indexed'", "use = 'continuous'", &["external_axis[2].use: lets a second axis move along the path"]);
+    refused("range_deg = [-90, 90]", "range_deg = [-90, nan]", &["external_axis[2].range_deg"]);
+    let lists = [
+        ("orientations = []", "cell.orientations: is empty"),
+        ("orientations = [{ name = 'a' }, { name = 'a' }]", "cell.orientations[2].name: is there twice"),
+        ("orientations = [{ name = ' ' }]", "cell.orientations[1].name: is no name"),
+        ("orientations = [{ name = 'a', rpy_deg = [0, 0, 0], abc_deg = [0, 0, 0] }]", "states an orientation beside"),
+        ("orientation = 'a'", "cell.orientation: names an orientation, and none is listed"),
+        (
+            "orientations = [{ name = 'a' }]\norientation = 'b'",
+            "cell.orientation: is not among the orientations, found",
+        ),
+    ];
+    for (text, part) in lists {
+        refused("q4 =", &format!("{text}\nq4 ="), &[part, "; allowed: "]);
+    }
+    refused("[cell]", "[mount]\nxyz_mm = [0, 0]\n[cell]", &["mount.xyz_mm", "three"]);
+    refused("[cell]", "[mount]\nxyz_mm = [0, 0, inf]\n[cell]", &["mount.xyz_mm"]);
+    refused("[cell]", "[mount]\nxyz_mm = [0, 0, 0]\nup = 1\n[cell]", &["mount.up", "allowed: "]);
+}

@@ -1,0 +1,203 @@
+// The pages of the other commands in Debian's Chromium: made by the program, opened from the disk with the network denied, and compared
+// with the tables beside them.
+//
+//   STEAD=target/debug/stead node cards.mjs
+import { chromium } from 'playwright-core';
+import { execFileSync } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { createHash } from 'node:crypto';
+import assert from 'node:assert/strict';
+import { table } from './suite.mjs';
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+const stead = process.env.STEAD ?? join(root, 'target/debug/stead');
+const scratch = mkdtempSync(join(tmpdir(), 'stead-cards-'));
+const out = (name) => join(scratch, name);
+const run = (...words) => execFileSync(stead, words, { cwd: root, stdio: ['ignore', 'ignore', 'pipe'] });
+let failures = 0;
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'],
+});
+
+/** Opens a page, which may ask for nothing and complain of nothing. */
+async function check(name, file, test, { width = 1400 } = {}) {
+  const context = await browser.newContext({ viewport: { width, height: 1000 }, colorScheme: 'light', offline: true });
+  const page = await context.newPage();
+  const wrong = [];
+  const address = pathToFileURL(file).href;
+  page.on('request', (request) => request.url() !== address && wrong.push(`asks for ${request.url()}`));
+  page.on('console', (message) => message.type() === 'error' && wrong.push(message.text()));
+  page.on('pageerror', (error) => wrong.push(String(error)));
+  try {
+    await page.goto(address);
+    await page.waitForSelector('footer');
+    await test(page);
+    assert.deepEqual(wrong, []);
+    console.log(`ok    ${name}`);
+    return true;
+  } catch (error) {
+    console.log(`FAIL  ${name}: ${String(error.message).split('\n').slice(0, 3).join(' ')}`);
+    return false;
+  } finally {
+    await context.close();
+  }
+}
+
+const must = async (...words) => { failures += (await check(...words)) ? 0 : 1; };
+const card = (page, title) => page.locator(`section[aria-label="${title}"]`);
+const plot = (page, title) => card(page, title).locator('canvas[tabindex]');
+const tip = (page, title) => card(page, title).locator('.tip').textContent();
+const pixels = (page, title) => card(page, title).locator('.plot canvas').first().evaluate((canvas) => canvas.toDataURL());
+const cells = async (page, title, column) => {
+  const rows = await card(page, title).locator(`tbody tr td:nth-child(${column})`).allTextContents();
+  return rows.filter(Boolean).map(Number);
+};
+
+/** A chart zooms by button, key, wheel and drag, and shows all again. */
+async function zooms(page, title) {
+  const all = await pixels(page, title);
+  const changed = async (what) => {
+    await page.waitForFunction(([title]) => document.querySelector(`section[aria-label="${title}"] .plot`).dataset.zoomed === 'true', [title]);
+    assert.notEqual(await pixels(page, title), all, what);
+    await plot(page, title).press('0');
+    assert.equal(await pixels(page, title), all, `all again after ${what}`);
+  };
+  await card(page, title).getByRole('button', { name: 'Zoom in' }).click();
+  await changed('button');
+  await plot(page, title).press('+');
+  await changed('key');
+  await plot(page, title).scrollIntoViewIfNeeded();
+  const box = await plot(page, title).boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.wheel(0, -200);
+  await changed('wheel');
+  await page.mouse.move(box.x + box.width * 0.3, box.y + box.height * 0.3);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.6, box.y + box.height * 0.6, { steps: 4 });
+  await page.mouse.up();
+  await changed('drag');
+}
+
+/** A table sorts by a column both ways and filters by a word. */
+async function sorts(page, title, column, word) {
+  const heading = card(page, title).locator(`thead th:nth-child(${column}) button`);
+  await heading.click();
+  const rising = await cells(page, title, column);
+  assert.deepEqual(rising, [...rising].sort((a, b) => a - b));
+  await heading.click();
+  assert.deepEqual(await cells(page, title, column), [...rising].sort((a, b) => b - a));
+  if (!word) return;
+  const rows = card(page, title).locator('tbody tr');
+  await card(page, title).getByRole('searchbox').fill(word);
+  const left = await rows.allTextContents();
+  assert.ok(left.length > 0 && left.every((text) => text.toLowerCase().includes(word.toLowerCase())), word);
+  await card(page, title).getByRole('searchbox').fill('no row has this');
+  assert.equal(await rows.count(), 0);
+  await card(page, title).getByRole('searchbox').fill('');
+}
+
+/** D changes the colours of page and charts. */
+async function darkens(page, title) {
+  const light = await pixels(page, title);
+  await page.locator('body').press('d');
+  assert.notEqual(await pixels(page, title), light);
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+}
+
+run('circularity', 'tasks/measured-groove.csv', '--out', out('circle'));
+const circle = JSON.parse(readFileSync(join(out('circle'), 'circularity.json'), 'utf8'));
+const deviations = table(join(out('circle'), 'deviations.csv'));
+await must('circularity: points under keys and pointer, circles to choose from', join(out('circle'), 'report.html'), async (page) => {
+  const title = 'Deviation from the reference circle';
+  const first = deviations[0];
+  const reads = async (name) => {
+    await plot(page, title).press('Escape');
+    await plot(page, title).press('ArrowRight');
+    const text = await tip(page, title);
+    const [, said] = text.match(/deviation (\S+) mm/);
+    assert.ok(Math.abs(said - first[`${name}_deviation_mm`]) < 2e-5 * Math.max(1e-3, Math.abs(said)) + 1e-7, `${name}: ${text}`);
+    assert.ok(text.startsWith('point 0'), text);
+  };
+  await reads('lsc');
+  await card(page, title).getByRole('radio', { name: /MIC/ }).click();
+  await page.keyboard.press('Escape');
+  assert.match(await card(page, title).locator('.legend').textContent(), new RegExp(circle.mic.circularity_mm.toFixed(6)));
+  await plot(page, title).press('ArrowLeft');
+  await zooms(page, title);
+  await darkens(page, title);
+});
+
+run('identify', 'fit', 'configs/identify-example.toml', '--out', out('identify'));
+const residuals = table(join(out('identify'), 'residuals.csv'));
+const identified = JSON.parse(readFileSync(join(out('identify'), 'report.json'), 'utf8'));
+const identify = async (page) => {
+  assert.match(await page.locator('.tile').first().textContent(), new RegExp(identified.residual_rms_mm.toFixed(4)));
+  const title = 'Deflection read and by the identified arm';
+  await plot(page, title).press('ArrowRight');
+  const text = await tip(page, title);
+  const row = residuals[0];
+  assert.ok(text.includes(`line ${row.line}`), text);
+  const [, read] = text.match(/component read \(mm\) (\S+)/);
+  assert.ok(Math.abs(read - row.measured_x_mm) < 1e-4 * Math.abs(read), text);
+  await zooms(page, 'Residuals');
+  await sorts(page, 'Readings', 5, residuals[0].configuration);
+  await plot(page, 'Compliances with their 95 % intervals').press('ArrowRight');
+  assert.match(await tip(page, 'Compliances with their 95 % intervals'), /^ ?joint 1/m);
+};
+await must('identify fit: residuals, intervals, readings', join(out('identify'), 'report.html'), identify);
+
+cpSync(join(root, 'results/study-k1'), out('study'), { recursive: true });
+run('study', 'report', 'configs/study-k1.toml', '--out', out('study'));
+const ranking = table(join(out('study'), 'study-ranking.csv'));
+await must('study: a table that sorts and filters, effects', join(out('study'), 'report.html'), async (page) => {
+  const rows = card(page, 'Ranking').locator('tbody tr');
+  assert.equal(await rows.count(), Math.min(500, ranking.length));
+  assert.equal(await rows.first().locator('td').nth(1).textContent(), ranking[0].cases);
+  await sorts(page, 'Ranking', 1, ranking[0].status);
+});
+
+run('assess', 'configs/horizontal-slot.toml', '--out', out('assess'));
+await must('assess: maps with zones, ranking', join(out('assess'), 'report.html'), async (page) => {
+  const title = await page.locator('section.tall').first().getAttribute('aria-label');
+  await plot(page, title).press('ArrowRight');
+  const text = await tip(page, title);
+  const map = table(join(out('assess'), readdir(/^map-.*\.csv$/)));
+  const [, value] = text.match(/\n(\S+) mm$/);
+  assert.ok(Object.values(map[0]).length > 3 && +value > 0, text);
+  await zooms(page, title);
+  await sorts(page, 'Ranking', 1);
+});
+
+/** The file of a name in the folder of the assessment. */
+function readdir(pattern) {
+  const manifest = JSON.parse(readFileSync(join(out('assess'), 'manifest.json'), 'utf8'));
+  return JSON.stringify(manifest).match(/"(map-[^"]+\.csv)"/)[1].replace(pattern, '$&');
+}
+
+for (const width of [380, 800, 2200]) {
+  await must(`nothing is wider than a window of ${width}`, join(out('identify'), 'report.html'), async (page) => {
+    const [is, may] = await page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
+    assert.ok(is <= may, `${is} pixels in ${may}`);
+  }, { width });
+}
+
+// A page whose residuals are drawn and read from the wrong column must fail.
+const html = readFileSync(join(out('identify'), 'report.html'), 'utf8');
+const [, script] = html.match(/<script>([^]*?)<\/script>/);
+const broken = script.replace('place(card, x, series.y[k])', 'place(card, x, series.x[k])');
+assert.notEqual(broken, script, 'nothing to break was found');
+const digest = (text) => createHash('sha256').update(text).digest('base64');
+writeFileSync(out('broken.html'), html.replace(script, () => broken).replace(digest(script), () => digest(broken)));
+if (await check('(a page broken on purpose, which must fail)', out('broken.html'), identify)) {
+  console.log('FAIL  the page broken on purpose passes');
+  failures++;
+}
+
+await browser.close();
+rmSync(scratch, { recursive: true });
+process.exit(failures ? 1 : 0);
