@@ -1,6 +1,8 @@
 // The page in Debian's Chromium: the suite on the shipped page, on one without WebGL, with names that look like markup, in several widths;
 // and on three pages broken on purpose, which must fail.
 //
+// With ONLY in the environment the suite runs the tests alone whose names contain it.
+//
 //   node run.mjs [FOLDER [OTHER ..]]     FOLDER has report.html; the others further plans of the same arm and spindle
 import { chromium } from 'playwright-core';
 import { createHash } from 'node:crypto';
@@ -36,13 +38,14 @@ async function suite(address, { firstOnly = false } = {}) {
   const failed = [];
   const { page, seen, close } = await open(browser, address);
   for (const [name, test] of Object.entries(tests(folder, others))) {
+    if (process.env.ONLY && !name.includes(process.env.ONLY)) continue;
     const begun = Date.now();
     try {
       const said = await test(page);
       if (!firstOnly)
         console.log(`ok    ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)${said ? `: ${said}` : ''}`);
     } catch (error) {
-      failed.push(`${name}: ${String(error.message).split('\n')[0]}`);
+      failed.push(`${name}: ${String(error.message).split('\n').filter(Boolean).slice(0, 6).join(' ')}`);
       if (firstOnly) break;
       console.log(`FAIL  ${failed.at(-1)}`);
     }
@@ -63,7 +66,7 @@ async function check(name, options, address, test) {
     console.log(`ok    ${name}`);
   } catch (error) {
     failures++;
-    console.log(`FAIL  ${name}: ${String(error.message).split('\n')[0]}`);
+    console.log(`FAIL  ${name}: ${String(error.message).split('\n').filter(Boolean).slice(0, 6).join(' ')}`);
   }
 }
 

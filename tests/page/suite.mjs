@@ -25,8 +25,9 @@ export async function open(browser, address, { width = 1400, height = 1000, befo
   page.on('console', (message) => message.type() === 'error' && seen.complaints.push(message.text()));
   page.on('pageerror', (error) => seen.complaints.push(String(error)));
   if (before) await page.addInitScript(before);
+  page.setDefaultTimeout(120000);
   await page.goto(address);
-  await page.waitForFunction(() => window.stead?.first > 0, null, { timeout: 20000 });
+  await page.waitForFunction(() => window.stead?.first > 0, null, { timeout: 120000 });
   return { page, seen, close: () => context.close() };
 }
 
@@ -198,6 +199,11 @@ export function tests(folder, others) {
       await page.mouse.click(...place(30, allowed));
       await check(30, allowed);
       const first = await view(page);
+      // A state among allowed ones and away from both plans is painted all over.
+      const isClear = (row, k) =>
+        [-2, 0, 2].every((by) => states[90 * count + k + by]?.reason === '') &&
+        plans.slice(0, 2).every((plan) => Math.abs(plan[90].beta_deg - row.beta_deg) > 20);
+      const clear = states.slice(90 * count, 91 * count).findIndex(isClear);
       const pixel = await page.evaluate(
         ([x, y]) => {
           const canvas = document.querySelector('#map canvas');
@@ -205,7 +211,7 @@ export function tests(folder, others) {
           const ratio = canvas.width / box.width;
           return [...canvas.getContext('2d').getImageData((x - box.x) * ratio, (y - box.y) * ratio, 1, 1).data];
         },
-        place(90, allowed),
+        place(90, clear),
       );
       assert.equal(pixel[3], 255, 'the map is not drawn');
       // Dragging goes from state to state.

@@ -27,9 +27,9 @@ function tiles() {
       here.show(
         chosen.isAllowed ? fixed(chosen.score) : '–',
         'mm',
-        chosen.isAllowed ? 'state chosen in the map' : reasonText(chosen.reason),
+        chosen.isAllowed ? 'chosen in the map' : reasonText(chosen.reason),
       );
-      kappa.show('–', '', 'known along the plans');
+      kappa.show('–', '', 'along plans only');
     }
     mean.show(fixed(of.mean), 'mm', `largest ${fixed(of.max)} mm`);
     const joints = currentJoints();

@@ -108,10 +108,10 @@ function sceneIn(host) {
     lastFrame = now;
     if (since > 70 && since < 1000) isSlow ||= ++slowFrames > 3;
     else if (since < 30) slowFrames = 0;
-    if (isSlow && since < 2000) {
+    if (isSlow) {
       isCoarse = true;
       clearTimeout(restTimer);
-      restTimer = window.setTimeout(settle, Math.max(500, 3 * since));
+      restTimer = window.setTimeout(settle, clamp(3 * since, 500, 2000));
     }
     resize();
   };
