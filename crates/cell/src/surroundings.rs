@@ -69,6 +69,11 @@ impl Surroundings {
         self.clearance
     }
 
+    /// Pairs of names that may touch.
+    pub fn ignored(&self) -> &[[String; 2]] {
+        &self.ignored
+    }
+
     /// Whether there is nothing in it.
     pub fn is_empty(&self) -> bool {
         self.shapes.is_empty() && self.zones.is_empty()

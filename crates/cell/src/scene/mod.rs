@@ -127,6 +127,13 @@ pub struct Pair {
     reach: [f64; 6],
 }
 
+impl Pair {
+    /// Whether it is a point of the arm and a zone, which may touch.
+    pub fn is_of_zone(&self) -> bool {
+        matches!(self.members, Members::Zone(..))
+    }
+}
+
 impl std::fmt::Display for Pair {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} and {}", self.names[0], self.names[1])

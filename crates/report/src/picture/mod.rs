@@ -29,6 +29,7 @@ mod plane_view;
 mod polar;
 mod simulation;
 mod study;
+mod surroundings;
 
 pub use arm_view::{arm_alone, arm_of_run};
 pub use cell::{cell, cell_with};
@@ -50,6 +51,7 @@ pub(crate) use plane_view::PlaneView;
 pub use polar::polar;
 pub use simulation::{forces, turns, wall};
 pub use study::{effects as study_effects, front as study_front, map as study_map};
+pub use surroundings::surroundings;
 
 #[cfg(test)]
 mod assessment_tests;

@@ -101,6 +101,14 @@ const MAPS: [[&str; 2]; 2] =
 /// The files of the map at a given placement.
 const SCORE_MAP: [&str; 2] = ["deflection-map.csv", "deflection-map.svg"];
 
+/// The picture of the shapes of the cell.
+const SURROUNDINGS: &str = "surroundings.svg";
+
+/// That picture, where the run has shapes.
+fn surroundings(problem: &Problem, cases: &[(&Case, &str)]) -> Option<(&'static str, Vec<u8>)> {
+    Some((SURROUNDINGS, picture::surroundings(problem, cases)?.into_bytes()))
+}
+
 /// Table and picture of a map with the best and the worst plan, under these names.
 fn map_files(
     problem: &Problem,
@@ -114,7 +122,7 @@ fn map_files(
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
-/// `placement.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
+/// `placement.svg`, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
 /// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json`,
 /// `report.html` and `cell.glb`. Returns the paths.
 ///
@@ -129,7 +137,8 @@ pub fn write_score(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = score_files(problem, score, map, context)?;
     let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
-    folder.results(SCORE, &context.inputs).without(outdated.iter().copied()).write(&files)
+    let outdated = outdated.iter().copied().chain(problem.scene.is_none().then_some(SURROUNDINGS));
+    folder.results(SCORE, &context.inputs).without(outdated).write(&files)
 }
 
 /// The files that [`write_score`] writes.
@@ -150,6 +159,7 @@ pub fn score_files(
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
+    files.extend(surroundings(problem, &[(&best, "this placement")]));
     if let Some(map) = map {
         files.extend(map_files(problem, map, [&best, &worst], SCORE_MAP, "this placement")?);
     }
@@ -164,7 +174,7 @@ pub fn score_files(
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`; and where stability
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, with shapes of the cell `surroundings.svg`; and where stability
 /// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
 /// without, `page-data.json`, `report.html` and `cell.glb`. Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
@@ -178,6 +188,7 @@ pub fn write_placement(
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = placement_files(problem, outcome, context)?;
     let outdated = outcome.maps.is_none().then_some(MAPS).into_iter().flatten().flatten();
+    let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
     folder.results(PLACE, &context.inputs).without(outdated).write(&files)
 }
 
@@ -202,6 +213,7 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
+    files.extend(surroundings(problem, &[(best, "the best placement"), (worst, "the worst placement")]));
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best.csv", "stability-worst.csv"], ["best placement", "worst placement"]);
         files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan], tables, names)?);
