@@ -18,8 +18,8 @@ fn kept_schemas_are_those_of_the_types() {
 
 #[test]
 fn an_unknown_name_is_refused_with_the_nearest() {
-    let message = schema("rnu").unwrap_err().to_string();
-    for part in ["no schema 'rnu'", "nearest known one: run", "; allowed: run, robot"] {
+    let message = schema("runn").unwrap_err().to_string();
+    for part in ["no schema 'runn'", "nearest known one: run", "; allowed: run, robot"] {
         assert!(message.contains(part), "{part} in {message}");
     }
 }

@@ -3,6 +3,7 @@ use crate::{Run, read_run};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Solid, Zone};
+use stead_model::robot::Pose;
 use stead_numerics::rotation::rotation_from_zyx;
 
 /// A cell file with every key.
@@ -151,7 +152,7 @@ fn what_looks_wrong_is_noted() {
     let notes = run(folder.path(), "", tables).unwrap().notes.join("\n");
     for part in [
         "the mesh of shape \"open\" is not closed",
-        "shape \"small\" is 1 mm long: is its mesh in metres (unit = \"m\")?",
+        "shape \"small\" is 1.00 mm long: is its mesh in metres (unit = \"m\")?",
     ] {
         assert!(notes.contains(part), "{part} in {notes}");
     }
@@ -160,56 +161,56 @@ fn what_looks_wrong_is_noted() {
 #[test]
 fn each_broken_rule_names_file_line_field_value_and_what_is_allowed() {
     for (from, to, parts) in [
-        ("'meshes/wedge.stl'", "'none.stl'", [":19: shape[4].mesh: ", "cannot be read", "found 'none.stl'"]),
+        ("'meshes/wedge.stl'", "'none.stl'", [":20: shape[4].mesh: ", "cannot be read", "found 'none.stl'"]),
         ("'link_2'", "'link_7'", [":8: shape[2].attached: ", "unknown frame", "found 'link_7'; allowed: \"base\""]),
         ("'link_2'", "'link_02'", [":8: shape[2].attached: ", "unknown frame", "found 'link_02'"]),
-        ("'part'", "'fence'", [":17: shape[4].name: ", "another shape", "found 'fence'"]),
-        ("'door'", "'part'", [":29: keep_out[2].name: ", "another shape or zone", "found 'part'"]),
-        ("'part'", "'link_3'", [":17: shape[4].name: ", "is the name of a frame", "found 'link_3'"]),
-        ("'part'", "' '", [":17: shape[4].name: ", "is blank", "a text"]),
-        ("'part'", "\"a\\nb\"", [":17: shape[4].name: ", "control character", "one line"]),
-        ("clearance_mm = 25", "clearance_mm = -1", [":35: collision.clearance_mm: ", "found -1", "not below 0"]),
-        ("clearance_mm = 25", "clearance_mm = nan", [":35: collision.clearance_mm: ", "found nan", "finite"]),
+        ("'part'", "'fence'", [":18: shape[4].name: ", "another shape", "found 'fence'"]),
+        ("'door'", "'part'", [":32: keep_out[2].name: ", "another shape or zone", "found 'part'"]),
+        ("'part'", "'link_3'", [":18: shape[4].name: ", "is the name of a frame", "found 'link_3'"]),
+        ("'part'", "' '", [":18: shape[4].name: ", "is blank", "a text"]),
+        ("'part'", "\"a\\nb\"", [":18: shape[4].name: ", "control character", "one line"]),
+        ("clearance_mm = 25", "clearance_mm = -1", [":38: collision.clearance_mm: ", "found -1", "not below 0"]),
+        ("clearance_mm = 25", "clearance_mm = nan", [":38: collision.clearance_mm: ", "found nan", "finite"]),
         ("unit = 'm'", "box_mm = [1, 1, 1]", [":25: shape[5].hull: ", "second form beside box_mm", "exactly one"]),
-        ("mesh = 'meshes/wedge.stl'\n", "", [":16: shape[4].box_mm: ", "no form", "exactly one of box_mm"]),
-        ("radius = 100", "radius = 0", [":14: shape[3].cylinder_mm.radius: ", "found 0", "above 0"]),
+        ("mesh = 'meshes/wedge.stl'\n", "", [":17: shape[4].box_mm: ", "no form", "exactly one of box_mm"]),
+        ("radius = 100", "radius = 0", [":15: shape[3].cylinder_mm.radius: ", "found 0", "above 0"]),
         ("length = 1250", "length = -1", [":9: shape[2].capsule_mm.length: ", "found -1", "not below 0"]),
         ("[20, 4000, 2000]", "[20, 0, 2000]", [":4: shape[1].box_mm", "found 0", "above 0"]),
-        ("xyz_mm = [0, 0, 250]", "unit = 'm'", [":15: shape[3].unit: ", "for a mesh file", "hull or mesh"]),
-        ("unit = 'm'", "unit = 'inch'", [":24: shape[5].unit: ", "found 'inch'", "\"mm\" or \"m\""]),
+        ("xyz_mm = [0, 0, 250]", "unit = 'm'", [":16: shape[3].unit: ", "for a mesh file", "hull or mesh"]),
+        ("unit = 'm'", "unit = 'inch'", [":26: shape[5].unit: ", "found 'inch'", "\"mm\" or \"m\""]),
         (
             "rpy_deg = [0, 90, 0]",
             "rpy_deg = [0, 90, 0]\nabc_deg = [0, 0, 0]",
             [":", "states an orientation beside", "exactly one"],
         ),
-        ("['tool', 'wrist', 'elbow']", "[]", [":27: keep_out[1].points: ", "is empty", "\"tool\" or \"wrist\""]),
-        ("['tool', 'wrist', 'elbow']", "['tool', 'hand']", [":27: keep_out[1].points", "is unknown", "\"elbow\""]),
-        ("['tool', 'wrist', 'elbow']", "['tool', 'tool']", [":27: keep_out[1].points[2]: ", "twice", "found 'tool'"]),
-        ("points = ['tool', 'wrist', 'elbow']\n", "", [":25: keep_out[1].points: ", "is missing", "\"tool\" or"]),
+        ("['tool', 'wrist', 'elbow']", "[]", [":29: keep_out[1].points: ", "is empty", "\"tool\" or \"wrist\""]),
+        ("['tool', 'wrist', 'elbow']", "['tool', 'hand']", [":29: keep_out[1].points", "is unknown", "\"elbow\""]),
+        ("['tool', 'wrist', 'elbow']", "['tool', 'tool']", [":29: keep_out[1].points[2]: ", "twice", "found 'tool'"]),
+        ("points = ['tool', 'wrist', 'elbow']\n", "", [":27: keep_out[1].points: ", "is missing", "\"tool\" or"]),
         (
             "half_space = {",
             "box_mm = [1, 1, 1]\nhalf_space = {",
-            [":29: keep_out[1].half_space: ", "beside box_mm", "one of the two"],
+            [":31: keep_out[1].half_space: ", "beside box_mm", "one of the two"],
         ),
-        ("box_mm = [1000, 200, 2000]", "", [":29: keep_out[2].box_mm: ", "is missing", "half_space"]),
+        ("box_mm = [1000, 200, 2000]", "", [":31: keep_out[2].box_mm: ", "is missing", "half_space"]),
         (
             "normal = [0, 0, -2]",
             "normal = [0, 0, 0]",
-            [":28: keep_out[1].half_space.normal: ", "no direction", "found [0, 0, 0]"],
+            [":30: keep_out[1].half_space.normal: ", "no direction", "found [0, 0, 0]"],
         ),
-        ("[0, 0, -2] }", "[0, 0, -2] }\nxyz_mm = [0, 0, 0]", [":29: keep_out[1].xyz_mm: ", "of a box", "half_space ="]),
+        ("[0, 0, -2] }", "[0, 0, -2] }\nxyz_mm = [0, 0, 0]", [":31: keep_out[1].xyz_mm: ", "of a box", "half_space ="]),
         (
             "'upper arm', 'fence'",
             "'upper arm', 'gate'",
-            [":36: collision.ignore[1][2]: ", "is no shape", "fence, upper arm, spindle"],
+            [":39: collision.ignore[1][2]: ", "is no shape", "fence, upper arm, spindle"],
         ),
         (
             "'link_2', 'flange'",
             "'link_4', 'flange'",
-            [":36: collision.ignore[2][1]: ", "is no shape", "found 'link_4'"],
+            [":39: collision.ignore[2][1]: ", "is no shape", "found 'link_4'"],
         ),
-        ("['upper arm', 'fence']", "['upper arm']", [":36: collision.ignore", "2", "found"]),
-        ("[collision]", "[collison]", [":34: collison: ", "nearest known one: collision", "allowed: shape, keep_out"]),
+        ("['upper arm', 'fence']", "['upper arm']", [":39: collision.ignore", "2", "found"]),
+        ("[collision]", "[collison]", [":37: collison: ", "nearest known one: collision", "allowed: shape, keep_out"]),
     ] {
         assert!(CELL.contains(from), "{from}");
         let folder = cell(&CELL.replacen(from, to, 1));
@@ -259,15 +260,17 @@ fn shapes_that_touch_in_every_posture_are_named_with_the_line_to_write() {
     assert!(run(folder.path(), "", &format!("{tables}[collision]\n{ignore}\n")).is_ok());
 }
 
+/// Sheet metal: a hull may be flat.
 #[test]
-fn a_hull_of_a_plane_is_refused_at_its_key() {
+fn a_hull_of_a_plane_is_a_plane() {
     let folder = cell("");
     std::fs::write(folder.path().join("flat.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 4 3\n").unwrap();
-    let tables = "[[shape]]\nname = 'flat'\nattached = 'workpiece'\nhull = 'flat.obj'\n";
-    let message = run(folder.path(), "", tables).unwrap_err();
-    for part in ["run.toml:20: shape[1].hull: ", "in a plane", "found 'flat.obj'; allowed: mesh in place of hull"] {
-        assert!(message.contains(part), "{part} in {message}");
-    }
+    let tables = "[[shape]]\nname = 'flat'\nattached = 'workpiece'\nhull = 'flat.obj'\n\
+                  [[shape]]\nname = 'ball'\nattached = 'base'\ncapsule_mm = { radius = 100, length = 0 }\nxyz_mm = [4, 1000, 0]\n";
+    let scene = run(folder.path(), "", tables).unwrap().problem.scene.unwrap();
+    let poses = scene.poses(&[0.0; 6], &Pose::identity());
+    assert_eq!(scene.pairs().len(), 1);
+    assert!((scene.distance(0, &poses, 10.0) - (1.0 - 0.009 - 0.1)).abs() < 1e-6);
 }
 
 /// The digest of a case changes with every file that the scene is made of.

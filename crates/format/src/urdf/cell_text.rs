@@ -68,6 +68,8 @@ fn vector(value: &Vector3<f64>) -> String {
 
 /// A path as it is named from a folder, with forward slashes; as it is where the two have nothing in common.
 fn relative(folder: &Path, file: &Path) -> String {
+    // The folder of a name alone is the working folder.
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let (folder, file) = (absolute(folder), absolute(file));
     let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();

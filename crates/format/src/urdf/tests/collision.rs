@@ -143,8 +143,8 @@ fn forms_names_notes_and_pairs_are_those_of_the_urdf() {
 fn the_file_of_the_shapes_is_read_by_a_run() {
     let folder = folder();
     let mut text = shaped();
-    // A forearm that always touches the upper arm.
-    text = with(&text, "link_4", "<sphere radius=\"1.6\"/>");
+    // A forearm that always touches all others.
+    text = with(&text, "link_4", "<sphere radius=\"5\"/>");
     let imported = import_in(folder.path(), &text).unwrap();
     let shapes = imported.link_shapes.clone().unwrap();
     assert!(!shapes.ignored.is_empty());
