@@ -141,11 +141,7 @@ for (const width of [380, 800, 1024, 2200]) {
 }
 
 const broken = {
-  robot: (script) =>
-    script.replace(
-      'framesOf(currentJoints(), baseFrame());\n    const part',
-      'framesOf(CASES[0].joints[0], baseFrame());\n    const part',
-    ),
+  robot: (script) => script.replace('framesOf(currentJoints(), base)', 'framesOf(CASES[0].joints[0], base)'),
   map: (script) => script.replace('across_ * map.points.length', 'across_ * map.points.length * 0.9'),
   play: (script) => script.replace('onclick: playOrPause', 'onclick: pause'),
 };

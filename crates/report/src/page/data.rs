@@ -3,7 +3,9 @@
 use super::base64::base64;
 use super::map_data;
 use super::packed::singles;
+use super::setup::{carriage_frames, part_frames};
 use super::shapes::{BodyFrame, BodyMesh, bodies};
+use super::surroundings::surroundings;
 use crate::document::Document;
 use crate::units::Unit;
 use nalgebra::Vector3;
@@ -11,13 +13,23 @@ use serde_json::{Value, json};
 use stead_placement::criterion::Direction;
 use stead_placement::feasibility::DeflectionMap;
 use stead_placement::problem::{Interval, Placement, Problem};
+use stead_placement::setup::Setup;
 
-/// A deflection map with the placement that it is of and the name of its table.
-pub(crate) type MapOf<'a> = (&'a Placement, &'a DeflectionMap, &'static str);
+/// A deflection map with the placement and the setup that it is of and the name of its table.
+pub(crate) type MapOf<'a> = (Placed<'a>, &'a DeflectionMap, &'static str);
+
+/// A placement with the setup of the cell.
+pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
 
 /// The content of `page-data.json`: robot, spindle, cell, limits and task of a problem, the joint angles of its maps, and the bodies that
-/// are drawn. Lists of numbers are in single precision, little endian, as Base64.
-pub(crate) fn page_data(document: Document, command: &str, problem: &Problem, maps: &[MapOf<'_>]) -> Value {
+/// are drawn, for the placements of the plans. Lists of numbers are in single precision, little endian, as Base64.
+pub(crate) fn page_data(
+    document: Document,
+    command: &str,
+    problem: &Problem,
+    plans: &[Placed<'_>],
+    maps: &[MapOf<'_>],
+) -> Value {
     document.with(json!({
         "command": command,
         "robot": robot(problem),
@@ -41,9 +53,12 @@ pub(crate) fn page_data(document: Document, command: &str, problem: &Problem, ma
         "task": task(problem),
         "maps": maps
             .iter()
-            .map(|(placement, map, table)| map_data::joints(problem, placement, map, table))
+            .map(|((placement, setup), map, table)| map_data::joints(&problem.in_setup(setup), placement, map, table))
             .collect::<Value>(),
-        "bodies": bodies(problem).iter().map(body).collect::<Value>(),
+        "bodies": bodies(problem).iter().map(|mesh| body(mesh, &frame(mesh.frame))).collect::<Value>(),
+        "surroundings": surroundings(problem).iter().map(|(mesh, frame)| body(mesh, frame)).collect::<Value>(),
+        "part_frames": part_frames(problem, plans),
+        "carriage_frames": carriage_frames(problem, plans),
     }))
 }
 
@@ -57,7 +72,15 @@ fn robot(problem: &Problem) -> Value {
             "max_deg": Unit::ANGLE_DEG.number(joint.max),
         })
     };
-    json!({ "name": problem.robot.name(), "rows": problem.robot.joints().iter().map(row).collect::<Value>() })
+    let mount = problem.robot.is_mounted().then(|| {
+        let pose = problem.robot.cell_from_base();
+        json!({ "rotation": rows(&pose.rotation), "xyz_mm": mm(&pose.translation) })
+    });
+    json!({
+        "name": problem.robot.name(),
+        "rows": problem.robot.joints().iter().map(row).collect::<Value>(),
+        "mount": mount,
+    })
 }
 
 /// Places, feeds and tool axes in the workpiece frame, and the time from each point to the next at the programmed feed.
@@ -82,7 +105,7 @@ fn task(problem: &Problem) -> Value {
 }
 
 /// Corners in 32767 steps from the middle of a mesh to its farthest side: `mm_per_step` each.
-fn body(mesh: &BodyMesh) -> Value {
+fn body(mesh: &BodyMesh, frame: &str) -> Value {
     let ends = |k: usize| {
         let values = mesh.positions.iter().map(|position| f64::from(position[k]));
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -104,7 +127,7 @@ fn body(mesh: &BodyMesh) -> Value {
     };
     json!({
         "name": mesh.name,
-        "frame": frame(mesh.frame),
+        "frame": frame,
         "color": mesh.color.map(|part| (f64::from(part) * 1e3).round() / 1e3),
         "is_illustration": mesh.is_illustration,
         "middle_mm": middle.map(|value| value * 1e3),

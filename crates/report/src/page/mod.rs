@@ -13,7 +13,9 @@ pub mod gltf;
 mod html;
 mod map_data;
 mod packed;
-pub mod shapes;
+pub mod setup;
+mod shapes;
+mod surroundings;
 mod table;
 #[cfg(test)]
 mod tests;

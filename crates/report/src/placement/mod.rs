@@ -15,7 +15,7 @@ pub use text::placement_text;
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
 use crate::page;
-use crate::page::data::{MapOf, page_data};
+use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
 use std::path::PathBuf;
 use stead_format::Run;
@@ -76,15 +76,21 @@ impl Context {
         mut files: Files,
         command: &str,
         problem: &Problem,
+        plans: &[Placed<'_>],
         maps: &[MapOf<'_>],
     ) -> Result<Files, ReportError> {
         if self.page {
-            let data = page_data(self.document(), command, problem, maps);
+            let data = page_data(self.document(), command, problem, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
             page::put_page(&mut files)?;
         }
         Ok(files)
     }
+}
+
+/// Where a case has the workpiece.
+fn placed(case: &Case) -> Placed<'_> {
+    (&case.placement, &case.setup)
 }
 
 /// The command under which the manifest lists the files of a placement job and of its certificate.
@@ -167,8 +173,9 @@ pub fn score_files(
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
         files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
     }
-    let maps: Vec<MapOf<'_>> = map.iter().map(|map| (&score.placement, *map, SCORE_MAP[0])).collect();
-    context.with_page(named(files), SCORE, problem, &maps)
+    let placed: Placed<'_> = (&score.placement, &score.setup);
+    let maps: Vec<MapOf<'_>> = map.iter().map(|map| (placed, *map, SCORE_MAP[0])).collect();
+    context.with_page(named(files), SCORE, problem, &[placed; 2], &maps)
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
@@ -224,7 +231,8 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
     }
     let maps = outcome.maps.iter().flat_map(|[map_best, map_worst]| {
-        [(&best.placement, map_best, MAPS[0][0]), (&worst.placement, map_worst, MAPS[1][0])]
+        [(placed(best), map_best, MAPS[0][0]), (placed(worst), map_worst, MAPS[1][0])]
     });
-    context.with_page(named(files), PLACE, problem, &maps.collect::<Vec<_>>())
+    let plans = outcome.cases.all().map(placed);
+    context.with_page(named(files), PLACE, problem, &plans, &maps.collect::<Vec<_>>())
 }

@@ -2,8 +2,8 @@
 
 /** @typedef {{ name: string, frame: string, isIllustration: boolean, mesh: Mesh }} Body */
 
-/** @type {Body[]} */
-const BODIES = RAW.bodies.map((/** @type {any} */ body) => {
+/** @param {any} body @returns {Body} */
+function bodyOf(body) {
   const packed = new Int16Array(bytesOf(body.positions).buffer);
   const corners = Float32Array.from(packed, (step, k) => body.middle_mm[k % 3] + step * body.mm_per_step);
   const bytes = bytesOf(body.triangles).buffer;
@@ -15,11 +15,17 @@ const BODIES = RAW.bodies.map((/** @type {any} */ body) => {
     isIllustration: body.is_illustration,
     mesh: smoothed(corners, triangles, colour),
   };
-});
+}
 
-/** Bodies that move together, as one mesh. @param {string} frame @returns {Mesh} */
-function bodiesOf(frame) {
-  const parts = BODIES.filter((body) => body.frame === frame).map((body) => body.mesh);
+/** @type {Body[]} the robot and its spindle */
+const BODIES = RAW.bodies.map(bodyOf);
+
+/** @type {Body[]} the shapes in which collisions are looked for */
+const SHAPES = (RAW.surroundings || []).map(bodyOf);
+
+/** Bodies that move together, as one mesh. @param {Body[]} all @param {string} frame @returns {Mesh} */
+function bodiesOf(all, frame) {
+  const parts = all.filter((body) => body.frame === frame).map((body) => body.mesh);
   const joined = (/** @type {(part: Mesh) => number[] | Float32Array} */ of) => {
     const out = new Float32Array(parts.reduce((sum, part) => sum + of(part).length, 0));
     let at = 0;
@@ -35,15 +41,8 @@ function bodiesOf(frame) {
 /** The frames in which a pose puts the bodies that hang on the arm. */
 const ARM_FRAMES = ['base', 'link_1', 'link_2', 'link_3', 'link_4', 'link_5', 'link_6', 'tool'];
 
+/** Whether collision shapes are known of the arm. */
+const HAS_ENVELOPES = SHAPES.some((body) => ARM_FRAMES.includes(body.frame));
+
 /** Whether shapes are drawn that no drawing of the real part is behind. */
 const HAS_ILLUSTRATIONS = BODIES.some((body) => body.isIllustration);
-
-/** The floor: below the robot's foot, or where nothing says, below everything. */
-const FLOOR = (() => {
-  let lowest = Infinity;
-  for (const body of BODIES) {
-    if (body.frame === 'base')
-      for (let k = 2; k < body.mesh.p.length; k += 3) lowest = Math.min(lowest, body.mesh.p[k]);
-  }
-  return Number.isFinite(lowest) ? lowest : Math.min(...CASES.map((of) => of.at.z), 0) - 300;
-})();

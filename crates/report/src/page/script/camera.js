@@ -54,7 +54,7 @@ const parallel = (half, near, far) => [
 /** The middle of the path as placed. @param {Case} of @returns {Vec} */
 const middleOf = (of) =>
   moved(
-    workpieceFrame(of),
+    workpieceFrame(of, 0),
     EXTENT.map(([low, high]) => (low + high) / 2),
   );
 
@@ -72,7 +72,7 @@ function viewOf(name) {
   if (name === 'front')
     return { around: WORK_SIDE, up: 0.06, distance: 2.4 * far, target: [middle[0], middle[1], 0.08 * far] };
   if (name === 'tool') {
-    const tip = moved(framesOf(currentJoints(), baseFrame())[7], [0, 0, 0]);
+    const tip = moved(framesOf(currentJoints(), baseFrame(current(), state.t))[7], [0, 0, 0]);
     return { around: WORK_SIDE + 0.6, up: 0.42, distance: clamp(2.6 * PATH_SIZE, 0.25 * far, 0.8 * far), target: tip };
   }
   return { around: WORK_SIDE + 0.55, up: 0.31, distance: 1.82 * far, target: middle };

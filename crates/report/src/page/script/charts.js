@@ -146,7 +146,13 @@ function clearanceCard() {
     xText: pointText,
     digits: 1,
   });
-  return card('Clearance', 'mm', chart.host);
+  const out = card('Clearance', '', chart.host);
+  const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
+  onChange(() => {
+    const [clearance, pair] = [column(current())[currentPoint()], current().columns.nearest_pair[currentPoint()]];
+    words.textContent = Number.isFinite(clearance) ? `mm; here ${fixed(clearance, 1)}: ${pair}` : 'mm; here nothing within 1 m';
+  });
+  return out;
 }
 
 function chartCards() {

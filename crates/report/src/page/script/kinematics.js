@@ -6,8 +6,16 @@ const FLANGE_FROM_TOOL = (() => {
   return [q[0][0], q[1][0], q[2][0], 0, q[0][1], q[1][1], q[2][1], 0, q[0][2], q[1][2], q[2][2], 0, ...at, 1];
 })();
 
+/** The robot base frame on what carries it: the mount. @type {Mat} */
+const MOUNT = (() => {
+  const mount = RAW.robot.mount;
+  if (!mount) return IDENTITY;
+  const { rotation: q, xyz_mm: at } = mount;
+  return [q[0][0], q[1][0], q[2][0], 0, q[0][1], q[1][1], q[2][1], 0, q[0][2], q[1][2], q[2][2], 0, ...at, 1];
+})();
+
 /** Frames 0 (base) to 6 (flange) and 7 (tool). @param {number[]} joints @param {Mat} base @returns {Mat[]} */
-function framesOf(joints, base = IDENTITY) {
+function framesOf(joints, base = MOUNT) {
   const frames = [base];
   ROWS.forEach((row, k) => {
     const [theta, alpha] = [joints[k] * RADIANS, row.alpha * RADIANS];
@@ -19,11 +27,29 @@ function framesOf(joints, base = IDENTITY) {
   return frames;
 }
 
-/** The robot base in the cell at a path point. @returns {Mat} */
-const baseFrame = () => IDENTITY;
+/** Frames of twelve numbers a point, by columns, where a run has them. @param {string[] | null} packed @returns {Float32Array[] | null} */
+const framesBy = (packed) => (packed ? packed.map(singlesOf) : null);
+const PART_FRAMES = framesBy(RAW.part_frames);
+const CARRIAGE_FRAMES = framesBy(RAW.carriage_frames);
 
-/** The workpiece frame in the cell at a path point. @param {Case} of @returns {Mat} */
-function workpieceFrame(of) {
+/** One of them at a fractional point: a little further on than the last where external axes move. @param {Float32Array} all @param {number} t @returns {Mat} */
+function frameAt(all, t) {
+  const i = Math.min(Math.floor(t), COUNT - 1);
+  const next = Math.min(i + 1, COUNT - 1);
+  const [from, to] = [all.subarray(12 * i, 12 * i + 12), all.subarray(12 * next, 12 * next + 12)];
+  const m = mix(Array.from(from), Array.from(to), t - i);
+  return [m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0, m[9], m[10], m[11], 1];
+}
+
+/** What external axes have done with the robot: the frame that plans are stated in, in the cell. @param {Case} of @param {number} t @returns {Mat} */
+const carriageFrame = (of, t) => (CARRIAGE_FRAMES ? frameAt(CARRIAGE_FRAMES[of.number - 1], t) : IDENTITY);
+
+/** The robot base frame in the cell at a path point. @param {Case} of @param {number} t @returns {Mat} */
+const baseFrame = (of, t) => (CARRIAGE_FRAMES ? product(carriageFrame(of, t), MOUNT) : MOUNT);
+
+/** The workpiece frame in the cell at a path point. @param {Case} of @param {number} t @returns {Mat} */
+function workpieceFrame(of, t) {
+  if (PART_FRAMES) return product(carriageFrame(of, t), frameAt(PART_FRAMES[of.number - 1], t));
   const { x, y, z, yaw } = of.at;
   const [c, s] = [Math.cos(yaw * RADIANS), Math.sin(yaw * RADIANS)];
   return [c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1];
@@ -36,9 +62,6 @@ function jointsAt(of, t) {
   if (!f) return of.joints[i];
   return mix(of.joints[i], of.joints[i + 1], isMove(i) ? f * f * (3 - 2 * f) : f);
 }
-
-/** Places of the tool centre point in the cell. @param {Case} of @returns {Vec[]} */
-const tipsOf = (of) => TASK.position.map((position) => moved(workpieceFrame(of), position));
 
 /** How far the wrist centre reaches from the shoulder, and the shoulder's distance from axis 1 and height. */
 const REACH = {

@@ -6,15 +6,14 @@ const DIRECTION = RAW.criterion.direction;
 /** What the scored deflection spoils, in words. */
 const SCORED = { wall: 'wall', surface: 'surface', axis: 'floor' }[DIRECTION || ''] || 'tool';
 
-/** The scored part of the deflection at a point, in the cell. @param {Case} of @param {number} i @returns {Vec} */
+/** The scored part of the deflection at a point, in the workpiece frame. @param {Case} of @param {number} i @returns {Vec} */
 function errorAt(of, i) {
-  const frame = workpieceFrame(of);
   const columns = of.columns;
-  if (DIRECTION === 'wall') {
-    return times(turned(frame, unit(cross(TASK.axis[i], TASK.feed[i]))), columns.normal_mm[i]);
-  }
-  if (DIRECTION === 'axis') return times(turned(frame, TASK.axis[i]), columns.axial_mm[i]);
-  return [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
+  if (DIRECTION === 'wall') return times(unit(cross(TASK.axis[i], TASK.feed[i])), columns.normal_mm[i]);
+  if (DIRECTION === 'axis') return times(TASK.axis[i], columns.axial_mm[i]);
+  const whole = [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
+  const frame = PART_FRAMES ? frameAt(PART_FRAMES[of.number - 1], i) : workpieceFrame(of, i);
+  return [0, 4, 8].map((k) => dot([frame[k], frame[k + 1], frame[k + 2]], whole));
 }
 
 /** The extent of the path in the workpiece frame. */
@@ -34,10 +33,10 @@ const MAGNIFIED = (() => {
 /** No more tubes than this: a longer path is drawn by every so many points. */
 const MOST_TUBES = 1500;
 
-/** @param {Case} of @returns {{ tube: Mesh, curtain: Mesh }} */
+/** Both in the workpiece frame. @param {Case} of @returns {{ tube: Mesh, curtain: Mesh }} */
 function pathMeshes(of) {
   const [tube, curtain] = [mesh(), mesh()];
-  const tips = tipsOf(of);
+  const tips = TASK.position;
   const offs = tips.map((tip, i) => add(tip, times(errorAt(of, i), MAGNIFIED)));
   const radius = clamp(PATH_SIZE * 0.011, 2, 8);
   const stride = Math.ceil(COUNT / MOST_TUBES);

@@ -6,6 +6,7 @@ const LAYERS = [
   ['cell', 'cell volume'],
   ['reach', 'reach'],
   ['ghost', 'other placement'],
+  ['envelopes', 'collision shapes of the arm'],
 ];
 
 const SHADOW_PIXELS = 2048;
@@ -32,15 +33,17 @@ function sceneParts(gl) {
     main: programOf(gl, VERTEX, FRAGMENT),
     depth: programOf(gl, VERTEX, DEPTH_FRAGMENT),
     shadow: shadowTarget(gl, SHADOW_PIXELS),
-    arm: ARM_FRAMES.map((frame) => buffersOf(gl, bodiesOf(frame))),
-    part: buffersOf(gl, bodiesOf('workpiece')),
+    arm: ARM_FRAMES.map((frame) => buffersOf(gl, bodiesOf(BODIES, frame))),
+    envelopes: ARM_FRAMES.map((frame) => buffersOf(gl, bodiesOf(SHAPES, frame))),
+    around: buffersOf(gl, bodiesOf(SHAPES, 'cell')),
+    part: buffersOf(gl, bodiesOf([...BODIES, ...SHAPES], 'workpiece')),
     thin: linesOf(gl, thin),
     thick: linesOf(gl, thick),
     floor: buffersOf(gl, { p: corners, n: [], c: [], i: [0, 1, 2, 0, 2, 3] }),
     cell: buffersOf(gl, tubes(cellEdges(), FARTHEST * 0.0013)),
     reach: linesOf(gl, reachLines()),
     ball: buffersOf(gl, reachBall()),
-    axes: buffersOf(gl, arrows(baseFrame(), FARTHEST * 0.155)),
+    axes: buffersOf(gl, arrows(IDENTITY, FARTHEST * 0.155)),
   };
 }
 
@@ -49,19 +52,14 @@ function caseParts(gl) {
   const of = current();
   const other = CASES.find((one) => one.place !== of.place && one.plan === of.plan);
   const { tube, curtain } = pathMeshes(of);
-  const frame = workpieceFrame(of);
-  const ghostEdges = other ? partEdges().map((corner) => moved(workpieceFrame(other), corner)) : [];
   return {
     tube: buffersOf(gl, tube),
     curtain: buffersOf(gl, curtain),
     block: HAS_BLOCK ? buffersOf(gl, block(isDark() ? [104, 118, 134] : [186, 197, 209])) : null,
-    edges: linesOf(
-      gl,
-      partEdges().map((corner) => moved(frame, corner)),
-    ),
-    axes: buffersOf(gl, arrows(frame, FARTHEST * 0.09)),
+    edges: linesOf(gl, partEdges()),
+    axes: buffersOf(gl, arrows(IDENTITY, FARTHEST * 0.09)),
     ghost: other ? buffersOf(gl, pathMeshes(other).tube) : null,
-    ghostEdges: other ? buffersOf(gl, tubes(ghostEdges, FARTHEST * 0.0008)) : null,
+    ghostEdges: other ? buffersOf(gl, tubes(partEdges(), FARTHEST * 0.0008)) : null,
   };
 }
 
@@ -75,7 +73,7 @@ function sceneIn(host) {
   }
   host.append(canvas);
   /** @type {Record<string, boolean>} */
-  const shown = Object.fromEntries(LAYERS.map(([name]) => [name, true]));
+  const shown = Object.fromEntries(LAYERS.map(([name]) => [name, name !== 'envelopes']));
   const eye = viewOf('cell');
   let parts = sceneParts(gl);
   let ofCase = caseParts(gl);
@@ -128,11 +126,15 @@ function sceneIn(host) {
   const draw = () => {
     if (gl.isContextLost()) return;
     const of = current();
-    const frames = framesOf(currentJoints(), baseFrame());
-    const part = workpieceFrame(of);
+    const base = baseFrame(of, state.t);
+    const frames = framesOf(currentJoints(), base);
+    const part = workpieceFrame(of, state.t);
+    const other = CASES.find((one) => one.place !== of.place && one.plan === of.plan);
+    const ghost = other ? workpieceFrame(other, state.t) : IDENTITY;
     const bodies = (/** @type {Program} */ program) => {
       parts.arm.forEach((buffers, k) => put(program, buffers, frames[k]));
       put(program, parts.part, part);
+      put(program, parts.around);
       put(program, ofCase.block, part);
     };
     const far = FARTHEST;
@@ -177,17 +179,17 @@ function sceneIn(host) {
     const [soft, accent] = [themeRgb('--soft'), themeRgb('--accent')];
     paint(MODE.lit);
     bodies(program);
-    put(program, parts.axes);
-    put(program, ofCase.axes);
+    put(program, parts.axes, base);
+    put(program, ofCase.axes, part);
     paint(MODE.plain);
-    put(program, ofCase.tube);
+    put(program, ofCase.tube, part);
     if (shown.cell) {
       paint(MODE.plain, accent);
       put(program, parts.cell);
     }
     if (shown.ghost) {
       paint(MODE.plain, soft);
-      put(program, ofCase.ghostEdges);
+      put(program, ofCase.ghostEdges, ghost);
     }
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -199,20 +201,24 @@ function sceneIn(host) {
     paint(MODE.grid, soft, 0.45);
     put(program, parts.thick);
     paint(MODE.plain, soft, 0.8);
-    put(program, ofCase.edges);
+    put(program, ofCase.edges, part);
     if (shown.ghost) {
       paint(MODE.plain, [1, 1, 1], 0.5);
-      put(program, ofCase.ghost);
+      put(program, ofCase.ghost, ghost);
     }
     if (shown.curtain) {
       paint(MODE.plain, [1, 1, 1], 0.62);
-      put(program, ofCase.curtain);
+      put(program, ofCase.curtain, part);
+    }
+    if (shown.envelopes) {
+      paint(MODE.plain, [1, 1, 1], 0.25);
+      parts.envelopes.forEach((buffers, k) => put(program, buffers, frames[k]));
     }
     if (shown.reach) {
       paint(MODE.plain, soft, 0.45);
-      put(program, parts.reach);
+      put(program, parts.reach, base);
       paint(MODE.rim, soft, isDark() ? 0.4 : 0.16);
-      put(program, parts.ball);
+      put(program, parts.ball, base);
     }
     gl.depthMask(true);
   };
@@ -286,11 +292,11 @@ function sceneCard() {
   ].map(([name, text]) =>
     el('button.chip', { type: 'button', 'data-view': name, onclick: () => scene.view(name) }, text),
   );
-  const layers = LAYERS.filter(([name]) => name !== 'ghost' || CASES.length > 2).map(([name, text]) => {
+  const layers = LAYERS.filter(([name]) => (name !== 'ghost' || CASES.length > 2) && (name !== 'envelopes' || HAS_ENVELOPES)).map(([name, text]) => {
     const box = /** @type {HTMLInputElement} */ (
       el('input', {
         type: 'checkbox',
-        checked: true,
+        checked: name !== 'envelopes',
         'data-layer': name,
         onchange: () => scene.layer(name, box.checked),
       })

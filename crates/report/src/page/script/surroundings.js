@@ -1,7 +1,18 @@
 // What stands about the arm: the block under the path, the cell volume, the reach, and the grid on the floor.
 
 /** Whether a block can be drawn under the path: the tool comes from above everywhere, and no body of the part is known. */
-const HAS_BLOCK = TASK.axis.every((axis) => axis[2] > 0.8) && !BODIES.some((body) => body.frame === 'workpiece');
+const HAS_BLOCK = TASK.axis.every((axis) => axis[2] > 0.8) && ![...BODIES, ...SHAPES].some((body) => body.frame === 'workpiece');
+
+/** The floor of the cell: below the robot's foot, the fences and all places of the workpiece. */
+const FLOOR = (() => {
+  let lowest = Math.min(RAW.cell.z_mm[0] + EXTENT[2][0], RAW.cell.z_mm[0]) - PATH_SIZE * 0.15;
+  for (const body of [...BODIES, ...SHAPES].filter(({ frame }) => frame === 'base' || frame === 'cell')) {
+    const frame = body.frame === 'base' ? baseFrame(CASES[0], 0) : IDENTITY;
+    const { p } = body.mesh;
+    for (let k = 0; k < p.length; k += 3) lowest = Math.min(lowest, moved(frame, [p[k], p[k + 1], p[k + 2]])[2]);
+  }
+  return lowest;
+})();
 
 /** @param {Vec} low @param {Vec} high @returns {Vec[]} ends of the twelve edges of a box */
 function edgesOf(low, high) {
@@ -74,7 +85,7 @@ function reachAt(around, up) {
   const side = Math.sign(Math.cos(up)) * REACH.shoulder * Math.abs(Math.cos(up)) ** 0.2;
   const radius = side + REACH.arm * Math.cos(up);
   const z = REACH.height + REACH.arm * Math.sin(up);
-  return [radius * Math.cos(around), radius * Math.sin(around), Math.max(z, FLOOR)];
+  return [radius * Math.cos(around), radius * Math.sin(around), MOUNT === IDENTITY ? Math.max(z, FLOOR) : z];
 }
 
 /** @returns {Vec[]} four half circles and a ring of the reach, as lines */
