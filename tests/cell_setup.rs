@@ -157,7 +157,7 @@ fn bad_input_says_where_and_what() {
         &["external_axis[1].range_mm", "above its upper end"],
     );
     refused("range_mm = [-200, 200]", "range_mm = [200, -200]", &[&format!("run.toml:{line}: ")]);
-    refused("kind = 'rail'", "kind = 'crane'", &["external_axis[1].kind", "allowed: rail, turntable"]);
+    refused("kind = 'rail'", "kind = 'crane'", &["external_axis[1].kind", "allowed: \"rail\" or \"turntable\""]);
     refused("name = 'table'", "name = 'rail'", &["external_axis[2].name: is there twice"]);
     refused("direction = [1, 0, 0]", "direction = [0, 0, 0]", &["external_axis[1].direction: is no direction"]);
     refused("direction = [1, 0, 0]", "axis = [1, 0, 0]", &["external_axis[1].axis: is no key of a rail"]);

@@ -179,7 +179,7 @@ fn an_unstable_run_ends_cleanly_with_the_verdict() {
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(false), Some("limit")));
     assert!(document["end_reason"].as_str().unwrap().contains("more than"), "{}", document["end_reason"]);
     assert!(document["force_x"].is_null());
-    assert_eq!(bench.tree("results/pass").len(), 7);
+    assert_eq!(bench.tree("results/pass").len(), 8);
     assert!(simulate(&bench, &["--damping-scale", "0"]).stdout.contains("The cut is unstable: at "));
 }
 

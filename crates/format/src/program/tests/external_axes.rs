@@ -48,11 +48,10 @@ fn an_axis_that_is_elsewhere_is_found() {
         let mut program = bench.export(&bench.options()).unwrap();
         let part = program.files.last_mut().unwrap();
         if name == "abb" {
-            // The first external axis of the last target.
+            // The second external axis of the last target.
             let at = part.text.rfind(",9E9,9E9,9E9,9E9]").unwrap();
-            part.text.replace_range(at - 1..at, if part.text[at - 1..at] == *"1" { "2" } else { "1" });
-            let digits = part.text[..at].rfind(',').unwrap();
-            part.text.insert(digits + 1, '7');
+            let before = part.text[..at].rfind(',').unwrap();
+            part.text.replace_range(before + 1..at, "77.7000");
         } else {
             assert!(part.text.contains(from), "{}", part.text);
             part.text = part.text.replacen(from, to, 1);
