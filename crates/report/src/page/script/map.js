@@ -65,11 +65,11 @@ function mapCard() {
   const inner = () => [plot.width - margins.left - margins.right, plot.height - margins.top - margins.bottom];
   const columns = () => currentMap()?.points.length || COUNT;
   // Places along the map in its columns: its points are evenly chosen of the path's.
-  const columnOf = (/** @type {number} */ i) => {
+  const columnOf = (/** @type {number} */ t) => {
     const map = currentMap();
-    return map
-      ? nearestColumn(map, pathPoint(i)) + (Math.abs(map.points.length - COUNT) < 1 ? i - Math.round(i) : 0)
-      : i;
+    if (!map) return t;
+    const i = Math.floor(t);
+    return nearestColumn(map, pathPoint(i)) + (map.points.length === COUNT ? t - i : 0);
   };
   const xOf = (/** @type {number} */ column) => margins.left + ((column + 0.5) / columns()) * inner()[0];
   const yOf = (/** @type {number} */ beta) => margins.top + ((180 - beta) / 360) * inner()[1];
