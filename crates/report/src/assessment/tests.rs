@@ -115,7 +115,7 @@ fn a_robot_of_unknown_payload_has_no_rated_load_and_one_that_reaches_nothing_say
     let out = tempfile::tempdir().unwrap();
     let written =
         write_assessment(&Folder::create(out.path()).unwrap(), &run.comparison, &assessment, &context).unwrap();
-    assert_eq!(written.len(), 11);
+    assert_eq!(written.len(), 12);
     let map = rows(&std::fs::read(out.path().join("map-kuka-kr-500.csv")).unwrap());
     assert!(!map.is_empty() && map.iter().all(|row| row[4].is_empty() && row[3].parse::<f64>().unwrap() > 0.0));
 }

@@ -18,7 +18,7 @@ fn the_page_is_small_the_same_each_time_and_names_no_address() {
     let text = String::from_utf8(of(&made, PAGE).to_vec()).unwrap();
     assert!(text.len() < 600_000, "{}", text.len());
     assert_eq!(of(&made, PAGE), of(&files(), PAGE));
-    assert!(text.contains("<title>paper · stead</title>") && !text.contains("http"));
+    assert!(text.contains("<title>paper · stead</title>") && !text.contains("://"));
     let mut without = context();
     without.page = false;
     let names = placement_files(problem(), outcome(), &without).unwrap();

@@ -245,7 +245,7 @@ fn text_fits_into_110_columns_and_states_the_published_ratios() {
 }
 
 #[test]
-fn a_placement_job_leaves_seventeen_files_and_the_same_ones_again() {
+fn a_placement_job_leaves_eighteen_files_and_the_same_ones_again() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::create(&place.path().join("out")).unwrap();
     let contents = || {
@@ -253,9 +253,9 @@ fn a_placement_job_leaves_seventeen_files_and_the_same_ones_again() {
         paths.iter().map(|path| std::fs::read(path).unwrap()).collect::<Vec<_>>()
     };
     let first = contents();
-    assert_eq!(first.len(), 17);
+    assert_eq!(first.len(), 18);
     assert!(first.iter().all(|bytes| !bytes.is_empty()));
     assert_eq!(first, contents());
     // With the manifest, and the lock as long as the folder is held.
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 19);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 20);
 }

@@ -130,7 +130,7 @@ fn a_study_without_any_placement_says_why() {
     let files =
         write_study(&Folder::create(place.path()).unwrap(), "cells", &analysis, &[], &CasePages::new()).unwrap();
     let names: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(names, ["study-ranking.csv", "study-report.json"]);
+    assert_eq!(names, ["study-ranking.csv", "study-report.json", "report.html"]);
 }
 
 #[test]
