@@ -59,7 +59,7 @@ impl Collider {
                 // The library's cylinders stand along y.
                 let half = std::f64::consts::FRAC_1_SQRT_2;
                 let along_z = Rotation::from_xyzw(half, 0.0, 0.0, half);
-                pose = pose * ParryPose::from_parts(Vector::ZERO, along_z);
+                pose *= ParryPose::from_parts(Vector::ZERO, along_z);
                 Form::Convex(SharedShape::new(Cylinder::new(length / 2.0, *radius)))
             }
             Solid::Capsule { radius, length } => Form::Convex(SharedShape::new(Capsule::new_z(length / 2.0, *radius))),

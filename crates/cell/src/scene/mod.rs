@@ -209,7 +209,7 @@ impl Scene {
         let quick = Quick::new(self, poses);
         (0..self.pairs.len()).find(|number| {
             let pair = &self.pairs[*number];
-            kinds.contains(&pair.kind) && !quick.keeps_apart(self, pair) && !self.keeps_apart(*number, poses)
+            kinds.contains(&pair.kind) && !quick.leaves(self, pair, 0.0) && !self.keeps_apart(*number, poses)
         })
     }
 

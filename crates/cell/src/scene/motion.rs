@@ -5,6 +5,7 @@
 //! that does not decide, the interval is halved. In the end nothing moves farther between two states looked at than the
 //! resolution, and both states keep the distance asked for.
 
+use super::quick::Quick;
 use super::{FRAMES, Members, Poses, Scene};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
@@ -78,9 +79,14 @@ impl Scene {
     /// pairs keep apart all along. Each end has its joint angles and where all stands there.
     pub fn motion(&self, from: (&[f64; 6], &Poses), to: (&[f64; 6], &Poses)) -> Option<MotionHit> {
         let motion = Motion::new(from, to);
+        let quick = Quick::new(self, from.1);
         let mut open = Vec::new();
         for number in 0..self.pairs.len() {
             let travel = self.travel(number, &motion);
+            // More room at the start than the two can move towards each other.
+            if quick.leaves(self, &self.pairs[number], travel) {
+                continue;
+            }
             let rooms = [from.1, to.1].map(|poses| self.room(number, poses, travel));
             for (share, room) in [(0.0, rooms[0]), (1.0, rooms[1])] {
                 if room < 0.0 {

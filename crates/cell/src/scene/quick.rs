@@ -24,14 +24,14 @@ impl Quick {
         Self { centres, fixed: [0, WORKPIECE].map(|frame| poses.frames[frame].inverse()) }
     }
 
-    /// Whether a pair is as far apart as it has to be for certain; false says nothing.
-    pub fn keeps_apart(&self, scene: &Scene, pair: &Pair) -> bool {
+    /// Whether a pair is farther apart than it has to be by some room (m) for certain; false says nothing.
+    pub fn leaves(&self, scene: &Scene, pair: &Pair, room: f64) -> bool {
         let Members::Bodies(a, b) = pair.members else { return false };
         if a >= MOST || b >= MOST {
             return false;
         }
         let (first, second) = (&scene.bodies[a], &scene.bodies[b]);
-        let within = first.cover.bound.radius + pair.required;
+        let within = first.cover.bound.radius + pair.required + room;
         // Spheres that touch are not apart, whatever the clearance.
         let is_apart = |square: f64, within: f64| square > within * within;
         let fixed = match second.frame {

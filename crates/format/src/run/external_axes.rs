@@ -75,7 +75,7 @@ impl ExternalAxisTable {
             };
             return Err(at.key(other).error(format!("is no key of a {word}"), allowed));
         }
-        let missing = |key: &str| at.key(key).missing(&format!("what a {word} has"));
+        let missing = |key: &str| at.key(key).missing(format!("what a {word} has"));
         let (direction, range, speed) = match kind {
             AxisKind::Rail => (self.direction, self.range_mm.map(Interval::si), self.speed_mm_per_s.map(Quantity::si)),
             AxisKind::Turntable => {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
-use crate::redundancy::{Forbidden, Planner, forbid};
+use crate::redundancy::{Planner, StateSet, forbid};
 use crate::sense::Sense;
 use crate::testing::five_segments;
 use std::sync::Arc;
@@ -26,8 +26,8 @@ fn placements() -> [Placement; 3] {
 }
 
 /// All states of the planner's grid that hit, looked at one by one, as what a plan may not use.
-fn all_hits(problem: &Problem, placement: &Placement, planner: &Planner<'_>) -> Forbidden {
-    let mut forbidden = Forbidden::default();
+fn all_hits(problem: &Problem, placement: &Placement, planner: &Planner<'_>) -> StateSet {
+    let mut forbidden = StateSet::default();
     for point in 0..problem.task.points().len() {
         for posture in Posture::ALL.into_iter().filter(|posture| !posture.is_flipped()) {
             for beta in 0..planner.grid().beta_count {
@@ -131,7 +131,7 @@ fn a_part_in_the_fence_blocks_every_point_and_is_named() {
 
 #[test]
 fn neighbours_that_hit_are_forbidden_as_far_as_they_hit() {
-    let mut forbidden = Forbidden::default();
+    let mut forbidden = StateSet::default();
     let class = stead_model::robot::PostureClass::ALL[1];
     forbid((4, class), (1, 10), |k| [9, 0, 1, 2, 5].contains(&k), &mut forbidden);
     let found: Vec<usize> = (0..10).filter(|k| forbidden.contains(4, class, *k)).collect();

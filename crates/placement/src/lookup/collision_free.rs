@@ -7,7 +7,7 @@ use super::objective::Workspace;
 use super::polar::PlacedPath;
 use super::{BetaGrid, LookupTable};
 use crate::problem::Placement;
-use crate::redundancy::forbid;
+use crate::redundancy::{StateSet, forbid};
 use std::cell::Cell;
 use std::ops::Range as Span;
 use stead_model::robot::PostureClass;
@@ -26,16 +26,23 @@ impl LookupTable<'_> {
         grid: &BetaGrid,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
+        // States met on earlier ways in which nothing hits.
+        let mut free = StateSet::default();
         for _ in 0..MAX_ROUNDS {
             let (cost, class) = self.best_class(placed, (index, span), asked, grid, workspace)?;
             let betas = traced(&workspace.best_costs, &grid.changes[span.clone()], grid.count);
             let mut is_free = true;
             for (point, beta) in span.clone().zip(betas) {
+                if free.contains(point, PostureClass::ALL[class], beta) {
+                    continue;
+                }
                 let likely = Cell::new(None);
                 let hits = |k: usize| self.hits(placement, (point, class), grid.beta(k), &likely);
                 if hits(beta) {
                     is_free = false;
                     forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, &mut workspace.forbidden);
+                } else {
+                    free.add(point, PostureClass::ALL[class], beta);
                 }
             }
             if is_free {

@@ -30,7 +30,7 @@ pub use shape::{Axis, Shape};
 
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
-use super::redundancy::{BetaChange, Forbidden, Planner, saved_changes};
+use super::redundancy::{BetaChange, Planner, StateSet, saved_changes};
 use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
@@ -67,7 +67,7 @@ pub struct BetaGrid {
     /// For each path point the allowed changes of the beta number from the one before.
     pub(crate) changes: Vec<BetaChange>,
     /// States in which spindle or holder hit part or fixture.
-    pub(crate) tool_hits: Arc<Forbidden>,
+    pub(crate) tool_hits: Arc<StateSet>,
     /// Its step. rad
     step: f64,
 }
@@ -82,7 +82,7 @@ impl BetaGrid {
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
         let changes = saved_changes(problem, &grid);
-        let tool_hits = Arc::new(Forbidden::of_tool(problem, &grid));
+        let tool_hits = Arc::new(StateSet::of_tool(problem, &grid));
         Self { count, changes, tool_hits, step: grid.beta_step() }
     }
 

@@ -7,7 +7,7 @@ use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
 use crate::candidate::{Objective, best_of};
 use crate::problem::Placement;
-use crate::redundancy::{BetaChange, Forbidden};
+use crate::redundancy::{BetaChange, StateSet};
 use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
@@ -27,7 +27,7 @@ pub struct Workspace {
     /// The same of the best class.
     pub(super) best_costs: Vec<f32>,
     /// States that hit, of the placement evaluated.
-    pub(super) forbidden: Forbidden,
+    pub(super) forbidden: StateSet,
 }
 
 impl LookupTable<'_> {
@@ -42,7 +42,7 @@ impl LookupTable<'_> {
             favourites: vec![0; self.problem.task.segments().len()],
             kept_costs: Vec::new(),
             best_costs: Vec::new(),
-            forbidden: Forbidden::default(),
+            forbidden: StateSet::default(),
         }
     }
 

@@ -5,7 +5,7 @@
 //! its grid. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
 
 use super::joint_turns::SegmentChoice;
-use super::{Forbidden, NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};
+use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, off_grid};
 use crate::candidate::Objective;
 use crate::collision::PlanHit;
 use crate::problem::Placement;
@@ -25,7 +25,7 @@ pub(crate) fn forbid(
     (point, class): (usize, PostureClass),
     (beta, count): (usize, usize),
     hits: impl Fn(usize) -> bool,
-    forbidden: &mut Forbidden,
+    forbidden: &mut StateSet,
 ) {
     forbidden.add(point, class, beta);
     for side in [1, count - 1] {
@@ -92,7 +92,7 @@ impl Planner<'_> {
 
     /// [`Planner::objective`] without some states.
     #[cfg(test)]
-    pub fn objective_without(&self, placement: &Placement, sense: Sense, forbidden: &Forbidden) -> Objective {
+    pub fn objective_without(&self, placement: &Placement, sense: Sense, forbidden: &StateSet) -> Objective {
         let mut workspace = Workspace { forbidden: forbidden.clone(), ..self.workspace() };
         self.objective(placement, sense, None, &mut workspace)
     }
@@ -164,7 +164,7 @@ impl Planner<'_> {
     }
 
     /// Forbids the states of the grid next to one of a plan that hits.
-    fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut Forbidden) {
+    fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut StateSet) {
         let count = self.grid.beta_count;
         let place = hit.point - plan.points.start;
         let class = plan.posture.class();

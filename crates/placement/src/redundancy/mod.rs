@@ -17,7 +17,6 @@ pub mod axis_path;
 mod between;
 mod collision_free;
 mod follow;
-mod forbidden;
 mod forward_pass;
 mod grid;
 mod joint_turns;
@@ -28,15 +27,16 @@ mod rate_limit;
 #[cfg(test)]
 mod reference_dp;
 mod segment;
+mod state_set;
 pub mod transition;
 mod turns_dp;
 mod unchanging;
 
 pub use collision_free::Collisions;
 pub(crate) use collision_free::forbid;
-pub use forbidden::Forbidden;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
+pub use state_set::StateSet;
 
 use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
@@ -100,7 +100,7 @@ pub struct Planner<'a> {
     ranges: [Option<Range>; 6],
     instructions: Instructions,
     /// States in which spindle or holder hit part or fixture.
-    tool_hits: Arc<Forbidden>,
+    tool_hits: Arc<StateSet>,
     /// Whether plans are free between their points too.
     checks_motions: bool,
 }
@@ -113,7 +113,7 @@ pub struct Workspace {
     record: forward_pass::Record,
     run_costs: between::RunCosts,
     /// States that hit, of the placement that is planned.
-    forbidden: Forbidden,
+    forbidden: StateSet,
 }
 
 impl<'a> Planner<'a> {
@@ -151,7 +151,7 @@ impl<'a> Planner<'a> {
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
-            tool_hits: Arc::new(Forbidden::of_tool(problem, &grid)),
+            tool_hits: Arc::new(StateSet::of_tool(problem, &grid)),
             checks_motions: room.neighbours == FINAL_ROOM.neighbours,
         }
     }
@@ -195,7 +195,7 @@ impl<'a> Planner<'a> {
             before,
             record: forward_pass::Record::new(longest, count),
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
-            forbidden: Forbidden::default(),
+            forbidden: StateSet::default(),
         }
     }
 

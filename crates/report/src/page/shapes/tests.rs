@@ -1,5 +1,6 @@
 //! Bodies of every arm of the catalogue: closed, outward, where the rows are.
 
+use crate::page::shapes::arm::scale;
 use super::*;
 use crate::testing::problem;
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! States that a plan may not use though every constraint on them holds: those in which something hits.
+//! Sets of states: those that a plan may not use though every constraint on them holds, since something hits.
 
 use super::super::evaluate::batch::StateGrid;
 use crate::problem::{Problem, Redundancy};
@@ -8,7 +8,7 @@ use stead_model::robot::PostureClass;
 
 /// A set of states: path point, posture class, number of beta.
 #[derive(Debug, Clone, Default)]
-pub struct Forbidden {
+pub struct StateSet {
     /// For each point with any, a row of bits for each class.
     points: BTreeMap<usize, [Vec<u64>; 4]>,
 }
@@ -31,7 +31,7 @@ fn numbers(bits: &[u64]) -> impl Iterator<Item = usize> + '_ {
         .flat_map(|(index, word)| (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| index * 64 + bit))
 }
 
-impl Forbidden {
+impl StateSet {
     /// Forgets all states.
     pub fn clear(&mut self) {
         self.points.clear();
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn states_are_taken_out_by_point_class_and_beta() {
         let class = PostureClass::ALL[2];
-        let mut forbidden = Forbidden::default();
+        let mut forbidden = StateSet::default();
         assert!(forbidden.add(7, class, 70) && !forbidden.add(7, class, 70) && forbidden.add(7, class, 3));
         assert!(forbidden.contains(7, class, 70) && !forbidden.contains(7, class, 71));
         assert!(!forbidden.contains(6, class, 70) && !forbidden.contains(7, PostureClass::ALL[1], 70));
