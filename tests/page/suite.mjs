@@ -142,15 +142,18 @@ export function tests(folder, others) {
       const first = await view(page);
       const seconds = async () => parseFloat((await text(page, 'now')).match(/([\d.]+) s$/)[1]);
       // Between two clicks in the page, however long the browser takes for a frame.
-      const played = await page.evaluate(async () => {
+      const [played, hasCursor] = await page.evaluate(async () => {
         const button = document.getElementById('play');
         button.click();
         const begun = performance.now();
         await new Promise((done) => setTimeout(done, 3000));
+        const cursor = document.querySelectorAll('#map canvas')[1];
+        const pixels = cursor.getContext('2d').getImageData(0, 0, cursor.width, cursor.height).data;
         button.click();
-        return (performance.now() - begun) / 1000;
+        return [(performance.now() - begun) / 1000, pixels.some((value) => value > 0)];
       });
       const at = await seconds();
+      assert.ok(hasCursor, 'the map has no cursor while it plays');
       assert.ok(at > 0.5 * played - 0.5 && at < 1.1 * played, `after ${played} s of play it is at ${at} s`);
       assert.ok(!first.equals(await view(page)), 'the view stays as it is');
       assert.equal(await seconds(), at, 'it goes on after the pause');
