@@ -11,7 +11,7 @@ use crate::solid::{Solid, TriangleMesh};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::partitioning::BvhNode;
-use parry3d_f64::query::{self, ClosestPoints};
+use parry3d_f64::query::{self, ClosestPoints, PointQuery};
 use parry3d_f64::shape::{
     Capsule, ConvexPolyhedron, Cuboid, Cylinder, Shape as ParryShape, SharedShape, TriMesh, TriMeshFlags,
 };
@@ -38,6 +38,9 @@ impl fmt::Debug for Collider {
     }
 }
 
+/// How far a vertex may be outside of the hull, relative to its size.
+const HULL_TOLERANCE: f64 = 1e-6;
+
 fn vector(v: &Vector3<f64>) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
@@ -49,8 +52,7 @@ fn parry_pose(pose: &Pose<f64>) -> ParryPose {
 }
 
 impl Collider {
-    /// Makes a solid ready, at a pose in the frame of its attachment. `None` where the hull of a mesh cannot be formed, since all of
-    /// its vertices lie in a plane.
+    /// Makes a solid ready, at a pose in the frame of its attachment. `None` where the hull of a mesh cannot be formed.
     pub fn new(solid: &Solid, pose: &Pose<f64>) -> Option<Self> {
         let mut pose = parry_pose(pose);
         let form = match solid {
@@ -65,7 +67,14 @@ impl Collider {
             Solid::Capsule { radius, length } => Form::Convex(SharedShape::new(Capsule::new_z(length / 2.0, *radius))),
             Solid::Hull(mesh) => {
                 let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-                Form::Convex(SharedShape::new(ConvexPolyhedron::from_convex_hull(&points)?))
+                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
+                // The hull has to contain what it is made of.
+                let size = hull.local_aabb().half_extents().length();
+                let is_outside = |point: &Vector| hull.distance_to_local_point(*point, true) > HULL_TOLERANCE * size;
+                if points.iter().any(is_outside) {
+                    return None;
+                }
+                Form::Convex(SharedShape::new(hull))
             }
             Solid::Mesh(mesh) => Form::Mesh(Box::new(tri_mesh(mesh)?), mesh.is_closed()),
         };
@@ -153,7 +162,7 @@ fn mesh_distance(
 fn is_inside(mesh: &TriMesh, point: Vector) -> bool {
     let bounds = mesh.local_aabb();
     let is_near = (0..3).all(|k| point[k] >= bounds.mins[k] && point[k] <= bounds.maxs[k]);
-    is_near && query::PointQuery::contains_local_point(mesh, point)
+    is_near && mesh.contains_local_point(point)
 }
 
 /// The distance of two meshes, where it is below `limit`.

@@ -14,7 +14,7 @@ use stead_model::robot::{Pose, Robot};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SceneError {
     /// The hull of a shape cannot be formed.
-    #[error("the vertices of {0:?} lie in a plane, so that they have no hull")]
+    #[error("the vertices of {0:?} have no hull that contains them: do they lie in a line or a plane?")]
     FlatHull(String),
     /// Pairs that touch in every posture.
     #[error("{} in every posture tried: leave room between them, or list them in ignore", listed(.0))]

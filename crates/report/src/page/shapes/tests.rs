@@ -1,7 +1,7 @@
 //! Bodies of every arm of the catalogue: closed, outward, where the rows are.
 
-use crate::page::shapes::arm::scale;
 use super::*;
+use crate::page::shapes::arm::scale;
 use crate::testing::problem;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
