@@ -3,7 +3,7 @@
 //! No point of a body moves faster than its reach times the speeds of the joints. So two bodies keep apart on a whole interval
 //! where the room that they have at both ends together is not less than what they can move towards each other in between. Where
 //! that does not decide, the interval is halved. In the end nothing moves farther between two states looked at than the
-//! resolution, and both states keep the distance asked for.
+//! resolution, and both states keep nine tenths of the distance asked for.
 
 use super::quick::Quick;
 use super::{FRAMES, Members, Poses, Scene};
@@ -18,6 +18,10 @@ pub struct MotionHit {
     /// Number of the pair.
     pub pair: usize,
 }
+
+/// The share of the clearance that has to be left between the ends of a motion: where both ends have just what is asked for, a straight
+/// motion between them comes a little nearer.
+const BETWEEN: f64 = 0.9;
 
 /// The resolution where no clearance is asked for, and at the finest. m
 const FINEST: f64 = 5e-4;
@@ -75,8 +79,8 @@ impl<'a> Motion<'a> {
 }
 
 impl Scene {
-    /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than it may be; `None` where all
-    /// pairs keep apart all along. Each end has its joint angles and where all stands there.
+    /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than nine tenths of what it has to
+    /// keep; `None` where all pairs keep apart all along. Each end has its joint angles and where all stands there.
     pub fn motion(&self, from: (&[f64; 6], &Poses), to: (&[f64; 6], &Poses)) -> Option<MotionHit> {
         let motion = Motion::new(from, to);
         let quick = Quick::new(self, from.1);
@@ -111,7 +115,7 @@ impl Scene {
             if room < 0.0 {
                 return Some(MotionHit { share: middle, pair: *number });
             }
-            if travel <= self.pairs[*number].required.max(FINEST) {
+            if travel <= self.wanted_between(*number).max(FINEST) {
                 continue;
             }
             for (half, ends) in halves.iter_mut().zip([[rooms[0], room], [room, rooms[1]]]) {
@@ -131,18 +135,20 @@ impl Scene {
         None
     }
 
-    /// The room of a pair beyond the distance that it has to keep, where it is below `enough`; else a value not below that. Where
-    /// shapes touch it is less than nothing. m
+    /// The distance that a pair has to keep between the ends of a motion. m
+    fn wanted_between(&self, number: usize) -> f64 {
+        self.pairs[number].required * BETWEEN
+    }
+
+    /// The room of a pair beyond the distance that it has to keep between the ends of a motion, where it is below `enough`; else a value
+    /// not below that. Where shapes touch it is less than nothing. m
     fn room(&self, number: usize, poses: &Poses, enough: f64) -> f64 {
-        let pair = &self.pairs[number];
-        let wanted = (enough + pair.required).max(f64::MIN_POSITIVE);
-        let bound = self.bound(pair, poses, wanted);
-        let distance = if bound >= wanted { bound } else { self.distance(number, poses, wanted) };
-        if self.is_touching(number, distance) {
-            (distance - pair.required).min(-f64::MIN_POSITIVE)
-        } else {
-            distance - pair.required
-        }
+        let (pair, wanted) = (&self.pairs[number], self.wanted_between(number));
+        let limit = (enough + wanted).max(f64::MIN_POSITIVE);
+        let bound = self.bound(pair, poses, limit);
+        let distance = if bound >= limit { bound } else { self.distance(number, poses, limit) };
+        let room = distance - wanted;
+        if self.is_touching(number, distance) { room.min(-f64::MIN_POSITIVE) } else { room }
     }
 
     /// How far the two of a pair can move towards each other in a motion. m
