@@ -8,7 +8,7 @@ mod attached;
 mod loft;
 mod shading;
 
-pub use arm::{arm_bodies, scale};
+pub use arm::arm_bodies;
 pub use attached::{block_of, spindle_bodies};
 pub use shading::{Shaded, shaded};
 
