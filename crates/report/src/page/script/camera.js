@@ -60,22 +60,27 @@ const middleOf = (of) =>
 
 /** Where the scene looks to: between the robot and the places of the workpiece. */
 const WORK = CASES.reduce((sum, of) => add(sum, times(middleOf(of), 1 / CASES.length)), [0, 0, 0]);
-const WORK_SIDE = Math.atan2(WORK[1], WORK[0]);
+/** Where the robot stands: on a floor, or mounted on a wall or a ceiling. */
+const STAND = baseFrame(CASES[0], 0).slice(12, 15);
+const WORK_SIDE = Math.atan2(WORK[1] - STAND[1], WORK[0] - STAND[0]);
+/** The middle of the views: between the two, level with the robot where it stands upright. */
+const MIDDLE = add(mix(STAND, [WORK[0], WORK[1], STAND[2]], 0.52), [0, 0, MOUNT[10] > 0.9 ? 0 : (WORK[2] - STAND[2]) / 2]);
 
 /** @typedef {{ around: number, up: number, distance: number, target: Vec }} Eye angles in rad */
 
 /** The eye of a named view. @param {string} name @returns {Eye} */
 function viewOf(name) {
-  const [far, middle] = [FARTHEST, [WORK[0] * 0.52, WORK[1] * 0.52, 0.05 * FARTHEST]];
+  const far = FARTHEST;
+  const raised = (/** @type {number} */ by) => add(MIDDLE, [0, 0, by * far]);
   if (name === 'top')
-    return { around: WORK_SIDE, up: 1.5, distance: 2.6 * far, target: [middle[0], middle[1], -0.1 * far] };
+    return { around: WORK_SIDE, up: 1.5, distance: 2.6 * far, target: raised(-0.1) };
   if (name === 'front')
-    return { around: WORK_SIDE, up: 0.06, distance: 2.4 * far, target: [middle[0], middle[1], 0.08 * far] };
+    return { around: WORK_SIDE, up: 0.06, distance: 2.4 * far, target: raised(0.08) };
   if (name === 'tool') {
     const tip = moved(framesOf(currentJoints(), baseFrame(current(), state.t))[7], [0, 0, 0]);
     return { around: WORK_SIDE + 0.6, up: 0.42, distance: clamp(2.6 * PATH_SIZE, 0.25 * far, 0.8 * far), target: tip };
   }
-  return { around: WORK_SIDE + 0.55, up: 0.31, distance: 1.82 * far, target: middle };
+  return { around: WORK_SIDE + 0.55, up: 0.31, distance: 1.82 * far, target: raised(0.05) };
 }
 
 /** @param {Eye} eye @returns {Vec} */

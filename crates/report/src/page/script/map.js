@@ -226,8 +226,8 @@ function mapCard() {
     if (changed.case || changed.theme) explain();
     drawTop();
     const map = currentMap();
-    reading.textContent =
-      state.chosen && map ? stateText(map, state.chosen) : 'spindle angle β over path point; drag to choose a state';
+    const hint = map ? 'spindle angle β over path point; drag to choose a state' : 'both plans; the run has made no map';
+    reading.textContent = state.chosen && map ? stateText(map, state.chosen) : hint;
   });
 
   /** The state under the pointer. @param {PointerEvent} event @returns {Chosen | null} */

@@ -138,7 +138,7 @@ function sceneIn(host) {
       put(program, ofCase.block, part);
     };
     const far = FARTHEST;
-    const middle = [WORK[0] * 0.45, WORK[1] * 0.45, 0];
+    const middle = [MIDDLE[0], MIDDLE[1], MIDDLE[2]];
     const sunEye = lookAt(add(middle, times(SUN, 2.2 * far)), middle, [0, 1, 0]);
     const sunView = product(parallel(far, 0.18 * far, 4.4 * far), sunEye);
 
