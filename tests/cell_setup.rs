@@ -167,7 +167,7 @@ fn bad_input_says_where_and_what() {
     let lists = [
         ("orientations = []", "cell.orientations: is empty"),
         ("orientations = [{ name = 'a' }, { name = 'a' }]", "cell.orientations[2].name: is there twice"),
-        ("orientations = [{ name = ' ' }]", "cell.orientations[1].name: is no name"),
+        ("orientations = [{ name = ' ' }]", "cell.orientations[1].name: is blank"),
         ("orientations = [{ name = 'a', rpy_deg = [0, 0, 0], abc_deg = [0, 0, 0] }]", "states an orientation beside"),
         ("orientation = 'a'", "cell.orientation: names an orientation, and none is listed"),
         (
