@@ -38,6 +38,9 @@ impl fmt::Debug for Collider {
     }
 }
 
+/// How far a vertex may be outside of the hull, relative to its size.
+const HULL_TOLERANCE: f64 = 1e-6;
+
 fn vector(v: &Vector3<f64>) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
@@ -64,7 +67,14 @@ impl Collider {
             Solid::Capsule { radius, length } => Form::Convex(SharedShape::new(Capsule::new_z(length / 2.0, *radius))),
             Solid::Hull(mesh) => {
                 let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-                Form::Convex(SharedShape::new(ConvexPolyhedron::from_convex_hull(&points)?))
+                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
+                // What the library makes of flat meshes does not contain them.
+                let size = hull.local_aabb().half_extents().length();
+                let is_outside = |point: &Vector| hull.distance_to_local_point(*point, true) > HULL_TOLERANCE * size;
+                if points.iter().any(is_outside) {
+                    return None;
+                }
+                Form::Convex(SharedShape::new(hull))
             }
             Solid::Mesh(mesh) => Form::Mesh(Box::new(tri_mesh(mesh)?), mesh.is_closed()),
         };

@@ -260,17 +260,15 @@ fn shapes_that_touch_in_every_posture_are_named_with_the_line_to_write() {
     assert!(run(folder.path(), "", &format!("{tables}[collision]\n{ignore}\n")).is_ok());
 }
 
-/// Sheet metal: a hull may be flat.
 #[test]
-fn a_hull_of_a_plane_is_a_plane() {
+fn a_hull_of_a_plane_is_refused_at_its_key() {
     let folder = cell("");
     std::fs::write(folder.path().join("flat.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 4 3\n").unwrap();
-    let tables = "[[shape]]\nname = 'flat'\nattached = 'workpiece'\nhull = 'flat.obj'\n\
-                  [[shape]]\nname = 'ball'\nattached = 'base'\ncapsule_mm = { radius = 100, length = 0 }\nxyz_mm = [4, 1000, 0]\n";
-    let scene = run(folder.path(), "", tables).unwrap().problem.scene.unwrap();
-    let poses = scene.poses(&[0.0; 6], &Pose::identity());
-    assert_eq!(scene.pairs().len(), 1);
-    assert!((scene.distance(0, &poses, 10.0) - (1.0 - 0.009 - 0.1)).abs() < 1e-6);
+    let tables = "[[shape]]\nname = 'flat'\nattached = 'workpiece'\nhull = 'flat.obj'\n";
+    let message = run(folder.path(), "", tables).unwrap_err();
+    for part in ["shape[1].hull: ", "in a plane", "found 'flat.obj'; allowed: mesh in place of hull"] {
+        assert!(message.contains(part), "{part} in {message}");
+    }
 }
 
 /// The digest of a case changes with every file that the scene is made of.
