@@ -3,7 +3,6 @@ use crate::{Run, read_run};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Solid, Zone};
-use stead_model::robot::Pose;
 use stead_numerics::rotation::rotation_from_zyx;
 
 /// A cell file with every key.
