@@ -152,7 +152,6 @@ const identify = async (page) => {
 await must('identify fit: residuals, intervals, readings', join(out('identify'), 'report.html'), identify);
 
 cpSync(join(root, 'results/study-k1'), out('study'), { recursive: true });
-run('study', 'report', 'configs/study-k1.toml', '--out', out('study'));
 const ranking = table(join(out('study'), 'study-ranking.csv'));
 await must('study: a table that sorts and filters, effects', join(out('study'), 'report.html'), async (page) => {
   const rows = card(page, 'Ranking').locator('tbody tr');

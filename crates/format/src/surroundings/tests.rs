@@ -259,17 +259,6 @@ fn shapes_that_touch_in_every_posture_are_named_with_the_line_to_write() {
     assert!(run(folder.path(), "", &format!("{tables}[collision]\n{ignore}\n")).is_ok());
 }
 
-#[test]
-fn a_hull_of_a_plane_is_refused_at_its_key() {
-    let folder = cell("");
-    std::fs::write(folder.path().join("flat.obj"), "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 4 3\n").unwrap();
-    let tables = "[[shape]]\nname = 'flat'\nattached = 'workpiece'\nhull = 'flat.obj'\n";
-    let message = run(folder.path(), "", tables).unwrap_err();
-    for part in ["shape[1].hull: ", "in a plane", "found 'flat.obj'; allowed: mesh in place of hull"] {
-        assert!(message.contains(part), "{part} in {message}");
-    }
-}
-
 /// The digest of a case changes with every file that the scene is made of.
 #[test]
 fn cases_of_a_study_know_the_files_of_the_cell() {
