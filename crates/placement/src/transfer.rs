@@ -2,7 +2,7 @@
 //!
 //! Each joint and each external axis moves from rest to rest within its speed, acceleration and jerk; all arrive together. Time-optimal
 //! profiles come from rsruckig. Without shapes of the cell only the time is computed: that the move clears the workpiece is for the
-//! programmer to see to. With them, moves keep free of all shapes ([`way`]).
+//! programmer to see to. With them, moves keep free of all shapes ([`Way`]).
 
 mod way;
 

@@ -1,8 +1,8 @@
 //! The page: a run in one HTML file that needs no network, with the cell in three dimensions.
 //!
-//! `page-data.json` ([`data`]) holds what the tables of a run do not: robot, task, the joint angles of the maps, the bodies. The page is
-//! made of that and of the other files of the run, by [`page`], so that its numbers are theirs and `stead page` makes the same page of a
-//! folder ([`folder`]). Its script is plain JavaScript in `script/`, a thought a file, in one scope.
+//! `page-data.json` (`data`) holds what the tables of a run do not: robot, task, the joint angles of the maps, the bodies. The page is
+//! made of that and of the other files of the run, by `page`, so that its numbers are theirs and `stead page` makes the same page of a
+//! folder (`folder`). Its script is plain JavaScript in `script/`, a thought a file, in one scope.
 
 mod base64;
 pub mod cards;

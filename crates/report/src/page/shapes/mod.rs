@@ -45,7 +45,7 @@ pub struct BodyMesh {
     pub is_illustration: bool,
 }
 
-/// The bodies of the arm, its base first, and of its spindle. What it works on is [`block_of`].
+/// The bodies of the arm, its base first, and of its spindle. What it works on is `block_of`.
 pub fn bodies(problem: &Problem) -> Vec<BodyMesh> {
     let mut bodies = arm_bodies(&problem.robot, &problem.spindle);
     bodies.extend(spindle_bodies(&problem.robot, &problem.spindle));
