@@ -51,7 +51,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     with stead.Folder(tmp_path / "held") as folder:
         with pytest.raises(stead.OutputError, match="another run of stead"):
             found.write(folder.path)
-        assert len(found.write(folder)) == 3
+        assert len(found.write(folder)) == 4
     with pytest.raises(stead.ArgumentError, match="released"):
         found.write(folder)
 

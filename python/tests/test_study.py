@@ -28,7 +28,17 @@ field = "cell.z_mm"
 values = [[-220.0, -214.0], [4000.0, 4001.0]]
 labels = ["1", "2"]
 """
-TEXTS = {"id", "task", "height", "status", "reason", "active_bounds", "certificate_best_status", "certificate_worst_status"}
+TEXTS = {
+    "id",
+    "task",
+    "height",
+    "status",
+    "reason",
+    "nearest_pair",
+    "active_bounds",
+    "certificate_best_status",
+    "certificate_worst_status",
+}
 COUNTS = {"case", "postures"}
 Value = str | float | int | None
 
