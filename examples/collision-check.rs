@@ -15,6 +15,9 @@ use stead_cell::{PairKind, Scene, Surroundings};
 use stead_model::robot::Posture;
 use stead_placement::problem::{Placement, Problem};
 
+/// Distances of round shapes are good to this. m
+const ACCURACY: f64 = 1e-5;
+
 /// What was counted.
 #[derive(Default)]
 struct Counted {
@@ -75,7 +78,8 @@ fn counted(problem: &Problem, scene: &Scene, states: usize) -> Counted {
         let is_free = |number: usize| {
             let distance = scene.distance(number, &poses, 1.0);
             // Zones may be touched, shapes may not.
-            distance >= scene.pairs()[number].required && (distance > 0.0 || scene.pairs()[number].is_of_zone())
+            distance >= scene.pairs()[number].required - ACCURACY
+                && (distance > 0.0 || scene.pairs()[number].is_of_zone())
         };
         let is_free = (0..scene.pairs().len()).all(is_free);
         let is_covered = scene.first_covered_hit(&poses, &PairKind::ALL).is_none();

@@ -28,7 +28,7 @@ const BOX: [f64; 3] = [-650.0, -2000.0, -300.0];
 
 const RUN: &str = "robot = \"name:kuka-kr210-2\"\ntask = \"line.csv\"\nsurroundings = \"box.toml\"\n\n[spindle]\nxyz_mm = [0.0, 0.0, 450.0]\n\
     rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]\n\n[constraints]\nmin_inverse_condition = 0.05\n\
-    characteristic_length_mm = 700.0\n\n[redundancy]\nbeta_step_deg = 3.0\nfeed_mm_per_s = 20.0\n\n";
+    characteristic_length_mm = 700.0\n\n[redundancy]\nbeta_step_deg = 3.0\nfeed_mm_per_s = 20.0\nmax_beta_rate_deg_per_mm = 2.0\n\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mesh = env::args().nth(1).ok_or("usage: restricted-space MESH")?;
@@ -49,7 +49,7 @@ fn study(folder: &Path, mesh: &Path) -> Result<(), Box<dyn Error>> {
     }
     fs::write(folder.join("line.csv"), task)?;
     let [x, y, z] = BOX;
-    let cell = format!("[cell]\nx_mm = [{x}, {x}]\ny_mm = [{y}, {y}]\nz_mm = [{z}, {z}]\nyaw_deg = [0.0, 0.0]\n");
+    let cell = format!("[cell]\nx_mm = [{x}, {x}]\ny_mm = [{y}, {y}]\nz_mm = [{z}, {z}]\nq4 = [0.0, 0.0]\n");
     fs::write(folder.join("run.toml"), format!("{RUN}{cell}"))?;
     let shapes = format!(
         "[[shape]]\nname = \"box\"\nattached = \"workpiece\"\nmesh = {:?}\nunit = \"m\"\nrpy_deg = [90.0, 0.0, 0.0]\n\n\
