@@ -29,7 +29,7 @@ pub struct PlanHit {
 pub struct PlanClearance {
     /// The path point.
     pub point: usize,
-    /// The distance of the pair; zero or less where the two touch. m
+    /// The distance of the pair; zero where two shapes touch, less inside of a zone. m
     pub distance: f64,
     /// Their names.
     pub names: Arc<[String; 2]>,
@@ -50,7 +50,7 @@ impl Problem {
 
     /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the base frame, in which
     /// the cell moves the other way where an external axis carries the robot.
-    pub(crate) fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {
+    pub fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {
         let poses = scene.poses(joints, &self.base_from_part(point, placement));
         if self.external_axes.is_empty() { poses } else { poses.with_cell(self.cell_from_carriage(point).inverse()) }
     }

@@ -62,7 +62,7 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
                 Attachment::Link(_) | Attachment::Flange => (PALE, 1),
             };
             for point in if is_on_arm { &shown[..] } else { &shown[..1] } {
-                let poses = poses(problem, case, point, scene);
+                let poses = problem.poses(scene, point.point, &case.placement, &point.joints);
                 let points = corners(shape, &poses).iter().map(flat).collect();
                 outlines.push(Outline { corners: hull(points), colour, width });
             }
@@ -105,12 +105,6 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
         },
     );
     canvas.text(&words, (COLUMNS[0], top - 40), TextStyle::new(12.0).coloured(INK));
-}
-
-/// Where all stands at a point of a plan.
-fn poses(problem: &Problem, case: &Case, point: &PlanPoint, scene: &Scene) -> Poses {
-    let poses = scene.poses(&point.joints, &problem.base_from_part(point.point, &case.placement));
-    poses.with_cell(problem.cell_from_carriage(point.point).inverse())
 }
 
 /// The arm as a line: base, axes, flange, tool centre point. m
