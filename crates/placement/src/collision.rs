@@ -10,7 +10,7 @@ use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
 use std::ops::Range as Span;
 use std::sync::Arc;
-use stead_cell::{Clearance, PairKind, Poses, Scene};
+use stead_cell::{Clearance, PairKind, Poses, Proximity, Scene};
 use stead_model::robot::Posture;
 
 /// A state of a plan in which two shapes are nearer than they may be.
@@ -74,20 +74,22 @@ impl Problem {
 
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
     pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
-        self.likely_hit((point, beta), placement, posture, None)
+        let of_states = &PairKind::OF_STATES;
+        self.next_hit((point, beta), placement, posture, of_states, &mut Proximity::default())
     }
 
-    /// Any such pair: `likely` is looked at first.
-    pub(crate) fn likely_hit(
+    /// Any such pair of some kinds, by what is known from states looked at before.
+    pub(crate) fn next_hit(
         &self,
         (point, beta): (usize, f64),
         placement: &Placement,
         posture: Posture,
-        likely: Option<usize>,
+        kinds: &[PairKind],
+        known: &mut Proximity,
     ) -> Option<usize> {
         let scene = self.scene.as_deref()?;
         let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
-        scene.any_hit(&self.poses(scene, point, placement, &joints), &PairKind::OF_STATES, likely)
+        scene.next_hit(known, &self.poses(scene, point, placement, &joints), kinds)
     }
 
     /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.
@@ -116,31 +118,31 @@ impl Problem {
 
     /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
     pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
-        self.path_hits(placement, &plan.points, &plan.joints, with_motions).collect()
+        self.path_hits(placement, &plan.points, &plan.joints, &PairKind::OF_STATES, with_motions).collect()
     }
 
-    /// The same of joint angles (rad) at path points of a segment, one after the other.
+    /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other.
     pub(crate) fn path_hits(
         &self,
         placement: &Placement,
         points: &Span<usize>,
         joints: &[[f64; 6]],
+        kinds: &'static [PairKind],
         with_motions: bool,
     ) -> impl Iterator<Item = PlanHit> {
-        let mut is_free_before = false;
+        let mut known = Proximity::default();
+        // Where all stands at the point before, if nothing hits there.
+        let mut free_before: Option<Poses> = None;
         let hit = move |(place, point): (usize, usize)| {
             let scene = self.scene.as_deref()?;
             let poses = self.poses(scene, point, placement, &joints[place]);
-            let pair = scene.first_hit(&poses, &PairKind::OF_STATES);
-            let was_free = std::mem::replace(&mut is_free_before, pair.is_none());
+            let pair = scene.next_hit(&mut known, &poses, kinds);
+            let before = std::mem::replace(&mut free_before, pair.is_none().then_some(poses));
             if let Some(pair) = pair {
                 return Some(PlanHit { point, is_between: false, pair });
             }
-            if !with_motions || !was_free {
-                return None;
-            }
-            let before = self.poses(scene, point - 1, placement, &joints[place - 1]);
-            let hit = scene.motion((&joints[place - 1], &before), (&joints[place], &poses))?;
+            let before = before.filter(|_| with_motions)?;
+            let hit = scene.motion_to(&known, (&joints[place - 1], &before), (&joints[place], &poses))?;
             Some(PlanHit { point, is_between: true, pair: hit.pair })
         };
         points.clone().enumerate().filter_map(hit)

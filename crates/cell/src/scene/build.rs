@@ -41,7 +41,9 @@ impl Scene {
             let collider = collider.ok_or_else(|| SceneError::FlatHull(shape.name.clone()))?;
             let cover = Cover::new(&shape.solid, &shape.pose);
             let box_from_attachment = cover.box_pose.inverse();
-            bodies.push(Body { frame: frame(shape.attached), collider, cover, box_from_attachment });
+            let frame = frame(shape.attached);
+            let reach = travel(robot, 0, on_arm(frame), cover.farthest());
+            bodies.push(Body { frame, collider, cover, box_from_attachment, reach });
         }
         let mut pairs = Vec::new();
         for (a, first) in surroundings.shapes().iter().enumerate() {
@@ -82,7 +84,10 @@ impl Scene {
         }
         // In the order in which their kinds are cheapest to decide: a stable sort.
         pairs.sort_by_key(|pair| pair.kind);
-        let scene = Self { surroundings, robot: robot.clone(), flange_from_tool: *flange_from_tool, bodies, pairs };
+        let spans = PairKind::ALL.map(|kind| {
+            pairs.partition_point(|pair: &Pair| pair.kind < kind)..pairs.partition_point(|pair: &Pair| pair.kind <= kind)
+        });
+        let scene = Self { surroundings, robot: robot.clone(), flange_from_tool: *flange_from_tool, bodies, pairs, spans };
         match scene.always_touching() {
             touching if touching.is_empty() => Ok(scene),
             touching => Err(SceneError::AlwaysTouching(touching)),
@@ -141,9 +146,13 @@ fn moves_more(first: usize, second: usize) -> bool {
     rank(first) > rank(second)
 }
 
+/// The number of the link that a frame is; zero for what does not move with the arm.
+fn on_arm(frame: usize) -> usize {
+    if (1..=6).contains(&frame) { frame } else { 0 }
+}
+
 /// By how much two bodies can come nearer for each radian of a joint.
 fn reach(robot: &Robot, (a, cover_a): (usize, &Cover), (b, cover_b): (usize, &Cover)) -> [f64; 6] {
-    let on_arm = |frame: usize| if (1..=6).contains(&frame) { frame } else { 0 };
     let (a, b, cover) =
         if on_arm(a) > on_arm(b) { (on_arm(b), on_arm(a), cover_a) } else { (on_arm(a), on_arm(b), cover_b) };
     travel(robot, a, b, cover.farthest())

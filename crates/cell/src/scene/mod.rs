@@ -2,19 +2,24 @@
 
 mod build;
 mod motion;
+
+mod proximity;
 mod quick;
 #[cfg(test)]
 mod tests;
 
 pub use build::SceneError;
 pub use motion::MotionHit;
+pub use proximity::Proximity;
 
 use crate::collider::Collider;
 use crate::cover::{Cover, lower_bound};
 use crate::shape::{Attachment, TrackedPoint};
 use crate::surroundings::Surroundings;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use quick::Quick;
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::{Pose, Robot};
 
@@ -98,6 +103,8 @@ impl PairKind {
         [Self::ToolWorkpiece, Self::WorkpieceCell, Self::ArmArm, Self::ArmCell, Self::ArmWorkpiece];
     /// Those that depend on more than the placement.
     pub const OF_STATES: [Self; 4] = [Self::ToolWorkpiece, Self::ArmArm, Self::ArmCell, Self::ArmWorkpiece];
+    /// Those that depend on the joints.
+    pub const OF_JOINTS: [Self; 3] = [Self::ArmArm, Self::ArmCell, Self::ArmWorkpiece];
 }
 
 /// A shape made ready.
@@ -108,6 +115,28 @@ struct Body {
     cover: Cover,
     /// From the frame of its attachment to that of the box of its cover.
     box_from_attachment: Pose<f64>,
+    /// How far its points move in the base frame for each radian of a joint, at the most. m
+    reach: [f64; 6],
+}
+
+impl Body {
+    /// The centre of the sphere around it, in the base frame. m
+    fn centre(&self, poses: &Poses) -> Vector3<f64> {
+        poses.frames[self.frame].point(&self.cover.bound.centre)
+    }
+
+    /// How far its points are apart in two states, at the most. m
+    fn moved(&self, [from, to]: [&Poses; 2]) -> f64 {
+        let [before, after] = [from, to].map(|poses| &poses.frames[self.frame]);
+        let turn = largest_move(&before.rotation, &after.rotation);
+        (self.centre(to) - self.centre(from)).norm() + turn * self.cover.bound.radius
+    }
+}
+
+/// How far a point can be moved by a turn from one orientation to another, per metre from its centre: the largest singular value of the
+/// difference.
+fn largest_move(before: &Matrix3<f64>, after: &Matrix3<f64>) -> f64 {
+    (after - before).norm() * FRAC_1_SQRT_2
 }
 
 /// Two shapes that can meet, or a point of the arm and a zone.
@@ -163,7 +192,10 @@ pub struct Scene {
     robot: Robot,
     flange_from_tool: Pose<f64>,
     bodies: Vec<Body>,
+    /// Sorted by kind.
     pairs: Vec<Pair>,
+    /// The numbers of the pairs of each kind.
+    spans: [Span<usize>; 5],
 }
 
 impl PartialEq for Scene {
@@ -207,23 +239,19 @@ impl Scene {
     /// The first pair of some kinds that is nearer than it may be: covers first, then the shapes themselves.
     pub fn first_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
         let quick = Quick::new(self, poses);
-        (0..self.pairs.len()).find(|number| {
-            let pair = &self.pairs[*number];
-            kinds.contains(&pair.kind) && !quick.leaves(self, pair, 0.0) && !self.keeps_apart(*number, poses)
-        })
+        self.of_kinds(kinds)
+            .find(|number| !quick.leaves(self, &self.pairs[*number], 0.0) && !self.keeps_apart(*number, poses))
     }
 
-    /// A pair of some kinds that is nearer than it may be: `likely` is looked at first, since what hits in one state often hits in the
-    /// next.
-    pub fn any_hit(&self, poses: &Poses, kinds: &[PairKind], likely: Option<usize>) -> Option<usize> {
-        let is_hit = |number: &usize| kinds.contains(&self.pairs[*number].kind) && !self.keeps_apart(*number, poses);
-        likely.filter(is_hit).or_else(|| self.first_hit(poses, kinds))
+    /// The numbers of all pairs of some kinds.
+    fn of_kinds(&self, kinds: &[PairKind]) -> impl Iterator<Item = usize> {
+        kinds.iter().flat_map(|kind| self.spans[*kind as usize].clone())
     }
 
     /// The first such pair by the covers alone, which may refuse what the shapes allow.
     pub fn first_covered_hit(&self, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
         let is_hit = |pair: &Pair| self.bound(pair, poses, pair.required) < pair.required;
-        (0..self.pairs.len()).find(|number| kinds.contains(&self.pairs[*number].kind) && is_hit(&self.pairs[*number]))
+        self.of_kinds(kinds).find(|number| is_hit(&self.pairs[*number]))
     }
 
     /// Whether a pair is as far apart as it has to be.
@@ -277,8 +305,8 @@ impl Scene {
 
     /// The pair of some kinds with the least room beyond what it has to keep; `None` where there is no pair nearer than [`FAR`].
     pub fn clearance(&self, poses: &Poses, kinds: &[PairKind]) -> Option<Clearance> {
-        let mut bounds: Vec<(f64, usize)> = (0..self.pairs.len())
-            .filter(|number| kinds.contains(&self.pairs[*number].kind))
+        let mut bounds: Vec<(f64, usize)> = self
+            .of_kinds(kinds)
             .map(|number| {
                 let pair = &self.pairs[number];
                 (self.bound(pair, poses, f64::INFINITY) - pair.required, number)

@@ -1,12 +1,13 @@
 //! Joint motions: whether all pairs keep apart all along.
 //!
-//! No point of a body moves faster than its reach times the speeds of the joints. So two bodies keep apart on a whole interval
-//! where the room that they have at both ends together is not less than what they can move towards each other in between. Where
-//! that does not decide, the interval is halved. In the end nothing moves farther between two states looked at than the
-//! resolution, and both states keep nine tenths of the distance asked for.
+//! Two bodies keep apart on a whole interval where the room that they have at both ends together is not less than what they can move
+//! towards each other in between. That has two bounds: no point of a body moves faster than its reach times the speeds of the joints;
+//! and none is farther from the straight line between its places at both ends than its acceleration takes it, an eighth of the most that
+//! it can be, so that short motions count hardly more than what they lead to. Where neither decides, the interval is halved. In the end
+//! nothing moves farther between two states looked at than the resolution, and both states keep nine tenths of the distance asked for.
 
 use super::quick::Quick;
-use super::{FRAMES, Members, Poses, Scene};
+use super::{Body, FRAMES, Members, Poses, Scene};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
@@ -33,6 +34,18 @@ struct Drift {
     length: f64,
     /// By what angle it turns. rad
     angle: f64,
+}
+
+/// A pair for which it is not decided whether it keeps apart on an interval.
+#[derive(Debug, Clone, Copy)]
+struct OpenPair {
+    number: usize,
+    /// What the two can move towards each other on the whole motion, by the speeds of the joints. m
+    by_joints: f64,
+    /// See [`Scene::bend`]. m
+    bend: f64,
+    /// Their room at both ends of the interval. m
+    rooms: [f64; 2],
 }
 
 /// A motion: straight in the joints, all else moving evenly from one pose to another.
@@ -80,15 +93,30 @@ impl<'a> Motion<'a> {
 
 impl Scene {
     /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than nine tenths of what it has to
-    /// keep; `None` where all pairs keep apart all along. Each end has its joint angles and where all stands there.
+    /// keep; `None` where all pairs keep apart all along. Each end has its joint angles and where all stands there. Pairs that do not
+    /// move against each other are not looked at.
     pub fn motion(&self, from: (&[f64; 6], &Poses), to: (&[f64; 6], &Poses)) -> Option<MotionHit> {
-        let motion = Motion::new(from, to);
         let quick = Quick::new(self, from.1);
+        self.motion_unless(|number, travel| quick.leaves(self, &self.pairs[number], travel), from, to)
+    }
+
+    /// The same but for pairs that are known to have more room than the two can move towards each other (m).
+    pub(super) fn motion_unless(
+        &self,
+        has_room: impl Fn(usize, f64) -> bool,
+        from: (&[f64; 6], &Poses),
+        to: (&[f64; 6], &Poses),
+    ) -> Option<MotionHit> {
+        let motion = Motion::new(from, to);
         let mut open = Vec::new();
         for number in 0..self.pairs.len() {
-            let travel = self.travel(number, &motion);
-            // More room at the start than the two can move towards each other.
-            if quick.leaves(self, &self.pairs[number], travel) {
+            let by_joints = self.travel(number, &motion);
+            if by_joints == 0.0 || has_room(number, by_joints) {
+                continue;
+            }
+            let pair = OpenPair { number, by_joints, bend: self.bend(number, &motion), rooms: [0.0; 2] };
+            let travel = self.approach(&pair, [from.1, to.1], 1.0);
+            if has_room(number, travel) {
                 continue;
             }
             let rooms = [from.1, to.1].map(|poses| self.room(number, poses, travel));
@@ -98,41 +126,72 @@ impl Scene {
                 }
             }
             if rooms[0] + rooms[1] < travel {
-                open.push((number, rooms));
+                open.push(OpenPair { rooms, ..pair });
             }
         }
-        if open.is_empty() { None } else { self.halved(&motion, (0.0, 1.0), &open) }
+        if open.is_empty() { None } else { self.halved(&motion, (0.0, 1.0), [from.1, to.1], &open) }
     }
 
-    /// The same between two shares of a motion, for pairs that are open there, with their room at both.
-    fn halved(&self, motion: &Motion<'_>, (start, end): (f64, f64), open: &[(usize, [f64; 2])]) -> Option<MotionHit> {
+    /// The same between two shares of a motion, where all stands at poses, for pairs that are open there.
+    fn halved(
+        &self,
+        motion: &Motion<'_>,
+        (start, end): (f64, f64),
+        ends: [&Poses; 2],
+        open: &[OpenPair],
+    ) -> Option<MotionHit> {
         let middle = (start + end) / 2.0;
         let poses = motion.at(self, middle);
         let mut halves = [Vec::new(), Vec::new()];
-        for (number, rooms) in open {
-            let travel = self.travel(*number, motion) * (end - start) / 2.0;
-            let room = self.room(*number, &poses, travel);
+        let sides = [[ends[0], &poses], [&poses, ends[1]]];
+        for pair in open {
+            let travels = sides.map(|side| self.approach(pair, side, (end - start) / 2.0));
+            let room = self.room(pair.number, &poses, travels[0].max(travels[1]));
             if room < 0.0 {
-                return Some(MotionHit { share: middle, pair: *number });
+                return Some(MotionHit { share: middle, pair: pair.number });
             }
-            if travel <= self.wanted_between(*number).max(FINEST) {
-                continue;
-            }
-            for (half, ends) in halves.iter_mut().zip([[rooms[0], room], [room, rooms[1]]]) {
-                if ends[0] + ends[1] < travel {
-                    half.push((*number, ends));
+            let rooms = [[pair.rooms[0], room], [room, pair.rooms[1]]];
+            for ((half, travel), rooms) in halves.iter_mut().zip(travels).zip(rooms) {
+                if travel > self.wanted_between(pair.number).max(FINEST) && rooms[0] + rooms[1] < travel {
+                    half.push(OpenPair { rooms, ..*pair });
                 }
             }
         }
-        for (half, interval) in halves.iter().zip([(start, middle), (middle, end)]) {
+        for ((half, interval), side) in halves.iter().zip([(start, middle), (middle, end)]).zip(sides) {
             if !half.is_empty() {
-                let hit = self.halved(motion, interval, half);
+                let hit = self.halved(motion, interval, side, half);
                 if hit.is_some() {
                     return hit;
                 }
             }
         }
         None
+    }
+
+    /// How far the two of a pair can move towards each other between two states of a motion that are a share of it apart. m
+    fn approach(&self, pair: &OpenPair, ends: [&Poses; 2], share: f64) -> f64 {
+        let by_joints = pair.by_joints * share;
+        let Members::Bodies(a, b) = self.pairs[pair.number].members else { return by_joints };
+        let moved = [a, b].iter().map(|body| self.bodies[*body].moved(ends)).sum::<f64>();
+        by_joints.min(moved + pair.bend * share * share / 4.0)
+    }
+
+    /// The most that the points of a pair are accelerated against each other, per square of the motion's duration; nothing for zones,
+    /// whose travel is bounded by the joints alone. m
+    fn bend(&self, number: usize, motion: &Motion<'_>) -> f64 {
+        let Members::Bodies(a, b) = self.pairs[number].members else { return 0.0 };
+        let of = |body: usize| {
+            let Body { frame, reach, cover, .. } = &self.bodies[body];
+            let mut inner = 0.0;
+            let mut bend = 0.0;
+            for (reach, step) in reach.iter().zip(motion.steps) {
+                bend += reach * step * (step + 2.0 * inner);
+                inner += step;
+            }
+            let angle = motion.drifts[*frame].angle;
+            bend + angle * angle * cover.farthest()
+        };
+        of(a) + of(b)
     }
 
     /// The distance that a pair has to keep between the ends of a motion. m

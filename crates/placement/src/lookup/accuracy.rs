@@ -68,7 +68,7 @@ impl LookupTable<'_> {
         let grid = BetaGrid {
             count: redundancy.beta_count,
             changes: Vec::new(),
-            tool_hits: std::sync::Arc::default(),
+            tool_hits: None,
             step: redundancy.beta_step(),
         };
         let mut workspace = self.workspace(&grid);

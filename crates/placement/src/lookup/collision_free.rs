@@ -8,8 +8,8 @@ use super::polar::PlacedPath;
 use super::{BetaGrid, LookupTable};
 use crate::problem::Placement;
 use crate::redundancy::{StateSet, forbid};
-use std::cell::Cell;
 use std::ops::Range as Span;
+use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
 
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
@@ -36,11 +36,11 @@ impl LookupTable<'_> {
                 if free.contains(point, PostureClass::ALL[class], beta) {
                     continue;
                 }
-                let likely = Cell::new(None);
-                let hits = |k: usize| self.hits(placement, (point, class), grid.beta(k), &likely);
-                if hits(beta) {
+                let Workspace { known: [along, across], forbidden, .. } = workspace;
+                if self.hits(placement, (point, class), (grid, beta), along) {
                     is_free = false;
-                    forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, &mut workspace.forbidden);
+                    let hits = |k| self.hits(placement, (point, class), (grid, k), across);
+                    forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, forbidden);
                 } else {
                     free.add(point, PostureClass::ALL[class], beta);
                 }
@@ -52,19 +52,19 @@ impl LookupTable<'_> {
         None
     }
 
-    /// Whether something hits at a path point in both flips of a posture class, at a free angle (rad); the pair that does is what is
-    /// likely to hit nearby.
+    /// Whether something hits at a path point and beta in both flips of a posture class.
     fn hits(
         &self,
         placement: &Placement,
         (point, class): (usize, usize),
-        beta: f64,
-        likely: &Cell<Option<usize>>,
+        (grid, beta): (&BetaGrid, usize),
+        known: &mut Proximity,
     ) -> bool {
         let [plain, flipped] = PostureClass::ALL[class].postures();
-        let hit = |posture| self.problem.likely_hit((point, beta), placement, posture, likely.get());
+        // What spindle and holder hit is out of the table already.
+        let kinds: &[PairKind] = if grid.tool_hits.is_some() { &PairKind::OF_JOINTS } else { &PairKind::OF_STATES };
+        let mut hit = |posture| self.problem.next_hit((point, grid.beta(beta)), placement, posture, kinds, known);
         let Some(pair) = hit(plain) else { return false };
-        likely.set(Some(pair));
         let knows_flips =
             self.problem.scene.as_deref().and_then(|scene| scene.pair(pair)).is_some_and(|p| p.knows_flips);
         !knows_flips || hit(flipped).is_some()

@@ -66,8 +66,8 @@ pub struct BetaGrid {
     pub(crate) count: usize,
     /// For each path point the allowed changes of the beta number from the one before.
     pub(crate) changes: Vec<BetaChange>,
-    /// States in which spindle or holder hit part or fixture.
-    pub(crate) tool_hits: Arc<StateSet>,
+    /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
+    pub(crate) tool_hits: Option<Arc<StateSet>>,
     /// Its step. rad
     step: f64,
 }
@@ -82,7 +82,7 @@ impl BetaGrid {
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
         let changes = saved_changes(problem, &grid);
-        let tool_hits = Arc::new(StateSet::of_tool(problem, &grid));
+        let tool_hits = StateSet::of_tool(problem, &grid).map(Arc::new);
         Self { count, changes, tool_hits, step: grid.beta_step() }
     }
 

@@ -10,6 +10,7 @@ use crate::problem::Placement;
 use crate::redundancy::{BetaChange, StateSet};
 use crate::sense::Sense;
 use std::ops::Range as Span;
+use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
 
 /// Scratch space of one thread.
@@ -28,6 +29,8 @@ pub struct Workspace {
     pub(super) best_costs: Vec<f32>,
     /// States that hit, of the placement evaluated.
     pub(super) forbidden: StateSet,
+    /// What is known of distances along the way, and of those across it.
+    pub(super) known: [Proximity; 2],
 }
 
 impl LookupTable<'_> {
@@ -43,6 +46,7 @@ impl LookupTable<'_> {
             kept_costs: Vec::new(),
             best_costs: Vec::new(),
             forbidden: StateSet::default(),
+            known: Default::default(),
         }
     }
 
@@ -63,6 +67,7 @@ impl LookupTable<'_> {
         let placed = self.place(placement);
         if self.problem.scene.is_some() {
             workspace.forbidden.clear();
+            workspace.known.iter_mut().for_each(Proximity::clear);
             if self.problem.placement_hit(placement).is_some() {
                 return Objective::Infeasible { points: self.problem.task.points().len(), segments: 0 };
             }
@@ -88,8 +93,9 @@ impl LookupTable<'_> {
                 let mut classes = (0..4).filter(|class| asked(*class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
                     let is_reached = self.interpolate(polar, class, grid, scratch, scores);
-                    grid.tool_hits.apply_to_scores(*point, class, scores);
-                    forbidden.apply_to_scores(*point, class, scores);
+                    for hits in grid.tool_hits.as_deref().into_iter().chain([&*forbidden]) {
+                        hits.apply_to_scores(*point, class, scores);
+                    }
                     is_reached && scores.iter().any(|score| score.is_finite())
                 };
                 polar.is_none_or(|polar| !classes.any(|class| is_allowed(&polar, class)))
@@ -154,8 +160,9 @@ impl LookupTable<'_> {
                 scores.iter_mut().for_each(|score| *score *= weight);
             }
             if has_scene {
-                grid.tool_hits.apply_to_scores(point, class, scores);
-                forbidden.apply_to_scores(point, class, scores);
+                for hits in grid.tool_hits.as_deref().into_iter().chain([&*forbidden]) {
+                    hits.apply_to_scores(point, class, scores);
+                }
             }
             if place == 0 {
                 costs.copy_from_slice(scores);

@@ -10,8 +10,8 @@ use crate::candidate::Objective;
 use crate::collision::PlanHit;
 use crate::problem::Placement;
 use crate::sense::Sense;
-use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
+use stead_cell::{PairKind, Proximity};
 use stead_model::robot::{Posture, PostureClass};
 
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
@@ -24,7 +24,7 @@ pub type Collisions = BTreeMap<usize, BTreeSet<usize>>;
 pub(crate) fn forbid(
     (point, class): (usize, PostureClass),
     (beta, count): (usize, usize),
-    hits: impl Fn(usize) -> bool,
+    mut hits: impl FnMut(usize) -> bool,
     forbidden: &mut StateSet,
 ) {
     forbidden.add(point, class, beta);
@@ -38,30 +38,56 @@ pub(crate) fn forbid(
 }
 
 impl Planner<'_> {
-    /// The plan that `plan` makes, again and again without the states that hit, until nothing does.
+    /// The plans that are chosen of those that `plan` makes for the segments asked for, made again without the states that hit until
+    /// nothing does.
     pub(super) fn until_free(
         &self,
         placement: &Placement,
+        sense: Sense,
         workspace: &mut Workspace,
-        mut plan: impl FnMut(&mut Workspace) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
+        mut plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        if self.problem.scene.is_none() {
-            return plan(workspace);
-        }
-        workspace.forbidden.clear();
-        let mut collisions = Collisions::new();
-        if let Some(pair) = self.problem.placement_hit(placement) {
-            return Err(self.blocked_by(pair));
-        }
-        for _ in 0..MAX_ROUNDS {
-            let plans = plan(workspace).map_err(|none| NoFeasiblePlan { collisions: collisions.clone(), ..none })?;
-            let hits = self.hits(placement, &plans);
-            if hits.is_empty() {
-                return Ok(plans);
+        let all: Vec<usize> = (0..self.problem.task.segments().len()).collect();
+        let mut choices = Vec::new();
+        let has_scene = self.problem.scene.is_some();
+        if has_scene {
+            workspace.forbidden.clear();
+            if let Some(pair) = self.problem.placement_hit(placement) {
+                return Err(self.blocked_by(pair));
             }
-            for (segment, hit) in &hits {
-                collisions.entry(hit.pair).or_default().insert(hit.point);
-                self.forbid_hit(placement, &plans[*segment], hit, &mut workspace.forbidden);
+            choices = vec![Vec::new(); all.len()];
+        }
+        let mut collisions = Collisions::new();
+        let mut asked = all;
+        // Plans in which nothing hits, as far as they were looked at.
+        let mut free: Vec<Option<SegmentPlan>> = vec![None; choices.len()];
+        for _ in 0..MAX_ROUNDS {
+            let found =
+                plan(workspace, &asked).map_err(|none| NoFeasiblePlan { collisions: collisions.clone(), ..none })?;
+            if !has_scene {
+                return Ok(joint_turns::select_joint_paths(self.problem, sense, found));
+            }
+            for (segment, found) in asked.drain(..).zip(found) {
+                choices[segment] = found;
+            }
+            let plans = joint_turns::select_joint_paths(self.problem, sense, choices.clone());
+            for (segment, plan) in plans.iter().enumerate() {
+                if free[segment].as_ref() == Some(plan) {
+                    continue;
+                }
+                let hits = self.hits(placement, plan);
+                for hit in &hits {
+                    collisions.entry(hit.pair).or_default().insert(hit.point);
+                    self.forbid_hit(placement, plan, hit, &mut workspace.forbidden);
+                }
+                if hits.is_empty() {
+                    free[segment] = Some(plan.clone());
+                } else {
+                    asked.push(segment);
+                }
+            }
+            if asked.is_empty() {
+                return Ok(plans);
             }
         }
         let points: BTreeSet<usize> = collisions.values().flatten().copied().collect();
@@ -76,10 +102,9 @@ impl Planner<'_> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
-        let plans = self.until_free(placement, workspace, |workspace| {
-            let choices = self.choices(placement, sense, scheme, workspace, 0.0)?;
-            let choices = self.without_hitting_ways(placement, choices);
-            Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+        let plans = self.until_free(placement, sense, workspace, |workspace, asked| {
+            let choices = self.choices(placement, sense, scheme, workspace, (asked, 0.0))?;
+            Ok(self.without_hitting_ways(placement, choices))
         });
         match plans {
             Ok(plans) => Objective::Feasible(self.problem.objective(plans.iter().map(|plan| plan.cost))),
@@ -130,7 +155,8 @@ impl Planner<'_> {
                 let hits = |posture: &Posture| {
                     let path = choice.joint_paths.iter().find(|path| path.posture == *posture);
                     path.is_none_or(|path| {
-                        self.problem.path_hits(placement, &choice.points, &path.joints, false).next().is_some()
+                        let kinds = &PairKind::OF_JOINTS;
+                        self.problem.path_hits(placement, &choice.points, &path.joints, kinds, false).next().is_some()
                     })
                 };
                 let free: BTreeSet<Posture> = postures.iter().copied().filter(|posture| !hits(posture)).collect();
@@ -153,14 +179,15 @@ impl Planner<'_> {
         }
     }
 
-    /// What hits along plans, with the number of the segment: the states, and the motions from point to point unless the path is a
-    /// subset of points.
-    fn hits(&self, placement: &Placement, plans: &[SegmentPlan]) -> Vec<(usize, PlanHit)> {
+    /// What hits along a plan: the states, and the motions from point to point unless the path is a subset of points.
+    fn hits(&self, placement: &Placement, plan: &SegmentPlan) -> Vec<PlanHit> {
         let with_motions = self.checks_motions && !self.problem.task.path().is_thinned();
-        let of = |(segment, plan)| {
-            self.problem.plan_hits(placement, plan, with_motions).into_iter().map(move |hit| (segment, hit))
-        };
-        plans.iter().enumerate().flat_map(of).collect()
+        self.problem.plan_hits(placement, plan, with_motions)
+    }
+
+    /// The kinds of pairs that states of the grid are looked at for: not for spindle and holder where those were looked at before.
+    fn kinds(&self) -> &'static [PairKind] {
+        if self.tool_hits.is_some() { &PairKind::OF_JOINTS } else { &PairKind::OF_STATES }
     }
 
     /// Forbids the states of the grid next to one of a plan that hits.
@@ -176,14 +203,12 @@ impl Planner<'_> {
             let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
             for beta in [nearest, other] {
                 if !forbidden.contains(point, class, beta) {
-                    let likely = Cell::new(Some(hit.pair));
-                    let hits = |k| {
-                        let found =
-                            self.problem.likely_hit((point, self.grid.beta(k)), placement, plan.posture, likely.get());
-                        likely.set(found.or(likely.get()));
-                        found.is_some()
+                    let mut known = Proximity::default();
+                    let mut hits = |k| {
+                        let state = (point, self.grid.beta(k));
+                        self.problem.next_hit(state, placement, plan.posture, self.kinds(), &mut known).is_some()
                     };
-                    forbid((point, class), (beta, count), hits, forbidden);
+                    forbid((point, class), (beta, count), &mut hits, forbidden);
                     return;
                 }
             }

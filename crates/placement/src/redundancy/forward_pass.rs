@@ -198,7 +198,9 @@ impl Planner<'_> {
     pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
         let Workspace { now, forbidden, .. } = workspace;
         pass.evaluator.evaluate_classes(point, pass.placement, classes, now);
-        self.tool_hits.apply(point, now);
+        if let Some(hits) = &self.tool_hits {
+            hits.apply(point, now);
+        }
         forbidden.apply(point, now);
     }
 

@@ -99,8 +99,8 @@ pub struct Planner<'a> {
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     ranges: [Option<Range>; 6],
     instructions: Instructions,
-    /// States in which spindle or holder hit part or fixture.
-    tool_hits: Arc<StateSet>,
+    /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
+    tool_hits: Option<Arc<StateSet>>,
     /// Whether plans are free between their points too.
     checks_motions: bool,
 }
@@ -151,7 +151,7 @@ impl<'a> Planner<'a> {
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
-            tool_hits: Arc::new(StateSet::of_tool(problem, &grid)),
+            tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
             checks_motions: room.neighbours == FINAL_ROOM.neighbours,
         }
     }
@@ -260,10 +260,9 @@ impl<'a> Planner<'a> {
         let rules = &self.problem.postures;
         let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
         self.unchanging(scheme, sense, |scheme| {
-            self.until_free(placement, workspace, |workspace| {
-                let choices = self.choices(placement, sense, scheme, workspace, margin)?;
-                let choices = self.without_hitting_ways(placement, choices);
-                Ok(joint_turns::select_joint_paths(self.problem, sense, choices))
+            self.until_free(placement, sense, workspace, |workspace, asked| {
+                let choices = self.choices(placement, sense, scheme, workspace, (asked, margin))?;
+                Ok(self.without_hitting_ways(placement, choices))
             })
         })
     }
@@ -286,19 +285,17 @@ impl<'a> Planner<'a> {
         let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
         let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
         self.unchanging(scheme, sense, |scheme| {
-            self.until_free(placement, workspace, |workspace| {
-                let choices = self.choices(placement, sense, scheme, workspace, margin)?;
+            self.until_free(placement, sense, workspace, |workspace, asked| {
+                let choices = self.choices(placement, sense, scheme, workspace, (asked, margin))?;
                 let choices = self.without_hitting_ways(placement, choices);
-                let refined = |(segment, classes): (usize, Vec<joint_turns::SegmentChoice>)| {
-                    let driven = self.refined(placement, sense, scheme.map(|s| s[segment]), classes);
-                    Some(driven).filter(|driven| !driven.is_empty())
+                let refined = |(segment, classes): (&usize, Vec<joint_turns::SegmentChoice>)| {
+                    self.refined(placement, sense, scheme.map(|s| s[*segment]), classes)
                 };
                 let refined = match self.is_parallel() {
-                    true => choices.into_par_iter().enumerate().filter_map(refined).collect(),
-                    false => choices.into_iter().enumerate().filter_map(refined).collect(),
+                    true => asked.par_iter().zip(choices).map(refined).collect(),
+                    false => asked.iter().zip(choices).map(refined).collect(),
                 };
-                let refined = self.without_hitting_ways(placement, refined);
-                Ok(joint_turns::select_joint_paths(self.problem, sense, refined))
+                Ok(self.without_hitting_ways(placement, refined))
             })
         })
     }
@@ -335,7 +332,7 @@ impl<'a> Planner<'a> {
         driven.collect()
     }
 
-    /// For each segment the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
+    /// For each segment asked for, the plans of its posture classes on the grid that cost at most `margin` (relative) more than the
     /// cheapest, cheapest first.
     fn choices(
         &self,
@@ -343,31 +340,31 @@ impl<'a> Planner<'a> {
         sense: Sense,
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
-        margin: f64,
+        (asked, margin): (&[usize], f64),
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
         let mut failure = NoFeasiblePlan::empty();
         let mut all = Vec::new();
-        let of = |workspace: &mut Workspace, (index, span): (usize, &Span<usize>)| {
-            self.segment(span.clone(), placement, sense, scheme.map(|s| s[index]), workspace, Some(margin))
-        };
         let spans = self.problem.task.segments();
+        let of = |workspace: &mut Workspace, index: &usize| {
+            self.segment(spans[*index].clone(), placement, sense, scheme.map(|s| s[*index]), workspace, Some(margin))
+        };
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {
                 let space = || Workspace { forbidden: workspace.forbidden.clone(), ..self.workspace() };
-                spans.par_iter().enumerate().map_init(space, of).collect()
+                asked.par_iter().map_init(space, of).collect()
             }
-            false => spans.iter().enumerate().map(|item| of(workspace, item)).collect(),
+            false => asked.iter().map(|index| of(workspace, index)).collect(),
         };
-        for (index, found) in options.into_iter().enumerate() {
+        for (index, found) in asked.iter().zip(options) {
             if !found.choices.is_empty() {
                 all.push(found.choices);
             } else if found.blocked.is_empty() {
-                failure.broken_segments.push((index, found.farthest));
+                failure.broken_segments.push((*index, found.farthest));
             } else {
                 failure.blocked_points.extend(&found.blocked);
             }
         }
-        if all.len() == self.problem.task.segments().len() { Ok(all) } else { Err(failure) }
+        if all.len() == asked.len() { Ok(all) } else { Err(failure) }
     }
 
     /// Whether the segments of one plan are planned side by side.

@@ -73,11 +73,14 @@ impl StateSet {
     }
 
     /// The states of a grid of beta in which spindle or holder are too near to part or fixture, wherever these stand; none where there
-    /// is no scene, and where there are so many states that looking at those of plans is less work.
-    pub fn of_tool(problem: &Problem, grid: &Redundancy) -> Self {
+    /// is no scene. `None` where there are so many states that looking at those of plans is less work.
+    pub fn of_tool(problem: &Problem, grid: &Redundancy) -> Option<Self> {
         let points = problem.task.points().len();
-        if problem.scene.is_none() || points * grid.beta_count > MOST_STATES {
-            return Self::default();
+        if problem.scene.is_none() {
+            return Some(Self::default());
+        }
+        if points * grid.beta_count > MOST_STATES {
+            return None;
         }
         let rows: Vec<Vec<u64>> = (0..points)
             .into_par_iter()
@@ -90,7 +93,7 @@ impl StateSet {
             })
             .collect();
         let with_any = rows.into_iter().enumerate().filter(|(_, bits)| !bits.is_empty());
-        Self { points: with_any.map(|(point, bits)| (point, std::array::from_fn(|_| bits.clone()))).collect() }
+        Some(Self { points: with_any.map(|(point, bits)| (point, std::array::from_fn(|_| bits.clone()))).collect() })
     }
 }
 

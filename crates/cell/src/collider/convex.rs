@@ -1,0 +1,134 @@
+//! Convex solids, and their distance by GJK.
+//!
+//! A capsule is a segment with a radius: GJK ends after a few steps on a segment, where it would creep along the round surface. On
+//! cylinders it ends within 0.01 mm of the distance.
+
+use super::vector;
+use crate::solid::Solid;
+use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
+use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::query::details::closest_points_support_map_support_map_with_params;
+use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
+use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, Cylinder, Segment, Shape as ParryShape, SupportMap};
+use std::sync::Arc;
+
+/// All points that are not farther than a radius from a core.
+#[derive(Clone)]
+pub struct Convex {
+    core: Core,
+    /// m
+    radius: f64,
+}
+
+#[derive(Clone)]
+enum Core {
+    Segment(Segment),
+    Box(Cuboid),
+    Cylinder(Cylinder),
+    Hull(Arc<ConvexPolyhedron>),
+}
+
+/// How far a vertex may be outside of the hull, relative to its size.
+const HULL_TOLERANCE: f64 = 1e-6;
+/// What rounding makes of a separating distance, relative.
+const ROUNDING: f64 = 1e-9;
+
+impl Convex {
+    /// A solid that is not a mesh, and the pose of the library's form of it, whose cylinders stand along y; `None` where the hull of
+    /// a mesh cannot be formed.
+    pub fn new(solid: &Solid) -> Option<(Self, ParryPose)> {
+        let plain = |core: Core| Some((Self { core, radius: 0.0 }, ParryPose::IDENTITY));
+        match solid {
+            Solid::Box(edges) => plain(Core::Box(Cuboid::new(vector(&(edges / 2.0))))),
+            Solid::Cylinder { radius, length } => {
+                let half = std::f64::consts::FRAC_1_SQRT_2;
+                let along_z = ParryPose::from_parts(Vector::ZERO, Rotation::from_xyzw(half, 0.0, 0.0, half));
+                Some((Self { core: Core::Cylinder(Cylinder::new(length / 2.0, *radius)), radius: 0.0 }, along_z))
+            }
+            Solid::Capsule { radius, length } => {
+                let end = Vector::new(0.0, 0.0, length / 2.0);
+                Some((Self { core: Core::Segment(Segment::new(-end, end)), radius: *radius }, ParryPose::IDENTITY))
+            }
+            Solid::Hull(mesh) | Solid::Mesh(mesh) => {
+                let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
+                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
+                // What the library makes of flat meshes does not contain them.
+                let size = hull.local_aabb().half_extents().length();
+                let is_outside = |point: &Vector| hull.distance_to_local_point(*point, true) > HULL_TOLERANCE * size;
+                if points.iter().any(is_outside) { None } else { plain(Core::Hull(Arc::new(hull))) }
+            }
+        }
+    }
+
+    /// What its points are not farther from than its radius.
+    pub fn core(&self) -> &dyn SupportMap {
+        match &self.core {
+            Core::Segment(segment) => segment,
+            Core::Box(cuboid) => cuboid,
+            Core::Cylinder(cylinder) => cylinder,
+            Core::Hull(hull) => hull.as_ref(),
+        }
+    }
+
+    fn shape(&self) -> &dyn ParryShape {
+        match &self.core {
+            Core::Segment(segment) => segment,
+            Core::Box(cuboid) => cuboid,
+            Core::Cylinder(cylinder) => cylinder,
+            Core::Hull(hull) => hull.as_ref(),
+        }
+    }
+
+    /// How far it extends along a direction. m
+    pub fn extent(&self, direction: Vector) -> f64 {
+        let farthest = match &self.core {
+            Core::Segment(segment) => segment.local_support_point(direction),
+            Core::Box(cuboid) => cuboid.local_support_point(direction),
+            Core::Cylinder(cylinder) => cylinder.local_support_point(direction),
+            Core::Hull(hull) => hull.local_support_point(direction),
+        };
+        farthest.dot(direction) + self.radius * direction.length()
+    }
+
+    /// A sphere and a box around it, at a pose.
+    pub fn bounds(&self, pose: &ParryPose) -> (BoundingSphere, Aabb) {
+        let shape = self.shape();
+        let sphere = shape.compute_bounding_sphere(pose);
+        let outside = Vector::splat(self.radius);
+        let core = shape.compute_aabb(pose);
+        let bounds = Aabb::new(core.mins - outside, core.maxs + outside);
+        (BoundingSphere::new(sphere.center, sphere.radius + self.radius), bounds)
+    }
+
+    /// The distance of another convex solid at a pose, where it is below `limit`, else a value not below that, zero where they touch; and
+    /// the direction from one to the other.
+    pub fn distance(&self, pose: &ParryPose, other: &Self, limit: f64) -> (f64, Option<Vector>) {
+        let around = self.radius + other.radius;
+        let (distance, axis) = core_distance(self.core(), pose, other.core(), limit + around);
+        ((distance - around).max(0.0), axis)
+    }
+
+    /// How far its points are from the core at the most. m
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+/// The distance of two cores, the second at a pose in the frame of the first, where it is below `limit`; else a value not below that.
+pub fn core_distance(a: &dyn SupportMap, pose: &ParryPose, b: &dyn SupportMap, limit: f64) -> (f64, Option<Vector>) {
+    // The search ends as soon as the two are known to be farther apart.
+    let simplex = &mut VoronoiSimplex::new();
+    match closest_points_support_map_support_map_with_params(pose, a, b, limit, simplex, None) {
+        GJKResult::ClosestPoints(on_a, on_b, _) => {
+            let distance = (on_b - on_a).length();
+            (distance, (distance > 0.0).then(|| (on_b - on_a) / distance))
+        }
+        GJKResult::NoIntersection(axis) => {
+            // The library says so too where its search does not end.
+            let gap = b.support_point(pose, -axis).dot(axis) - a.local_support_point(axis).dot(axis);
+            if gap >= limit * (1.0 - ROUNDING) { (gap.max(limit), Some(axis)) } else { (gap.max(0.0), None) }
+        }
+        GJKResult::Intersection | GJKResult::Proximity(_) => (0.0, None),
+    }
+}

@@ -1,0 +1,180 @@
+//! Distances between solids: the one adapter around the library of shapes (parry3d).
+//!
+//! Convex pairs are decided by GJK (`convex`); meshes by their trees of boxes (`mesh`).
+//!
+//! The orientation goes to the library as a unit quaternion, so distances agree with the matrices of the arm to about 1e-12 m.
+
+mod convex;
+mod mesh;
+
+use crate::solid::Solid;
+use convex::Convex;
+use mesh::Mesh;
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
+use std::fmt;
+use stead_model::robot::Pose;
+
+/// A solid made ready for queries, in the frame of what it is attached to.
+#[derive(Clone)]
+pub struct Collider {
+    form: Form,
+    /// From the library's frame of the form to the frame of the attachment.
+    pose: ParryPose,
+}
+
+#[derive(Clone)]
+enum Form {
+    Convex(Convex),
+    Mesh(Box<Mesh>),
+}
+
+impl fmt::Debug for Collider {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Collider").field("pose", &self.pose).finish_non_exhaustive()
+    }
+}
+
+fn vector(v: &Vector3<f64>) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+fn parry_pose(pose: &Pose<f64>) -> ParryPose {
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(pose.rotation));
+    let [x, y, z, w] = [rotation.i, rotation.j, rotation.k, rotation.w];
+    ParryPose::from_parts(vector(&pose.translation), Rotation::from_xyzw(x, y, z, w))
+}
+
+/// How far two solids are apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Separation {
+    /// Their distance where it is below the limit asked for; else a value not below that; zero where they touch. m
+    pub distance: f64,
+    /// The direction from the first to the second along which they are so far apart, in the common frame; `None` where it is not known.
+    pub axis: Option<Vector3<f64>>,
+}
+
+impl Collider {
+    /// Makes a solid ready, at a pose in the frame of its attachment. `None` where the hull of a mesh cannot be formed.
+    pub fn new(solid: &Solid, pose: &Pose<f64>) -> Option<Self> {
+        let at = parry_pose(pose);
+        Some(match solid {
+            Solid::Mesh(mesh) => Self { form: Form::Mesh(Box::new(Mesh::new(mesh)?)), pose: at },
+            convex => {
+                let (convex, along_z) = Convex::new(convex)?;
+                Self { form: Form::Convex(convex), pose: at * along_z }
+            }
+        })
+    }
+
+    /// The distance of two solids whose attachments stand at poses in one frame, where it is below `limit`; else a value not below
+    /// that; zero where they touch. m
+    pub fn distance(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> f64 {
+        self.separation(at, other, other_at, limit).distance
+    }
+
+    /// The same with the direction.
+    pub fn separation(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> Separation {
+        let [here, there] = [parry_pose(at) * self.pose, parry_pose(other_at) * other.pose];
+        let of_mesh = |distance: f64| Separation { distance, axis: None };
+        match (&self.form, &other.form) {
+            (Form::Convex(a), Form::Convex(b)) => {
+                let (distance, axis) = a.distance(&here.inv_mul(&there), b, limit);
+                let axis = axis.map(|axis| here.rotation * axis);
+                Separation { distance, axis: axis.map(|axis| Vector3::new(axis.x, axis.y, axis.z)) }
+            }
+            (Form::Mesh(mesh), Form::Convex(b)) => of_mesh(mesh.distance(&here.inv_mul(&there), b, limit)),
+            (Form::Convex(a), Form::Mesh(mesh)) => of_mesh(mesh.distance(&there.inv_mul(&here), a, limit)),
+            (Form::Mesh(a), Form::Mesh(b)) => of_mesh(a.distance_to_mesh(&here.inv_mul(&there), b, limit)),
+        }
+    }
+
+    /// How far two solids are apart along a direction, a unit vector in the common frame from the first to the second: never more than
+    /// their distance. m
+    pub fn gap(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, axis: &Vector3<f64>) -> f64 {
+        -self.extent(at, axis) - other.extent(other_at, &-axis)
+    }
+
+    /// How far the solid, or a box around it, extends along a direction. m
+    fn extent(&self, at: &Pose<f64>, axis: &Vector3<f64>) -> f64 {
+        let in_attachment = vector(&at.rotation.tr_mul(axis));
+        let direction = self.pose.rotation.inverse() * in_attachment;
+        let farthest = match &self.form {
+            Form::Convex(convex) => convex.extent(direction),
+            Form::Mesh(mesh) => mesh.extent(direction),
+        };
+        farthest + in_attachment.dot(self.pose.translation) + axis.dot(&at.translation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::tests::box_mesh;
+    use proptest::prelude::*;
+    use std::sync::Arc;
+    use stead_numerics::rotation::rotation_from_zyx;
+
+    fn at(x: f64, y: f64, z: f64) -> Pose<f64> {
+        Pose { translation: Vector3::new(x, y, z), ..Pose::identity() }
+    }
+
+    fn collider(solid: &Solid) -> Collider {
+        Collider::new(solid, &Pose::identity()).unwrap()
+    }
+
+    #[test]
+    fn distances_by_hand() {
+        let cube = collider(&Solid::Box(Vector3::new(1.0, 1.0, 1.0)));
+        let capsule = collider(&Solid::Capsule { radius: 0.1, length: 1.0 });
+        let cylinder = collider(&Solid::Cylinder { radius: 0.1, length: 1.0 });
+        let here = Pose::identity();
+        assert!((cube.distance(&here, &cube, &at(3.0, 0.0, 0.0), 10.0) - 2.0).abs() < 1e-12);
+        assert!((cube.distance(&here, &capsule, &at(0.0, 0.0, 2.0), 10.0) - 0.9).abs() < 1e-12);
+        assert!((cube.distance(&here, &cylinder, &at(0.0, 0.0, 2.0), 10.0) - 1.0).abs() < 1e-9);
+        assert_eq!(cube.distance(&here, &cube, &at(0.9, 0.0, 0.0), 10.0), 0.0);
+    }
+
+    #[test]
+    fn a_mesh_is_solid_where_it_is_closed() {
+        let big = box_mesh(Vector3::new(2.0, 2.0, 2.0));
+        let open = TriangleMesh::new(big.vertices(), &big.triangles()[1..]).unwrap();
+        let small = collider(&Solid::Box(Vector3::new(0.1, 0.1, 0.1)));
+        let here = Pose::identity();
+        let distance = |mesh: &TriangleMesh, solid: &Collider| {
+            collider(&Solid::Mesh(Arc::new(mesh.clone()))).distance(&here, solid, &here, 5.0)
+        };
+        assert_eq!(distance(&big, &small), 0.0);
+        assert!((distance(&open, &small) - 0.95).abs() < 1e-9);
+        let little = box_mesh(Vector3::new(0.1, 0.1, 0.1));
+        assert_eq!(distance(&big, &collider(&Solid::Mesh(Arc::new(little.clone())))), 0.0);
+        assert!((distance(&open, &collider(&Solid::Mesh(Arc::new(little)))) - 0.95).abs() < 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+        /// A box as a box, as a hull, and as a mesh is as far from another solid.
+        #[test]
+        fn three_forms_of_a_box_agree(
+            place in prop::array::uniform3(-2.0..2.0_f64), turn in prop::array::uniform3(-3.0..3.0_f64), limit in 0.05..3.0_f64
+        ) {
+            let edges = Vector3::new(0.8, 1.2, 0.4);
+            let mesh = Arc::new(box_mesh(edges));
+            let pose = Pose { rotation: rotation_from_zyx(turn), translation: place.into() };
+            for other in [
+                Solid::Capsule { radius: 0.2, length: 0.9 },
+                Solid::Cylinder { radius: 0.3, length: 0.5 },
+                Solid::Mesh(Arc::new(box_mesh(Vector3::new(0.5, 0.3, 0.7)))),
+            ] {
+                let other = collider(&other);
+                let [plain, hull, mesh] = [Solid::Box(edges), Solid::Hull(mesh.clone()), Solid::Mesh(mesh.clone())]
+                    .map(|solid| collider(&solid).distance(&Pose::identity(), &other, &pose, limit));
+                // Far away, values are only not below the limit.
+                let cut = |value: f64| if value <= 0.0 { 0.0 } else { value.min(limit) };
+                // GJK ends at some micrometres on round surfaces.
+                prop_assert!((cut(plain) - cut(hull)).abs() < 1e-5, "{plain} {hull}");
+                prop_assert!((cut(plain) - cut(mesh)).abs() < 1e-5, "{plain} {mesh}");
+            }
+        }
+    }
+}
