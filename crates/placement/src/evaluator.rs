@@ -4,7 +4,7 @@
 
 use super::candidate::{Candidate, Objective, rank};
 use super::coordinate_search::{Directions, coordinate_search};
-use super::lookup::{self, BetaGrid, LookupTable};
+use super::lookup::{self, BetaGrid, Look, LookupTable};
 use super::outcome::Generation;
 use super::problem::Placement;
 use super::redundancy::{self, Planner};
@@ -141,8 +141,31 @@ impl<'a> Evaluator<'a> {
     /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with
     /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
     pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
+        self.looked_objective(placement, scheme, Look::ALL, workspace)
+    }
+
+    /// The same to tell candidates of a search apart: by the table, of points close to each other only some are looked at for
+    /// collisions, and none where the mean is above a `limit` (m) without them.
+    pub fn rough_objective(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        limit: f64,
+        workspace: &mut Workspace,
+    ) -> Objective {
+        let stride = self.table.map_or(1, |table| table.stride);
+        self.looked_objective(placement, scheme, Look { stride, limit }, workspace)
+    }
+
+    fn looked_objective(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        look: Look,
+        workspace: &mut Workspace,
+    ) -> Objective {
         match (self.table, &mut workspace.table) {
-            (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, space),
+            (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, look, space),
             _ => self.planned_objective(placement, scheme, workspace),
         }
     }
@@ -243,7 +266,16 @@ impl<'a> Evaluator<'a> {
             return (start.clone(), 0);
         }
         let directions = if self.table.is_some() { Directions::WithoutAzimuth } else { Directions::All };
-        let objective = |placement: &Placement| self.objective(placement, start.scheme.as_deref(), workspace);
+        let mut best = f64::INFINITY;
+        let objective = |placement: &Placement| {
+            let look = Look { limit: best, ..Look::ALL };
+            let found = self.looked_objective(placement, start.scheme.as_deref(), look, workspace);
+            // Collisions only make a mean larger: where it is larger than that of the best already, they are not looked for.
+            if let (Sense::Min, Some(mean)) = (sense, found.mean()) {
+                best = best.min(mean);
+            }
+            found
+        };
         let problem = self.planner.problem();
         let (placement, objective, evaluations) =
             coordinate_search(problem, &start.placement, sense, directions, objective, monitor);

@@ -108,7 +108,7 @@ pub fn generations(
     monitor: &Monitor,
 ) -> SearchResult {
     let problem = evaluator.planner().problem();
-    evaluate(evaluator, &mut population, 0, monitor);
+    evaluate(evaluator, &mut population, (0, f64::INFINITY), monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -124,9 +124,10 @@ pub fn generations(
                     breed(problem, settings, &population, sense, generation, &mut random)
                 })
                 .collect::<Vec<_>>();
+            let middle = population[population.len() / 2].objective.mean().filter(|_| sense == Sense::Min);
             population.truncate(elite);
             population.extend(children);
-            evaluate(evaluator, &mut population, elite, monitor);
+            evaluate(evaluator, &mut population, (elite, middle.unwrap_or(f64::INFINITY)), monitor);
             evaluations += population.len() - elite;
         }
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
@@ -245,9 +246,16 @@ fn random_posture(allowed: &[Posture], random: &mut impl Rng) -> Posture {
     allowed[random.random_range(0..allowed.len())]
 }
 
-fn evaluate(evaluator: &Evaluator<'_>, population: &mut Vec<Candidate>, from: usize, monitor: &Monitor) {
+/// Evaluates candidates from one on. Of those that are not among the better half of the others even without collisions, where the best
+/// is sought, none are looked for: they hardly ever become parents, and are looked at before they are refined.
+fn evaluate(
+    evaluator: &Evaluator<'_>,
+    population: &mut Vec<Candidate>,
+    (from, limit): (usize, f64),
+    monitor: &Monitor,
+) {
     let objective = |candidate: &Candidate, workspace: &mut evaluator::Workspace| {
-        evaluator.objective(&candidate.placement, candidate.scheme.as_deref(), workspace)
+        evaluator.rough_objective(&candidate.placement, candidate.scheme.as_deref(), limit, workspace)
     };
     evaluate_by(&|| evaluator.workspace(), &objective, population, from, (LAST_LOOK, monitor));
 }

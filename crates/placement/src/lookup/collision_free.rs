@@ -4,7 +4,6 @@
 //! The table does not tell the two flips of the wrist apart, so a state is forbidden where something hits in both.
 
 use super::objective::Workspace;
-use super::polar::PlacedPath;
 use super::{BetaGrid, LookupTable};
 use crate::problem::Placement;
 use crate::redundancy::{StateSet, forbid};
@@ -16,38 +15,52 @@ use stead_model::robot::PostureClass;
 const MAX_ROUNDS: usize = 30;
 
 impl LookupTable<'_> {
-    /// [`LookupTable::best_class`] among the ways in which nothing hits.
+    /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that sum (m): first the
+    /// one that was `found`, then what is found `again` without the states that hit.
     pub(super) fn best_free_class(
         &self,
-        placement: &Placement,
-        placed: &PlacedPath,
+        (placement, grid): (&Placement, &BetaGrid),
         (index, span): (usize, &Span<usize>),
-        asked: &impl Fn(usize) -> bool,
-        grid: &BetaGrid,
+        mut found: Option<(f64, usize)>,
+        again: impl Fn(&mut Workspace) -> Option<(f64, usize)>,
+        stride: usize,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
         // States met on earlier ways in which nothing hits.
         let mut free = StateSet::default();
         for _ in 0..MAX_ROUNDS {
-            let (cost, class) = self.best_class(placed, (index, span), asked, grid, workspace)?;
-            let betas = traced(&workspace.best_costs, &grid.changes[span.clone()], grid.count);
-            let mut is_free = true;
-            for (point, beta) in span.clone().zip(betas) {
+            let (_, class) = found?;
+            let betas = traced(&workspace.segments[index].rows.costs, &grid.changes[span.clone()], grid.count);
+            let Workspace { known: [along, across], forbidden, .. } = workspace;
+            let mut is_hit = |place: usize| {
+                let (point, beta) = (span.start + place, betas[place]);
                 if free.contains(point, PostureClass::ALL[class], beta) {
-                    continue;
+                    return false;
                 }
-                let Workspace { known: [along, across], forbidden, .. } = workspace;
-                if self.hits(placement, (point, class), (grid, beta), along) {
-                    is_free = false;
+                let is_hit = self.hits(placement, (point, class), (grid, beta), along);
+                if is_hit {
                     let hits = |k| self.hits(placement, (point, class), (grid, k), across);
                     forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, forbidden);
                 } else {
                     free.add(point, PostureClass::ALL[class], beta);
                 }
+                is_hit
+            };
+            let mut is_free = true;
+            let last = betas.len() - 1;
+            for place in (0..last).step_by(stride).chain([last]) {
+                if is_hit(place) {
+                    is_free = false;
+                    let near = place.saturating_sub(stride - 1)..(place + stride).min(betas.len());
+                    near.filter(|near| *near != place).for_each(|near| {
+                        is_hit(near);
+                    });
+                }
             }
             if is_free {
-                return Some((cost, class));
+                return found;
             }
+            found = again(workspace);
         }
         None
     }

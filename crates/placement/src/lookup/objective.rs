@@ -21,17 +21,53 @@ pub struct Workspace {
     /// Smallest sums of scores so far, over beta.
     costs: Vec<f32>,
     windows: [Vec<f32>; 2],
-    /// For each segment the class that won last.
-    favourites: Vec<usize>,
-    /// Costs after each point of the class gone through last, where there is a scene.
-    kept_costs: Vec<f32>,
-    /// The same of the best class.
-    pub(super) best_costs: Vec<f32>,
+    pub(super) segments: Vec<SegmentSpace>,
+    /// Rows of the class gone through last, where there is a scene.
+    kept: Rows,
     /// States that hit, of the placement evaluated.
     pub(super) forbidden: StateSet,
     /// What is known of distances along the way, and of those across it.
     pub(super) known: [Proximity; 2],
 }
+
+/// What is known of one segment.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SegmentSpace {
+    /// The class that won last, also with the placement before.
+    favourite: usize,
+    /// For each class what is known to be not more than its sum of scores. m
+    least: [f64; 4],
+    /// Rows of the class that won last, where there is a scene.
+    pub rows: Rows,
+}
+
+/// Values over beta, point by point.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rows {
+    /// Costs after each point.
+    pub costs: Vec<f32>,
+    /// Weighed scores, without what collisions forbid.
+    scores: Vec<f32>,
+    /// Whether all points have scores.
+    is_whole: bool,
+}
+
+/// How thoroughly collisions are looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// The states of every so many points of a way are looked at first, the others only beside what hits.
+    pub stride: usize,
+    /// None are looked for where the objective without them is above this already: it is told as it is. m
+    pub limit: f64,
+}
+
+impl Look {
+    /// At everything.
+    pub const ALL: Self = Self { stride: 1, limit: f64::INFINITY };
+}
+
+/// A segment, with its number.
+type Numbered<'s> = (usize, &'s Span<usize>);
 
 impl LookupTable<'_> {
     /// Scratch space for one thread and one grid of beta.
@@ -42,9 +78,8 @@ impl LookupTable<'_> {
             scores: row(),
             costs: row(),
             windows: std::array::from_fn(|_| vec![0.0; 2 * grid.count]),
-            favourites: vec![0; self.problem.task.segments().len()],
-            kept_costs: Vec::new(),
-            best_costs: Vec::new(),
+            segments: vec![SegmentSpace::default(); self.problem.task.segments().len()],
+            kept: Rows::default(),
             forbidden: StateSet::default(),
             known: Default::default(),
         }
@@ -57,40 +92,70 @@ impl LookupTable<'_> {
         placement: &Placement,
         grid: &BetaGrid,
         scheme: Option<&[Posture]>,
+        look: Look,
         workspace: &mut Workspace,
     ) -> Objective {
         let schemes = self.problem.unchanging_schemes(scheme);
         if !schemes.is_empty() {
-            let of = |scheme: Vec<Posture>| self.objective(placement, grid, Some(&scheme), workspace);
+            let of = |scheme: Vec<Posture>| self.objective(placement, grid, Some(&scheme), look, workspace);
             return best_of(Sense::Min, schemes.into_iter().map(of));
         }
         let placed = self.place(placement);
-        if self.problem.scene.is_some() {
-            workspace.forbidden.clear();
+        let rules = &self.problem.postures;
+        let is_asked = |index: usize, class: usize| {
+            let only = scheme.map(|s| s[index].class().index());
+            only.is_none_or(|asked| asked == class) && rules.allows_class(PostureClass::ALL[class])
+        };
+        workspace.forbidden.clear();
+        let spans = self.problem.task.segments();
+        let mut found: Vec<Option<(f64, usize)>> = Vec::with_capacity(spans.len());
+        for segment in spans.iter().enumerate() {
+            workspace.segments[segment.0].least = [f64::NEG_INFINITY; 4];
+            workspace.segments[segment.0].rows.is_whole = false;
+            found.push(self.best_class(&placed, segment, &|class| is_asked(segment.0, class), grid, workspace));
+        }
+        let objective = |found: &[Option<(f64, usize)>]| {
+            let cost = |(index, found): (usize, &Option<(f64, usize)>)| {
+                found.map(|(cost, _)| self.problem.segment_weight(index) * cost)
+            };
+            let costs: Option<Vec<f64>> = found.iter().enumerate().map(cost).collect();
+            costs.map(|costs| self.problem.objective(costs))
+        };
+        let relaxed = objective(&found);
+        if self.problem.scene.is_some() && relaxed.is_some_and(|relaxed| relaxed <= look.limit) {
             workspace.known.iter_mut().for_each(Proximity::clear);
             if self.problem.placement_hit(placement).is_some() {
                 return Objective::Infeasible { points: self.problem.task.points().len(), segments: 0 };
             }
-        }
-        let rules = &self.problem.postures;
-        let mut costs = Vec::with_capacity(self.problem.task.segments().len());
-        let (mut points, mut segments) = (0, 0);
-        for (index, span) in self.problem.task.segments().iter().enumerate() {
-            let only = scheme.map(|s| s[index].class().index());
-            let asked =
-                |class: usize| only.is_none_or(|asked| asked == class) && rules.allows_class(PostureClass::ALL[class]);
-            let best = match self.problem.scene {
-                None => self.best_class(&placed, (index, span), &asked, grid, workspace),
-                Some(_) => self.best_free_class(placement, &placed, (index, span), &asked, grid, workspace),
-            };
-            if let Some((cost, _)) = best {
-                costs.push(self.problem.segment_weight(index) * cost);
-                continue;
+            for (segment, found) in spans.iter().enumerate().zip(&mut found) {
+                let again = |workspace: &mut Workspace| {
+                    self.best_class(&placed, segment, &|class| is_asked(segment.0, class), grid, workspace)
+                };
+                *found = self.best_free_class((placement, grid), segment, *found, again, look.stride, workspace);
             }
+        }
+        let Some(mean) = objective(&found) else {
+            return self.blocked(&placed, is_asked, grid, &found, workspace);
+        };
+        Objective::Feasible(mean)
+    }
+
+    /// Why there is no way through the segments for which none was found: how many points, or else segments, are in the way.
+    fn blocked(
+        &self,
+        placed: &PlacedPath,
+        is_asked: impl Fn(usize, usize) -> bool,
+        grid: &BetaGrid,
+        found: &[Option<(f64, usize)>],
+        workspace: &mut Workspace,
+    ) -> Objective {
+        let (mut points, mut segments) = (0, 0);
+        let open = self.problem.task.segments().iter().enumerate().filter(|(index, _)| found[*index].is_none());
+        for (index, span) in open {
             let Workspace { scratch, scores, forbidden, .. } = workspace;
             let is_blocked = |point: &usize| {
-                let polar = self.polar_point(&placed, *point);
-                let mut classes = (0..4).filter(|class| asked(*class));
+                let polar = self.polar_point(placed, *point);
+                let mut classes = (0..4).filter(|class| is_asked(index, *class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
                     let is_reached = self.interpolate(polar, class, grid, scratch, scores);
                     for hits in grid.tool_hits.as_deref().into_iter().chain([&*forbidden]) {
@@ -104,62 +169,79 @@ impl LookupTable<'_> {
             points += blocked;
             segments += usize::from(blocked == 0);
         }
-        if points > 0 {
-            Objective::Infeasible { points, segments: 0 }
-        } else if segments > 0 {
-            Objective::Infeasible { points, segments }
-        } else {
-            Objective::Feasible(self.problem.objective(costs))
-        }
+        Objective::Infeasible { points, segments: if points > 0 { 0 } else { segments } }
     }
 
-    /// The class that gets through a segment, given with its number, with the smallest sum of scores, and that sum. m
-    pub(super) fn best_class(
+    /// The class that gets through a segment with the smallest sum of scores, and that sum. m
+    fn best_class(
         &self,
         placed: &PlacedPath,
-        (index, span): (usize, &Span<usize>),
-        asked: &impl Fn(usize) -> bool,
+        (index, span): Numbered<'_>,
+        is_asked: &impl Fn(usize) -> bool,
         grid: &BetaGrid,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
         let mut best: Option<(f64, usize)> = None;
         // The class that won last time goes first: the others can then mostly be given up on the way.
-        let first = workspace.favourites[index];
-        for class in [first, first ^ 1, first ^ 2, first ^ 3].into_iter().filter(|class| asked(*class)) {
+        let SegmentSpace { favourite: first, least, .. } = workspace.segments[index];
+        let mut order = [first, first ^ 1, first ^ 2, first ^ 3];
+        order.sort_by(|a, b| least[*a].total_cmp(&least[*b]));
+        for class in order.into_iter().filter(|class| is_asked(*class)) {
             let bound = best.map_or(f64::INFINITY, |(cost, _)| cost);
-            if let Some(cost) = self.through(placed, span.clone(), class, grid, bound, workspace) {
+            if least[class] >= bound {
+                continue;
+            }
+            // The scores of the class that won last are kept.
+            let is_kept = class == first && workspace.segments[index].rows.is_whole;
+            let known = if is_kept { std::mem::take(&mut workspace.segments[index].rows.scores) } else { Vec::new() };
+            let cost = self.through(placed, span.clone(), (class, &known), grid, bound, workspace);
+            if is_kept {
+                workspace.segments[index].rows.scores = known;
+            }
+            let space = &mut workspace.segments[index];
+            space.least[class] = cost.unwrap_or(bound).max(space.least[class]);
+            if let Some(cost) = cost {
                 best = Some((cost, class));
-                workspace.favourites[index] = class;
-                std::mem::swap(&mut workspace.kept_costs, &mut workspace.best_costs);
+                space.favourite = class;
+                std::mem::swap(&mut workspace.kept, &mut space.rows);
             }
         }
         best
     }
 
-    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`. m
+    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`; its scores are
+    /// interpolated where they are not known. m
     fn through(
         &self,
         placed: &PlacedPath,
         span: Span<usize>,
-        class: usize,
+        (class, known): (usize, &[f32]),
         grid: &BetaGrid,
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
-        let Workspace { scratch, scores, costs, windows, kept_costs, forbidden, .. } = workspace;
+        let Workspace { scratch, scores, costs, windows, kept, forbidden, .. } = workspace;
         let has_scene = self.problem.scene.is_some();
-        kept_costs.clear();
+        kept.costs.clear();
+        kept.scores.clear();
+        kept.is_whole = false;
+        let mut known = known.chunks_exact(grid.count);
         // Costs are relative to this, so that long sums keep their digits.
         let mut base = 0.0;
         for (place, point) in span.enumerate() {
-            if !self.interpolate(&self.polar_point(placed, point)?, class, grid, scratch, scores) {
-                return None;
-            }
-            let weight = self.problem.task.path().weight(point) as f32;
-            if weight != 1.0 {
-                scores.iter_mut().for_each(|score| *score *= weight);
+            if let Some(known) = known.next() {
+                scores.copy_from_slice(known);
+            } else {
+                if !self.interpolate(&self.polar_point(placed, point)?, class, grid, scratch, scores) {
+                    return None;
+                }
+                let weight = self.problem.task.path().weight(point) as f32;
+                if weight != 1.0 {
+                    scores.iter_mut().for_each(|score| *score *= weight);
+                }
             }
             if has_scene {
+                kept.scores.extend_from_slice(scores);
                 for hits in grid.tool_hits.as_deref().into_iter().chain([&*forbidden]) {
                     hits.apply_to_scores(point, class, scores);
                 }
@@ -173,7 +255,7 @@ impl LookupTable<'_> {
                 return None;
             }
             if has_scene {
-                kept_costs.extend_from_slice(costs);
+                kept.costs.extend_from_slice(costs);
             }
             if place % RENEWAL == RENEWAL - 1 {
                 let min = costs.iter().copied().fold(f32::INFINITY, f32::min);
@@ -181,6 +263,7 @@ impl LookupTable<'_> {
                 base += f64::from(min);
             }
         }
+        kept.is_whole = has_scene;
         let cost = base + f64::from(costs.iter().copied().fold(f32::INFINITY, f32::min));
         (cost < bound).then_some(cost)
     }

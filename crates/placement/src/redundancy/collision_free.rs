@@ -17,6 +17,9 @@ use stead_model::robot::{Posture, PostureClass};
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 60;
 
+/// Times that a plan taken off the grid is looked at for more points that hit, before all are looked at.
+const WATCHES: usize = 6;
+
 /// Which pairs of the scene hit at which path points.
 pub type Collisions = BTreeMap<usize, BTreeSet<usize>>;
 
@@ -122,21 +125,34 @@ impl Planner<'_> {
         self.objective(placement, sense, None, &mut workspace)
     }
 
-    /// Takes beta of a plan off the grid. Where nothing hits on the grid, but something does off it, the states around the plan are
-    /// looked at one by one.
+    /// Takes beta of a plan off the grid. Where nothing hits on the grid, but something does off it, the states of the points where it
+    /// does are looked at one by one.
     pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
-        let is_free = |plan: &SegmentPlan| self.problem.plan_hits(placement, plan, false).is_empty();
-        if self.problem.scene.is_none() {
-            off_grid::refine(self.problem, placement, sense, self.spacing, plan);
-        } else if is_free(plan) {
+        let (problem, spacing) = (self.problem, self.spacing);
+        if problem.scene.is_none() {
+            off_grid::refine(problem, placement, sense, spacing, plan);
+            return;
+        }
+        let hits = |plan: &SegmentPlan| problem.plan_hits(placement, plan, false);
+        if !hits(plan).is_empty() {
+            return;
+        }
+        let mut watched = vec![false; plan.points.len()];
+        for _ in 0..WATCHES {
             let mut refined = plan.clone();
-            off_grid::refine(self.problem, placement, sense, self.spacing, &mut refined);
-            if is_free(&refined) {
+            off_grid::refine_free(problem, placement, sense, spacing, &watched, &mut refined);
+            let hits = hits(&refined);
+            if hits.is_empty() {
                 *plan = refined;
-            } else {
-                off_grid::refine_free(self.problem, placement, sense, self.spacing, plan);
+                return;
+            }
+            // What hits at one point mostly hits at the next.
+            for place in hits.iter().map(|hit| hit.point - plan.points.start) {
+                let last = (place + 2).min(watched.len());
+                watched[place.saturating_sub(1)..last].fill(true);
             }
         }
+        off_grid::refine_free(problem, placement, sense, spacing, &vec![true; watched.len()], plan);
     }
 
     /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others are left. Turns of

@@ -80,17 +80,20 @@ pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spa
     refine_with(problem, &allowed, sense, range, plan)
 }
 
-/// The same among states in which nothing hits.
+/// The same among states in which nothing hits at the points that are `watched` (one entry for each point of the plan).
 pub fn refine_free(
     problem: &Problem,
     placement: &Placement,
     sense: Sense,
     range: Spacing,
+    watched: &[bool],
     plan: &mut SegmentPlan,
 ) -> bool {
-    let allowed = |point, beta, plan: &SegmentPlan| {
+    let first = plan.points.start;
+    let allowed = |point: usize, beta, plan: &SegmentPlan| {
         let state = allowed(problem, placement, point, beta, plan)?;
-        problem.state_hit(point, placement, &state.joints).is_none().then_some(state)
+        let is_free = || problem.state_hit(point, placement, &state.joints).is_none();
+        (!watched[point - first] || is_free()).then_some(state)
     };
     refine_with(problem, &allowed, sense, range, plan)
 }
