@@ -72,6 +72,18 @@ impl Problem {
         scene.first_hit(&self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
     }
 
+    /// The same by what is known from states looked at before: any such pair.
+    pub(crate) fn hit_after(
+        &self,
+        known: &mut Proximity,
+        point: usize,
+        placement: &Placement,
+        joints: &[f64; 6],
+    ) -> Option<usize> {
+        let scene = self.scene.as_deref()?;
+        scene.next_hit(known, &self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
+    }
+
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
     pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
         let of_states = &PairKind::OF_STATES;
@@ -107,13 +119,13 @@ impl Problem {
     }
 
     /// Whether spindle and holder are too near to the part or its fixture at a path point and free angle (rad), wherever the part
-    /// stands.
-    pub fn tool_hits_workpiece(&self, point: usize, beta: f64) -> bool {
+    /// stands, by what is known from the angles looked at before.
+    pub(crate) fn tool_hits_workpiece(&self, point: usize, beta: f64, known: &mut Proximity) -> bool {
         let Some(scene) = self.scene.as_deref() else { return false };
         let at_origin = Placement::from([0.0; 4]);
         let part = self.base_from_part(point, &at_origin);
         let poses = Poses::of_tool(&self.base_from_flange(point, &at_origin, beta), &part);
-        scene.first_hit(&poses, &[PairKind::ToolWorkpiece]).is_some()
+        scene.next_hit(known, &poses, &[PairKind::ToolWorkpiece]).is_some()
     }
 
     /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.

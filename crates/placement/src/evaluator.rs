@@ -145,16 +145,16 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The same to tell candidates of a search apart: by the table, of points close to each other only some are looked at for
-    /// collisions, and none where the mean is above a `limit` (m) without them.
+    /// collisions, and none where the objective is not `within` two bounds (m) without them.
     pub fn rough_objective(
         &self,
         placement: &Placement,
         scheme: Option<&[Posture]>,
-        limit: f64,
+        within: [f64; 2],
         workspace: &mut Workspace,
     ) -> Objective {
         let stride = self.table.map_or(1, |table| table.stride);
-        self.looked_objective(placement, scheme, Look { stride, limit }, workspace)
+        self.looked_objective(placement, scheme, Look { stride, within }, workspace)
     }
 
     fn looked_objective(
@@ -268,7 +268,7 @@ impl<'a> Evaluator<'a> {
         let directions = if self.table.is_some() { Directions::WithoutAzimuth } else { Directions::All };
         let mut best = f64::INFINITY;
         let objective = |placement: &Placement| {
-            let look = Look { limit: best, ..Look::ALL };
+            let look = Look { within: [f64::NEG_INFINITY, best], ..Look::ALL };
             let found = self.looked_objective(placement, start.scheme.as_deref(), look, workspace);
             // Collisions only make a mean larger: where it is larger than that of the best already, they are not looked for.
             if let (Sense::Min, Some(mean)) = (sense, found.mean()) {

@@ -6,6 +6,7 @@ use super::problem::{Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
+use stead_cell::Proximity;
 use stead_model::robot::{Posture, turns::Range};
 use stead_numerics::monitor::Monitor;
 
@@ -48,7 +49,7 @@ pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64
 }
 
 /// The same without the shapes of the scene.
-fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
+pub(super) fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     Posture::ALL.map(|posture| match state(problem, point, placement, beta, posture) {
         Err(unreachable) => Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)] },
         Ok(mut found) => {
@@ -99,7 +100,7 @@ pub(super) const AFTER_STOP: usize = 50_000;
 pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<DeflectionMap> {
     let beta_count = problem.redundancy.beta_count;
     let placement_hit = problem.placement_hit(placement);
-    let cell = |point: usize, k: usize| {
+    let cell = |point: usize, k: usize, known: &mut Proximity| {
         let all = without_clearance(problem, placement, point, problem.redundancy.beta(k));
         let mut allowed: Vec<(MapCell, [f64; 6])> = all
             .iter()
@@ -109,7 +110,7 @@ pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monito
         allowed.sort_by(|a, b| a.0.score.total_cmp(&b.0.score));
         let mut hit = placement_hit;
         for (cell, joints) in &allowed {
-            match placement_hit.or_else(|| problem.state_hit(point, placement, joints)) {
+            match placement_hit.or_else(|| problem.hit_after(known, point, placement, joints)) {
                 None => return Ok(*cell),
                 found => hit = hit.or(found),
             }
@@ -123,7 +124,10 @@ pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monito
     };
     let points = problem.task.points().len();
     let is_stopped = || points * beta_count > AFTER_STOP && monitor.should_stop();
-    let row = |point: usize| (!is_stopped()).then(|| (0..beta_count).map(|k| cell(point, k)).collect());
+    let row = |point: usize| {
+        let mut known = Proximity::default();
+        (!is_stopped()).then(|| (0..beta_count).map(|k| cell(point, k, &mut known)).collect())
+    };
     let rows: Option<Vec<Vec<_>>> = (0..points).into_par_iter().map(row).collect();
     Some(DeflectionMap { beta_count, rows: rows? })
 }

@@ -108,7 +108,7 @@ pub fn generations(
     monitor: &Monitor,
 ) -> SearchResult {
     let problem = evaluator.planner().problem();
-    evaluate(evaluator, &mut population, (0, f64::INFINITY), monitor);
+    evaluate(evaluator, &mut population, (0, EVERYTHING), monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -124,10 +124,10 @@ pub fn generations(
                     breed(problem, settings, &population, sense, generation, &mut random)
                 })
                 .collect::<Vec<_>>();
-            let middle = population[population.len() / 2].objective.mean().filter(|_| sense == Sense::Min);
+            let within = better_half(&population, sense);
             population.truncate(elite);
             population.extend(children);
-            evaluate(evaluator, &mut population, (elite, middle.unwrap_or(f64::INFINITY)), monitor);
+            evaluate(evaluator, &mut population, (elite, within), monitor);
             evaluations += population.len() - elite;
         }
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
@@ -246,16 +246,15 @@ fn random_posture(allowed: &[Posture], random: &mut impl Rng) -> Posture {
     allowed[random.random_range(0..allowed.len())]
 }
 
-/// Evaluates candidates from one on. Of those that are not among the better half of the others even without collisions, where the best
-/// is sought, none are looked for: they hardly ever become parents, and are looked at before they are refined.
+/// Evaluates candidates from one on. Collisions are looked for only where the objective without them is `within` two bounds (m).
 fn evaluate(
     evaluator: &Evaluator<'_>,
     population: &mut Vec<Candidate>,
-    (from, limit): (usize, f64),
+    (from, within): (usize, [f64; 2]),
     monitor: &Monitor,
 ) {
     let objective = |candidate: &Candidate, workspace: &mut evaluator::Workspace| {
-        evaluator.rough_objective(&candidate.placement, candidate.scheme.as_deref(), limit, workspace)
+        evaluator.rough_objective(&candidate.placement, candidate.scheme.as_deref(), within, workspace)
     };
     evaluate_by(&|| evaluator.workspace(), &objective, population, from, (LAST_LOOK, monitor));
 }
@@ -330,6 +329,19 @@ fn breed(
     }
     child.placement = cell.clamp(&child.placement);
     child
+}
+
+/// Any objective. m
+const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// The bounds of the objectives of the better half of a sorted population: what is not within them even without collisions hardly ever
+/// becomes a parent, and is looked at more closely before it is refined. m
+fn better_half(population: &[Candidate], sense: Sense) -> [f64; 2] {
+    match (population[population.len() / 2].objective.mean(), sense) {
+        (None, _) => EVERYTHING,
+        (Some(middle), Sense::Min) => [f64::NEG_INFINITY, middle],
+        (Some(middle), Sense::Max) => [middle, f64::INFINITY],
+    }
 }
 
 fn tournament<'p>(population: &'p [Candidate], sense: Sense, random: &mut ChaCha8Rng) -> &'p Candidate {

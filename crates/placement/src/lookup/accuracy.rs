@@ -1,7 +1,7 @@
 //! The error of a lookup table against the reference evaluator, at random states all over the cell.
 
 use super::{BetaGrid, LookupTable};
-use crate::feasibility::explain;
+use crate::feasibility::without_clearance;
 use crate::problem::{Placement, Redundancy};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -80,7 +80,7 @@ impl LookupTable<'_> {
         let mut sums = Sums::default();
         for _ in 0..BETAS {
             let k = random.random_range(0..grid.count);
-            let all = explain(problem, &placement, point, wrap(redundancy.beta(k)));
+            let all = without_clearance(problem, &placement, point, wrap(redundancy.beta(k)));
             for class in PostureClass::ALL {
                 let mut postures = class.postures().into_iter().map(|posture| &all[usize::from(posture.number()) - 1]);
                 let ordinary = postures.find(|e| e.is_allowed()).and_then(|e| e.state.as_ref()).map(|s| s.score());

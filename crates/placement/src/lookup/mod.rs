@@ -90,15 +90,17 @@ pub struct BetaGrid {
 impl BetaGrid {
     /// The grid and the steps of a planner.
     pub fn of(planner: &Planner<'_>) -> Self {
-        Self::new(planner.problem(), planner.grid().beta_count)
+        Self::with(planner.problem(), *planner.grid(), planner.tool_hits())
     }
 
     /// A grid of `count` values over a full turn, with the changes of beta that are allowed on it.
     pub fn new(problem: &Problem, count: usize) -> Self {
         let grid = Redundancy { beta_count: count, ..problem.redundancy };
-        let changes = saved_changes(problem, &grid);
-        let tool_hits = StateSet::of_tool(problem, &grid).map(Arc::new);
-        Self { count, changes, tool_hits, step: grid.beta_step() }
+        Self::with(problem, grid, StateSet::of_tool(problem, &grid).map(Arc::new))
+    }
+
+    fn with(problem: &Problem, grid: Redundancy, tool_hits: Option<Arc<StateSet>>) -> Self {
+        Self { count: grid.beta_count, changes: saved_changes(problem, &grid), tool_hits, step: grid.beta_step() }
     }
 
     /// Grid value of beta, as [`Redundancy::beta`]. rad

@@ -57,13 +57,13 @@ pub(super) struct Rows {
 pub struct Look {
     /// The states of every so many points of a way are looked at first, the others only beside what hits.
     pub stride: usize,
-    /// None are looked for where the objective without them is above this already: it is told as it is. m
-    pub limit: f64,
+    /// None are looked for where the objective without them is below the first or above the second: it is told as it is. m
+    pub within: [f64; 2],
 }
 
 impl Look {
     /// At everything.
-    pub const ALL: Self = Self { stride: 1, limit: f64::INFINITY };
+    pub const ALL: Self = Self { stride: 1, within: [f64::NEG_INFINITY, f64::INFINITY] };
 }
 
 /// A segment, with its number.
@@ -122,7 +122,8 @@ impl LookupTable<'_> {
             costs.map(|costs| self.problem.objective(costs))
         };
         let relaxed = objective(&found);
-        if self.problem.scene.is_some() && relaxed.is_some_and(|relaxed| relaxed <= look.limit) {
+        let is_within = |relaxed: f64| relaxed >= look.within[0] && relaxed <= look.within[1];
+        if self.problem.scene.is_some() && relaxed.is_some_and(is_within) {
             workspace.known.iter_mut().for_each(Proximity::clear);
             if self.problem.placement_hit(placement).is_some() {
                 return Objective::Infeasible { points: self.problem.task.points().len(), segments: 0 };

@@ -178,6 +178,11 @@ impl<'a> Planner<'a> {
         &self.grid
     }
 
+    /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
+    pub(crate) fn tool_hits(&self) -> Option<Arc<StateSet>> {
+        self.tool_hits.clone()
+    }
+
     /// How far states must be continued cyclically for the widest step.
     pub fn pad(&self) -> usize {
         self.changes.iter().copied().map(BetaChange::widest).max().unwrap_or(0).max(self.knots.widest())

@@ -4,6 +4,7 @@ use super::super::evaluate::batch::StateGrid;
 use crate::problem::{Problem, Redundancy};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
 
 /// A set of states: path point, posture class, number of beta.
@@ -85,8 +86,9 @@ impl StateSet {
         let rows: Vec<Vec<u64>> = (0..points)
             .into_par_iter()
             .map(|point| {
-                let mut bits = Vec::new();
-                for beta in (0..grid.beta_count).filter(|k| problem.tool_hits_workpiece(point, grid.beta(*k))) {
+                let (mut bits, mut known) = (Vec::new(), Proximity::default());
+                let is_hit = |k: &usize| problem.tool_hits_workpiece(point, grid.beta(*k), &mut known);
+                for beta in (0..grid.beta_count).filter(is_hit) {
                     set(&mut bits, beta);
                 }
                 bits
