@@ -102,11 +102,13 @@ impl<'a> Evaluator<'a> {
         self
     }
 
-    /// An approximate mean, by which neighbours can be told apart: by the table or on a coarser grid, where there is one. m
+    /// An approximate mean, by which neighbours can be told apart: by the table or on a coarser grid, where there is one; where it is
+    /// not within two bounds without collisions, these may be left out. m
     pub fn approximate(
         &self,
         placement: &Placement,
         scheme: Option<&[Posture]>,
+        within: [f64; 2],
         workspace: &mut Workspace,
     ) -> Option<f64> {
         match self.coarser {
@@ -114,7 +116,10 @@ impl<'a> Evaluator<'a> {
                 let space = workspace.coarser.get_or_insert_with(|| coarser.workspace());
                 coarser.objective(placement, Sense::Min, scheme, space).mean()
             }
-            None => self.table.and_then(|_| self.objective(placement, scheme, workspace).mean()),
+            None => {
+                let look = Look { within, ..Look::ALL };
+                self.table.and_then(|_| self.looked_objective(placement, scheme, look, workspace).mean())
+            }
         }
     }
 

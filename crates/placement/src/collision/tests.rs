@@ -133,7 +133,7 @@ fn a_part_in_the_fence_blocks_every_point_and_is_named() {
 fn neighbours_that_hit_are_forbidden_as_far_as_they_hit() {
     let mut forbidden = StateSet::default();
     let class = stead_model::robot::PostureClass::ALL[1];
-    forbid((4, class), (1, 10), |k| [9, 0, 1, 2, 5].contains(&k), &mut forbidden);
+    forbid((4, class), (1, 10, 1), |k| [9, 0, 1, 2, 5].contains(&k), &mut forbidden);
     let found: Vec<usize> = (0..10).filter(|k| forbidden.contains(4, class, *k)).collect();
     assert_eq!(found, [0, 1, 2, 9]);
 }

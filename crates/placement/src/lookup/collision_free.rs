@@ -40,7 +40,7 @@ impl LookupTable<'_> {
                 let is_hit = self.hits(placement, (point, class), (grid, beta), along);
                 if is_hit {
                     let hits = |k| self.hits(placement, (point, class), (grid, k), across);
-                    forbid((point, PostureClass::ALL[class]), (beta, grid.count), hits, forbidden);
+                    forbid((point, PostureClass::ALL[class]), (beta, grid.count, stride), hits, forbidden);
                 } else {
                     free.add(point, PostureClass::ALL[class], beta);
                 }

@@ -23,19 +23,26 @@ const WATCHES: usize = 6;
 /// Which pairs of the scene hit at which path points.
 pub type Collisions = BTreeMap<usize, BTreeSet<usize>>;
 
-/// Forbids a state that hits, on a grid of `count` values of beta, and its neighbours in beta as far as they hit too.
+/// Forbids a state that hits, on a grid of `count` values of beta, and its neighbours in beta as far as they hit too; with a `stride`
+/// above one only every so many of them are looked at, and what lies between two that hit is forbidden with them.
 pub(crate) fn forbid(
     (point, class): (usize, PostureClass),
-    (beta, count): (usize, usize),
+    (beta, count, stride): (usize, usize, usize),
     mut hits: impl FnMut(usize) -> bool,
     forbidden: &mut StateSet,
 ) {
     forbidden.add(point, class, beta);
     for side in [1, count - 1] {
-        let mut next = (beta + side) % count;
-        while !forbidden.contains(point, class, next) && hits(next) {
-            forbidden.add(point, class, next);
-            next = (next + side) % count;
+        let mut at = beta;
+        loop {
+            let next = (at + stride * side) % count;
+            if forbidden.contains(point, class, next) || !hits(next) {
+                break;
+            }
+            for _ in 0..stride {
+                at = (at + side) % count;
+                forbidden.add(point, class, at);
+            }
         }
     }
 }
@@ -224,7 +231,7 @@ impl Planner<'_> {
                         let state = (point, self.grid.beta(k));
                         self.problem.next_hit(state, placement, plan.posture, self.kinds(), &mut known).is_some()
                     };
-                    forbid((point, class), (beta, count), &mut hits, forbidden);
+                    forbid((point, class), (beta, count, 1), &mut hits, forbidden);
                     return;
                 }
             }

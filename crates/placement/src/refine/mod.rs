@@ -170,8 +170,11 @@ fn poll(
         Sense::Min => 1.0,
         Sense::Max => -1.0,
     };
-    let mut look = |placement: &Placement| evaluator.approximate(placement, scheme, space);
-    let here = look(&centre.placement);
+    let mut look =
+        |placement: &Placement, within: [f64; 2]| evaluator.approximate(placement, scheme, within, space);
+    let here = look(&centre.placement, [f64::NEG_INFINITY, f64::INFINITY]);
+    // Collisions only make a mean larger.
+    let most = here.filter(|_| sense == Sense::Min).unwrap_or(f64::INFINITY);
     let mut best: Option<Solution> = None;
     for distance in POLLS {
         for k in 0..4 {
@@ -185,7 +188,7 @@ fn poll(
                 if monitor.should_stop() {
                     return best;
                 }
-                if placement == centre.placement || here.zip(look(&placement)).is_some_and(is_no_better) {
+                if placement == centre.placement || here.zip(look(&placement, [f64::NEG_INFINITY, most])).is_some_and(is_no_better) {
                     continue;
                 }
                 let Some(near) = planned(planner, &placement, scheme, workspace) else { continue };
@@ -197,6 +200,17 @@ fn poll(
         }
         if best.is_some() {
             break;
+        }
+    }
+    // Along an edge of what is allowed, the same way leads on.
+    while let Some(known) = best.as_ref().filter(|_| !monitor.should_stop()) {
+        let ahead = Placement::from(std::array::from_fn(|k| {
+            centre.placement[k] + 2.0 * (known.placement[k] - centre.placement[k])
+        }));
+        let next = planned(planner, &problem.cell.clamp(&ahead), scheme, workspace);
+        match next.filter(|next| next.objective * sign < known.objective * sign) {
+            Some(next) => best = Some(next),
+            None => break,
         }
     }
     best
