@@ -16,7 +16,7 @@ pub enum Attachment {
     Flange,
     /// The workpiece, in the frame of the task: part, stock, fixture, a table that moves with them.
     Workpiece,
-    /// What an external axis moves, by its number from 0, in the frame that it has at zero.
+    /// What an external axis carries, by its number from 0, in the frame that is the cell frame with all axes at zero.
     Axis(u8),
 }
 

@@ -10,6 +10,7 @@ use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
 use std::ops::Range as Span;
 use std::sync::Arc;
+use stead_model::external_axis::{Carried, carried};
 use stead_cell::{Clearance, PairKind, Poses, Proximity, Scene};
 use stead_model::robot::Posture;
 
@@ -51,8 +52,28 @@ impl Problem {
     /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the base frame, in which
     /// the cell moves the other way where an external axis carries the robot.
     pub fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {
-        let poses = scene.poses(joints, &self.base_from_part(point, placement));
-        if self.external_axes.is_empty() { poses } else { poses.with_cell(self.cell_from_carriage(point).inverse()) }
+        self.poses_at(scene, self.axis_positions(point), placement, joints)
+    }
+
+    /// The same with the external axes at positions (m or rad).
+    pub(crate) fn poses_at(
+        &self,
+        scene: &Scene,
+        positions: &[f64],
+        placement: &Placement,
+        joints: &[f64; 6],
+    ) -> Poses {
+        let axes = &self.external_axes;
+        let part = self.turned(self.base_from_workpiece_at(positions, placement));
+        let poses = scene.poses(joints, &part);
+        if axes.is_empty() {
+            return poses;
+        }
+        let base_from_cell = carried(axes, positions, Carried::Robot).inverse();
+        axes.iter().enumerate().fold(poses.with_cell(base_from_cell), |poses, (number, axis)| {
+            let cell_from_axis = carried(&axes[..=number], positions, axis.carries);
+            poses.with_axis(number, base_from_cell.then(&cell_from_axis))
+        })
     }
 
     /// The first pair that is nearer than it may be whatever the arm does, for the workpiece at a placement; `None` also where there is
@@ -60,10 +81,11 @@ impl Problem {
     pub fn placement_hit(&self, placement: &Placement) -> Option<usize> {
         let scene = self.scene.as_deref()?;
         let joints = self.robot.mid_range();
-        // Axes move the part along the path; without them all points are alike.
+        // Points with the external axes at the same positions are alike.
         let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
+        let is_new = |point: &usize| *point == 0 || self.axis_positions(*point) != self.axis_positions(*point - 1);
         let hit = |point| scene.first_hit(&self.poses(scene, point, placement, &joints), &[PairKind::WorkpieceCell]);
-        (0..points).find_map(hit)
+        (0..points).filter(is_new).find_map(hit)
     }
 
     /// The first pair that is nearer than it may be at a path point with the arm at joint angles (rad); `None` also where there is no scene.

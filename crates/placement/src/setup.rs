@@ -130,11 +130,15 @@ impl Problem {
 
     /// The part itself, as the task file and its meshes have it, in the base frame while path point `point` is machined.
     pub fn base_from_part(&self, point: usize, placement: &Placement) -> Pose<f64> {
-        let mut pose = self.base_from_workpiece(point, placement);
+        self.turned(self.base_from_workpiece(point, placement))
+    }
+
+    /// The part itself, where the frame that is placed is given: turned by its orientation.
+    pub(crate) fn turned(&self, mut base_from_workpiece: Pose<f64>) -> Pose<f64> {
         if let Some(orientation) = self.orientation() {
-            pose.rotation *= orientation.rotation;
+            base_from_workpiece.rotation *= orientation.rotation;
         }
-        pose
+        base_from_workpiece
     }
 
     /// Where the external axes have brought the robot at a path point: the frame that rides with it, in which everything is stated, in the cell.

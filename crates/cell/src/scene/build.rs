@@ -147,7 +147,7 @@ fn moves_more(first: usize, second: usize) -> bool {
 }
 
 /// The number of the link that a frame is; zero for what does not move with the arm.
-fn on_arm(frame: usize) -> usize {
+pub(super) fn on_arm(frame: usize) -> usize {
     if (1..=6).contains(&frame) { frame } else { 0 }
 }
 

@@ -26,7 +26,7 @@ use stead_model::robot::{Pose, Robot};
 /// Frames that shapes are attached to: the base, six links, the workpiece, and external axes.
 const FRAMES: usize = 8 + MAX_AXES;
 /// External axes that shapes can be attached to, at the most.
-pub const MAX_AXES: usize = 3;
+pub const MAX_AXES: usize = 6;
 const WORKPIECE: usize = 7;
 
 /// Where all that moves stands in one configuration, in the base frame.

@@ -7,7 +7,9 @@
 //! nothing moves farther between two states looked at than the resolution, and both states keep nine tenths of the distance asked for.
 
 use super::quick::Quick;
+use super::build::on_arm;
 use super::{Body, FRAMES, Members, Poses, Scene};
+use nalgebra::Vector3;
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
@@ -27,13 +29,57 @@ const BETWEEN: f64 = 0.9;
 /// The resolution where no clearance is asked for, and at the finest. m
 const FINEST: f64 = 5e-4;
 
-/// What shapes that are not on the arm do in a motion.
+/// What a frame that is not on the arm does in a motion: it turns evenly about an axis and moves evenly along it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Drift {
-    /// How far the origin of their frame goes. m
-    length: f64,
-    /// By what angle it turns. rad
-    angle: f64,
+struct Screw {
+    /// Direction of the axis times the angle. rad
+    turn: Vector3<f64>,
+    /// A point on the axis, in the base frame. m
+    centre: Vector3<f64>,
+    /// How far it moves along the axis, or without a turn, in all. m
+    along: Vector3<f64>,
+    /// How far the origin of the frame is from the axis. m
+    offset: f64,
+}
+
+/// A smaller angle is no turn. rad
+const SMALLEST_TURN: f64 = 1e-9;
+
+impl Screw {
+    /// From one pose to another.
+    fn between(from: &Pose<f64>, to: &Pose<f64>) -> Self {
+        let rotation = to.rotation * from.rotation.transpose();
+        let turn = rotation_vector(&rotation);
+        let angle = turn.norm();
+        if angle < SMALLEST_TURN {
+            return Self { along: to.translation - from.translation, centre: from.translation, ..Self::default() };
+        }
+        let axis = turn / angle;
+        let moved = to.translation - rotation * from.translation;
+        let along = axis * axis.dot(&moved);
+        let (sine, cosine) = libm::sincos(angle / 2.0);
+        let across = moved - along;
+        let centre = (across + axis.cross(&across) * (cosine / sine)) / 2.0;
+        Self { turn, centre, along, offset: (from.translation - centre).cross(&axis).norm() }
+    }
+
+    /// Where it has brought a frame at a share of it.
+    fn at(&self, from: &Pose<f64>, share: f64) -> Pose<f64> {
+        let rotation = rotation_from_vector(&(self.turn * share));
+        let translation = rotation * (from.translation - self.centre) + self.centre + self.along * share;
+        Pose { rotation: rotation * from.rotation, translation }
+    }
+
+    /// How far it moves a point that is not farther than this from the origin of the frame, at the most. m
+    fn travel(&self, farthest: f64) -> f64 {
+        let angle = self.turn.norm();
+        self.along.norm() + if angle > 0.0 { angle * (self.offset + farthest) } else { 0.0 }
+    }
+
+    /// How much it accelerates such a point, per square of its duration. m
+    fn bend(&self, farthest: f64) -> f64 {
+        self.turn.norm_squared() * (self.offset + farthest)
+    }
 }
 
 /// A pair for which it is not decided whether it keeps apart on an interval.
@@ -48,27 +94,25 @@ struct OpenPair {
     rooms: [f64; 2],
 }
 
-/// A motion: straight in the joints, all else moving evenly from one pose to another.
+/// A motion: straight in the joints, all else turning and moving evenly about and along an axis from one pose to another.
 struct Motion<'a> {
     from: (&'a [f64; 6], &'a Poses),
     to: (&'a [f64; 6], &'a Poses),
     /// Steps of the joints. rad
     steps: [f64; 6],
-    drifts: [Drift; FRAMES],
+    /// What frames do that are not on the arm and do not stand.
+    screws: [Option<Screw>; FRAMES],
 }
 
 impl<'a> Motion<'a> {
     fn new(from: (&'a [f64; 6], &'a Poses), to: (&'a [f64; 6], &'a Poses)) -> Self {
         let steps = std::array::from_fn(|j| (to.0[j] - from.0[j]).abs());
-        let drifts = std::array::from_fn(|frame| {
+        let screws = std::array::from_fn(|frame| {
             let [a, b] = [from.1, to.1].map(|poses| &poses.frames[frame]);
-            if (1..=6).contains(&frame) || a == b {
-                return Drift::default();
-            }
-            let turn = rotation_vector(&(b.rotation * a.rotation.transpose()));
-            Drift { length: (b.translation - a.translation).norm(), angle: turn.norm() }
+            let stands = on_arm(frame) > 0 || a == b;
+            (!stands).then(|| Screw::between(a, b))
         });
-        Self { from, to, steps, drifts }
+        Self { from, to, steps, screws }
     }
 
     /// Where all stands at a share of the motion.
@@ -76,16 +120,10 @@ impl<'a> Motion<'a> {
         let joints: [f64; 6] = std::array::from_fn(|j| self.from.0[j] + (self.to.0[j] - self.from.0[j]) * share);
         let mut poses = *self.from.1;
         poses.frames[1..=6].copy_from_slice(&scene.robot.link_frames(&joints));
-        for (frame, drift) in self.drifts.iter().enumerate() {
-            if drift.length == 0.0 && drift.angle == 0.0 {
-                continue;
+        for (frame, screw) in self.screws.iter().enumerate() {
+            if let Some(screw) = screw {
+                poses.frames[frame] = screw.at(&self.from.1.frames[frame], share);
             }
-            let [a, b] = [self.from.1, self.to.1].map(|poses| &poses.frames[frame]);
-            let turn = rotation_vector(&(b.rotation * a.rotation.transpose())) * share;
-            poses.frames[frame] = Pose {
-                rotation: rotation_from_vector(&turn) * a.rotation,
-                translation: a.translation + (b.translation - a.translation) * share,
-            };
         }
         poses
     }
@@ -188,8 +226,7 @@ impl Scene {
                 bend += reach * step * (step + 2.0 * inner);
                 inner += step;
             }
-            let angle = motion.drifts[*frame].angle;
-            bend + angle * angle * cover.farthest()
+            bend + motion.screws[*frame].map_or(0.0, |screw| screw.bend(cover.farthest()))
         };
         of(a) + of(b)
     }
@@ -214,10 +251,7 @@ impl Scene {
     fn travel(&self, number: usize, motion: &Motion<'_>) -> f64 {
         let pair = &self.pairs[number];
         let by_joints: f64 = pair.reach.iter().zip(motion.steps).map(|(reach, step)| reach * step).sum();
-        let of = |frame: usize, farthest: f64| {
-            let drift = motion.drifts[frame];
-            drift.length + drift.angle * farthest
-        };
+        let of = |frame: usize, farthest: f64| motion.screws[frame].map_or(0.0, |screw| screw.travel(farthest));
         by_joints
             + match pair.members {
                 Members::Bodies(a, b) => {

@@ -221,11 +221,11 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
     let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
-    let around = read_scene(around, &at, &robot, &spindle)?;
+    let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
+    let around = read_scene(around, &at, (&robot, &spindle), &external_axes)?;
     let scene = around.scene;
     let orientations = run.cell.orientations(&task, &at.key("cell"))?;
     let task = orientations.first().map_or(task, |first| (*first.task).clone());
-    let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
     let problem = Problem {
         robot,
         spindle,

@@ -15,7 +15,9 @@ use crate::place::Place;
 use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
 use stead_model::robot::{Robot, Spindle};
+use stead_model::external_axis::ExternalAxis;
 pub(crate) use tables::{CLEARANCE, attachment};
+use tables::axis_of;
 
 /// The scene of a run, where it has one.
 #[derive(Debug, Default)]
@@ -44,8 +46,8 @@ pub(crate) const MESH: &str = "mesh";
 pub(crate) fn read_scene(
     own: SurroundingsFile,
     at: &Place<'_>,
-    robot: &Robot,
-    spindle: &Spindle,
+    (robot, spindle): (&Robot, &Spindle),
+    axes: &[ExternalAxis],
 ) -> Result<SceneRead, InputError> {
     let named = at.key("surroundings");
     let mut read = SceneRead::default();
@@ -57,7 +59,7 @@ pub(crate) fn read_scene(
         parts.push(Part { tables: document.read()?, at: document.root() });
     }
     parts.push(Part { tables: own, at: at.clone() });
-    let Some(around) = surroundings(&parts, &mut read.inputs)? else { return Ok(read) };
+    let Some(around) = surroundings(&parts, axes, &mut read.inputs)? else { return Ok(read) };
     let scene = Scene::new(robot, &spindle.flange_from_tool, around).map_err(|error| no_scene(&parts, &error))?;
     read.notes = notes::notes(&scene, robot, spindle);
     read.scene = Some(Arc::new(scene));
@@ -65,19 +67,23 @@ pub(crate) fn read_scene(
 }
 
 /// All shapes and zones; the mesh files read are added to the inputs. Nothing where there are none.
-fn surroundings(parts: &[Part<'_>], inputs: &mut Vec<InputFile>) -> Result<Option<Surroundings>, InputError> {
+fn surroundings(
+    parts: &[Part<'_>],
+    axes: &[ExternalAxis],
+    inputs: &mut Vec<InputFile>,
+) -> Result<Option<Surroundings>, InputError> {
     let (mut shapes, mut zones, mut ignored) = (Vec::new(), Vec::new(), Vec::new());
     let mut clearance: Option<f64> = None;
     for Part { tables, at } in parts {
         for (table, number) in tables.shape.iter().flatten().zip(1..) {
             let at = at.key("shape").element(number);
-            let (attached, pose) = table.attached_at(&at)?;
+            let (attached, pose) = table.attached_at(axes, &at)?;
             let (solid, file) = table.solid(&at)?;
             inputs.extend(file.filter(|file| !inputs.contains(file)));
             shapes.push(Shape { name: table.name.clone(), attached, solid, pose });
         }
         for (table, number) in tables.keep_out.iter().flatten().zip(1..) {
-            zones.push(table.keep_out(&at.key("keep_out").element(number))?);
+            zones.push(table.keep_out(axes, &at.key("keep_out").element(number))?);
         }
         let Some(collision) = &tables.collision else { continue };
         if let (Some(_), Some(_)) = (clearance, collision.clearance()) {
@@ -88,7 +94,9 @@ fn surroundings(parts: &[Part<'_>], inputs: &mut Vec<InputFile>) -> Result<Optio
             ));
         }
         clearance = clearance.or(collision.clearance());
-        ignored.extend(collision.ignored());
+        // Shapes are known by the number of the axis that carries them.
+        let known = |name: String| axis_of(&name, axes).map_or(name, |axis| axis.to_string());
+        ignored.extend(collision.ignored().map(|pair| pair.map(known)));
     }
     if shapes.is_empty() && zones.is_empty() {
         return match parts.iter().find(|part| part.at.key("collision").is_given()) {

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_cell::{Attachment, KeepOut, TrackedPoint, Zone};
+use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::Pose;
 
 words!(TrackedPoint: "tool" => TrackedPoint::Tool, "wrist" => TrackedPoint::Wrist, "elbow" => TrackedPoint::Elbow);
@@ -54,8 +55,8 @@ pub struct CapsuleTable {
 pub struct ShapeTable {
     /// Its name, which no other shape or zone has.
     pub name: String,
-    /// What it moves with: `base` (what stands in the cell), `workpiece`, `flange`, or a link, `link_1` to `link_6`, in the frame of
-    /// its row.
+    /// What it moves with: `base` (what stands in the cell), `workpiece`, `flange`, a link, `link_1` to `link_6`, in the frame of its
+    /// row, or the name of an external axis for what that carries, in the cell frame with all axes at zero.
     pub attached: String,
     /// A box about the origin of the shape: its edges along x, y and z.
     pub box_mm: Option<Vector<Mm<Positive>>>,
@@ -133,7 +134,13 @@ pub struct CollisionTable {
 pub(crate) const CLEARANCE: f64 = 10e-3;
 
 /// What a shape may move with, for messages.
-const FRAMES: &str = "\"base\", \"workpiece\", \"flange\", or a link, \"link_1\" to \"link_6\"";
+const FRAMES: &str = "\"base\", \"workpiece\", \"flange\", a link, \"link_1\" to \"link_6\", or an external axis";
+
+/// What an external axis of a name carries.
+pub(super) fn axis_of(name: &str, axes: &[ExternalAxis]) -> Option<Attachment> {
+    let number = axes.iter().position(|axis| axis.name == name)?;
+    u8::try_from(number).ok().map(Attachment::Axis)
+}
 
 /// The frame of a name.
 pub(crate) fn attachment(name: &str) -> Option<Attachment> {
@@ -150,9 +157,9 @@ pub(crate) fn attachment(name: &str) -> Option<Attachment> {
 }
 
 /// Refuses a name that stands for a frame, or that would break the lines in which it is printed.
-fn check_name(name: &str, at: &Place<'_>) -> Result<(), InputError> {
+fn check_name(name: &str, axes: &[ExternalAxis], at: &Place<'_>) -> Result<(), InputError> {
     let allowed = "a name on one line, without quotes, that is none of the frames that shapes are attached to";
-    if attachment(name).is_some() {
+    if attachment(name).is_some() || axis_of(name, axes).is_some() {
         return Err(at.key("name").error("is the name of a frame", allowed));
     }
     if name.contains(|c: char| c.is_control() || c == '"') {
@@ -175,10 +182,19 @@ impl ShapeTable {
     ///
     /// # Errors
     /// [`InputError`] for a frame or a name that cannot be, and for an orientation that is none.
-    pub(super) fn attached_at(&self, at: &Place<'_>) -> Result<(Attachment, Pose<f64>), InputError> {
-        check_name(&self.name, at)?;
-        let unknown = || at.key("attached").error("is an unknown frame", FRAMES);
-        Ok((attachment(&self.attached).ok_or_else(unknown)?, pose(self.xyz_mm, &orientation_keys!(self), at)?))
+    pub(super) fn attached_at(
+        &self,
+        axes: &[ExternalAxis],
+        at: &Place<'_>,
+    ) -> Result<(Attachment, Pose<f64>), InputError> {
+        check_name(&self.name, axes, at)?;
+        let unknown = || {
+            let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+            let named = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+            at.key("attached").error("is an unknown frame", format!("{FRAMES}{named}"))
+        };
+        let attached = attachment(&self.attached).or_else(|| axis_of(&self.attached, axes));
+        Ok((attached.ok_or_else(unknown)?, pose(self.xyz_mm, &orientation_keys!(self), at)?))
     }
 }
 
@@ -187,8 +203,8 @@ impl KeepOutTable {
     ///
     /// # Errors
     /// [`InputError`] for a name that cannot be, two forms or none, a plane without a normal, a point that is named twice.
-    pub(super) fn keep_out(&self, at: &Place<'_>) -> Result<KeepOut, InputError> {
-        check_name(&self.name, at)?;
+    pub(super) fn keep_out(&self, axes: &[ExternalAxis], at: &Place<'_>) -> Result<KeepOut, InputError> {
+        check_name(&self.name, axes, at)?;
         let mut points = Vec::new();
         for (word, number) in self.points.0.iter().zip(1..) {
             if points.contains(&word.0) {

@@ -28,6 +28,8 @@ pub struct Way {
 const LIFTS: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
 const STRAIGHT_STEP: f64 = 0.01;
+/// Positions of external axes between which all is taken to turn about one axis. m or rad
+const AXIS_STEP: f64 = 0.1;
 /// States that both trees together have at the most.
 const MAX_STATES: usize = 1500;
 /// The longest edge of a tree. rad
@@ -94,11 +96,26 @@ fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]]) -> Way {
 }
 
 impl Space<'_> {
-    /// The pair that hits on a straight joint move (rad), the external axes where they stand at path points, moving evenly.
+    /// The pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path point to
+    /// where they stand at another.
     fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
-        let [start, end] =
-            [from, to].map(|(joints, point)| self.problem.poses(self.scene, point, self.placement, joints));
-        self.scene.motion((from.0, &start), (to.0, &end)).map(|hit| hit.pair)
+        let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
+        let between = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect()
+        };
+        // Several axes that turn together move nothing about one axis: over such a step it is as good as that.
+        let most = start.iter().zip(end).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+        let steps = (most / AXIS_STEP).ceil().max(1.0);
+        let at = |step: usize| {
+            let share = step as f64 / steps;
+            let joints: [f64; 6] = std::array::from_fn(|j| from.0[j] + (to.0[j] - from.0[j]) * share);
+            let poses = self.problem.poses_at(self.scene, &between(start, end, share), self.placement, &joints);
+            (joints, poses)
+        };
+        (0..steps as usize).find_map(|step| {
+            let [(a, start), (b, end)] = [at(step), at(step + 1)];
+            self.scene.motion((&a, &start), (&b, &end)).map(|hit| hit.pair)
+        })
     }
 
     /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits: joint angles
