@@ -109,12 +109,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     if let Some(chosen) = &chosen {
         for key in ["position_mm", "feed", "axis"] {
             let all = data["task"][key].as_str().unwrap_or_default();
-            data["task"][key] = json!(vectors(all, chosen, 3));
-        }
-        for key in ["part_frames", "carriage_frames"] {
-            for list in data[key].as_array_mut().into_iter().flatten() {
-                *list = json!(vectors(list.as_str().unwrap_or_default(), chosen, 12));
-            }
+            data["task"][key] = json!(vectors(all, chosen));
         }
     }
     if let (Value::Object(page), Value::Object(data)) = (&mut page, data) {
@@ -125,10 +120,9 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     Ok(page)
 }
 
-/// Those chosen of a list of so many singles each in Base64, a multiple of three: three singles are sixteen characters.
-fn vectors(all: &str, chosen: &[usize], singles: usize) -> String {
-    let width = singles / 3 * 16;
-    chosen.iter().filter_map(|point| all.get(width * point..width * (point + 1))).collect()
+/// Those chosen of a list of three singles each in Base64, which are sixteen characters.
+fn vectors(all: &str, chosen: &[usize]) -> String {
+    chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
 }
 
 pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {

@@ -11,22 +11,21 @@ const AROUND: u32 = 28;
 /// Rings of each half sphere.
 const RINGS: u32 = 6;
 
-/// All shapes with the frame that they move with: `cell`, `link_1` to `link_6`, or `workpiece`. Those that an external axis moves are left
-/// out.
-pub(super) fn surroundings(problem: &Problem) -> Vec<(BodyMesh, String)> {
+/// All shapes, each in the frame that it moves with.
+pub(super) fn surroundings(problem: &Problem) -> Vec<BodyMesh> {
     let Some(scene) = &problem.scene else { return Vec::new() };
     // The frame of the task that the page has.
     let turned = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
-    scene.surroundings().shapes().iter().filter_map(|shape| drawn(shape, &turned)).collect()
+    scene.surroundings().shapes().iter().map(|shape| drawn(shape, &turned)).collect()
 }
 
-fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> Option<(BodyMesh, String)> {
-    let (frame, name, color) = match shape.attached {
-        Attachment::Base => (BodyFrame::Base, "cell".to_owned(), [0.62, 0.66, 0.7]),
-        Attachment::Link(number) => (BodyFrame::Link(number), format!("link_{number}"), [0.35, 0.6, 0.8]),
-        Attachment::Flange => (BodyFrame::Link(6), "link_6".to_owned(), [0.35, 0.6, 0.8]),
-        Attachment::Workpiece => (BodyFrame::Workpiece, "workpiece".to_owned(), [0.73, 0.77, 0.82]),
-        Attachment::Axis(_) => return None,
+fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> BodyMesh {
+    let (frame, color) = match shape.attached {
+        Attachment::Base => (BodyFrame::Cell, [0.62, 0.66, 0.7]),
+        Attachment::Link(number) => (BodyFrame::Link(number), [0.35, 0.6, 0.8]),
+        Attachment::Flange => (BodyFrame::Link(6), [0.35, 0.6, 0.8]),
+        Attachment::Workpiece => (BodyFrame::Workpiece, [0.73, 0.77, 0.82]),
+        Attachment::Axis(number) => (BodyFrame::Axis(number), [0.5, 0.56, 0.62]),
     };
     let (corners, triangles) = mesh(&shape.solid);
     let place = |corner: &Vector3<f64>| {
@@ -35,7 +34,7 @@ fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> Option<(BodyMesh, String)> {
         [point.x as f32, point.y as f32, point.z as f32]
     };
     let positions = corners.iter().map(place).collect();
-    Some((BodyMesh { name: shape.name.clone(), frame, color, positions, triangles, is_illustration: false }, name))
+    BodyMesh { name: shape.name.clone(), frame, color, positions, triangles, is_illustration: false }
 }
 
 /// Corners (m) and triangles of a form; of a hull those of the mesh that it is about.

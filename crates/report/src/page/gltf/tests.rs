@@ -90,7 +90,8 @@ fn motion_of(files: &Files) -> Motion {
         .map(|k| if task.segments().iter().any(|segment| segment.start == k) { 0.0 } else { problem().step_time(k) })
         .collect();
     let plan = Table::read("best.csv", bytes("best.csv")).unwrap();
-    kept::motion(&plan, &document["cases"][0], &steps).unwrap()
+    let positions: Vec<Vector3<f64>> = task.points().iter().map(|point| point.position).collect();
+    kept::motion(&plan, &document["cases"][0], &[], &positions, &steps).unwrap()
 }
 
 /// The column of a CSV file at its last row, in mm.
@@ -151,6 +152,7 @@ fn joints_turn_as_in_the_plan() {
 fn long_turns_go_the_long_way_round() {
     let stop = |turn: f64, segment: usize, time: f64| Stop {
         joints: [0.0, 0.0, 0.0, turn, 0.0, 0.0],
+        axes: Vec::new(),
         position: Vector3::new(time, 0.0, 0.0),
         segment,
         score: 1e-4,
@@ -172,6 +174,7 @@ fn long_turns_go_the_long_way_round() {
 fn long_paths_are_thinned() {
     let stops = (0..50_000).map(|k| Stop {
         joints: [k as f64 * 1e-5; 6],
+        axes: Vec::new(),
         position: Vector3::new(k as f64 * 1e-3, 0.0, 0.0),
         segment: 1 + k / 20_000,
         score: 1e-4,

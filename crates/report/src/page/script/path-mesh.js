@@ -12,8 +12,7 @@ function errorAt(of, i) {
   if (DIRECTION === 'wall') return times(unit(cross(TASK.axis[i], TASK.feed[i])), columns.normal_mm[i]);
   if (DIRECTION === 'axis') return times(TASK.axis[i], columns.axial_mm[i]);
   const whole = [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
-  const frame = PART_FRAMES ? frameAt(PART_FRAMES[of.number - 1], i) : workpieceFrame(of, i);
-  return [0, 4, 8].map((k) => dot([frame[k], frame[k + 1], frame[k + 2]], whole));
+  return inWorkpiece(of, i, whole);
 }
 
 /** The extent of the path in the workpiece frame. */
