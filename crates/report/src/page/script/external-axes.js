@@ -66,3 +66,10 @@ function inWorkpiece(of, i, vector) {
   const part = workpieceFrame(of, i);
   return [0, 4, 8].map((k) => dot([part[k], part[k + 1], part[k + 2]], inCell));
 }
+
+/** Tool, work, and what each axis moves, in the cell. @param {Case} of @param {number} t @returns {{ tool: Mat, work: Mat, axes: Mat[] }} */
+function framesNow(of, t) {
+  const at = axesAt(of, t);
+  const tool = framesOf(jointsAt(of, t), baseFrame(of, t))[7];
+  return { tool, work: workpieceFrame(of, t), axes: AXES.map((_, k) => axisFrame(k, at)) };
+}

@@ -37,6 +37,7 @@ function sceneCard() {
   const words = [
     HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '',
     HAS_BLOCK ? 'the block is the extent of the path' : '',
+    AXES.length ? 'external axes show how they move, not their looks' : '',
   ];
   host.append(
     el('div.tr', {}, ...views),

@@ -221,7 +221,7 @@ function sceneIn(host) {
     if (shown.around) {
       // Only what faces the eye, so that a wall is one pane.
       gl.enable(gl.CULL_FACE);
-      paint(MODE.lit, [1, 1, 1], isDark() ? 0.2 : 0.26);
+      paint(MODE.lit, [1, 1, 1], 0.16);
       put(program, parts.walls);
       gl.disable(gl.CULL_FACE);
       paint(MODE.plain, soft, 0.55);
