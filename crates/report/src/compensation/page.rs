@@ -63,9 +63,8 @@ fn tiles(outcome: &CompensatedPath) -> Card {
 /// A part of the deflection over the points, without and with the commands.
 fn along(title: &str, outcome: &CompensatedPath, part: fn(&Deflection) -> f64) -> Card {
     let curve = |name: &str, color: usize, of: fn(&CompensatedPoint) -> &Option<Deflection>| {
-        let value = move |point: &CompensatedPoint| of(point).as_ref().map(part).filter(|part| *part > 0.0);
-        let points = outcome.points.iter().enumerate();
-        Series::curve(name, color, points.map(move |(k, point)| [k as f64, value(point).map_or(f64::NAN, |v| v * 1e3)]))
+        let value = |point: &CompensatedPoint| of(point).as_ref().map(part).filter(|part| *part > 0.0);
+        Series::curve(name, color, by_segment(outcome, |point| value(point).map_or(f64::NAN, |part| part * 1e3)))
     };
     Card::Chart(Chart {
         title: title.to_owned(),
@@ -83,9 +82,8 @@ fn along(title: &str, outcome: &CompensatedPath, part: fn(&Deflection) -> f64) -
 
 /// By how much the command differs from the target.
 fn correction(outcome: &CompensatedPath) -> Card {
-    let points = outcome.points.iter().enumerate();
-    let shift = points.clone().map(|(k, point)| [k as f64, point.correction.linear.norm() * 1e3]);
-    let turn = points.map(|(k, point)| [k as f64, point.correction.angular.norm().to_degrees()]);
+    let shift = by_segment(outcome, |point| point.correction.linear.norm() * 1e3);
+    let turn = by_segment(outcome, |point| point.correction.angular.norm().to_degrees());
     Card::Chart(Chart {
         title: "Corrections".to_owned(),
         detail: "of the place in mm, of the orientation in deg".to_owned(),
@@ -99,6 +97,20 @@ fn correction(outcome: &CompensatedPath) -> Card {
         is_wide: true,
         ..Chart::default()
     })
+}
+
+/// A value over the path points, without a line from segment to segment.
+fn by_segment(outcome: &CompensatedPath, value: impl Fn(&CompensatedPoint) -> f64) -> Vec<[f64; 2]> {
+    let mut points = Vec::with_capacity(outcome.points.len());
+    let mut segment = None;
+    for (k, point) in outcome.points.iter().enumerate() {
+        if segment.is_some_and(|last| last != point.segment) {
+            points.push([k as f64 - 0.5, f64::NAN]);
+        }
+        segment = Some(point.segment);
+        points.push([k as f64, value(point)]);
+    }
+    points
 }
 
 /// Where segments begin, but for the first.

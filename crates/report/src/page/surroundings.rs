@@ -87,6 +87,7 @@ fn turned_profile(profile: &[(f64, f64)]) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stead_model::robot::Pose;
 
     /// The volume inside, by the divergence theorem: positive where triangles are counter-clockwise from outside.
     fn volume(solid: &Solid) -> f64 {
@@ -96,6 +97,23 @@ mod tests {
             a.dot(&b.cross(&c)) / 6.0
         };
         triangles.iter().map(sixth).sum()
+    }
+
+    #[test]
+    fn what_an_axis_carries_is_in_the_frame_of_that_axis_and_only_the_part_is_turned() {
+        let turned = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let pose = Pose { translation: Vector3::new(1.0, 2.0, 3.0), ..Pose::identity() };
+        let at = |attached: Attachment| {
+            let shape = Shape { name: "plate".to_owned(), attached, solid: Solid::Box(Vector3::repeat(0.5)), pose };
+            let body = drawn(&shape, &turned);
+            let middle: Vector3<f32> =
+                body.positions.iter().map(|position| Vector3::from(*position)).sum::<Vector3<f32>>() / 8.0;
+            (body.frame, <[f32; 3]>::from(middle))
+        };
+        assert_eq!(at(Attachment::Axis(1)), (BodyFrame::Axis(1), [1.0, 2.0, 3.0]));
+        assert_eq!(at(Attachment::Base), (BodyFrame::Cell, [1.0, 2.0, 3.0]));
+        assert_eq!(at(Attachment::Workpiece), (BodyFrame::Workpiece, [-2.0, 1.0, 3.0]));
+        assert_eq!(at(Attachment::Flange), (BodyFrame::Link(6), [1.0, 2.0, 3.0]));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis}
 /// The lobes with the cut among them, what the tip answers, and the modes.
 pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
     let verdict = &analysis.cut_stability.verdict;
-    let speed = RPM.text(run.cut.spindle_speed);
+    let speed = rpm(run);
     let depth = fixed(run.cut.section.axial_depth * 1e3, 3);
     let lead = if verdict.is_stable() {
         format!("The cut of {depth} mm at {speed} rpm is stable.")
@@ -27,6 +27,11 @@ pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
         .with(modes(&analysis.modes))
 }
 
+/// Turns a minute, as few digits as say it.
+fn rpm(run: &SimulationRun) -> String {
+    RPM.number(run.cut.spindle_speed).to_string()
+}
+
 fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
     let found = &analysis.cut_stability;
     let verdict = &found.verdict;
@@ -34,7 +39,7 @@ fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
     let depth = |depth: Option<f64>| depth.map_or_else(|| max.clone(), |depth| fixed(depth * 1e3, 3));
     let rate = verdict.growth_rate();
     let per_second = if rate > 0.0 { "vibrations grow" } else { "vibrations die out" };
-    let at = format!("at {} rpm", RPM.text(run.cut.spindle_speed));
+    let at = format!("at {} rpm", rpm(run));
     Card::Tiles(Tiles {
         tiles: vec![
             Tile::new("cut", if verdict.is_stable() { "stable" } else { "chatters" }, "", verdict.kind().word()),
@@ -76,6 +81,7 @@ fn response(analysis: &StabilityAnalysis) -> Card {
     };
     Card::Chart(Chart {
         title: "Frequency response of the tip".to_owned(),
+        detail: "dashed: the modes of the arm".to_owned(),
         x: Axis::new("frequency (Hz)"),
         y: Axis::log("answer (um/N)"),
         series: vec![
@@ -86,8 +92,8 @@ fn response(analysis: &StabilityAnalysis) -> Card {
         marks: analysis
             .modes
             .iter()
-            .zip(1..)
-            .map(|(mode, number)| Mark { is_level: false, at: mode.natural_frequency(), label: format!("mode {number}") })
+            .zip(1_usize..)
+            .map(|(mode, number)| Mark { is_level: false, at: mode.natural_frequency(), label: number.to_string() })
             .collect(),
         is_wide: true,
         ..Chart::default()

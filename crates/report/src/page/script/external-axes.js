@@ -67,9 +67,12 @@ function inWorkpiece(of, i, vector) {
   return [0, 4, 8].map((k) => dot([part[k], part[k + 1], part[k + 2]], inCell));
 }
 
-/** Tool, work, and what each axis moves, in the cell. @param {Case} of @param {number} t @returns {{ tool: Mat, work: Mat, axes: Mat[] }} */
-function framesNow(of, t) {
-  const at = axesAt(of, t);
-  const tool = framesOf(jointsAt(of, t), baseFrame(of, t))[7];
-  return { tool, work: workpieceFrame(of, t), axes: AXES.map((_, k) => axisFrame(k, at)) };
+/** At every point of a plan the tool by the arm and the path by the workpiece, in the cell, and what carries the robot: for tests. @param {number} number */
+function meets(number) {
+  const of = CASES[number];
+  return of.joints.map((joints, i) => ({
+    tool: moved(framesOf(joints, baseFrame(of, i))[7], [0, 0, 0]),
+    path: moved(workpieceFrame(of, i), TASK.position[i]),
+    carriage: carriedBy('robot', axesAt(of, i)),
+  }));
 }

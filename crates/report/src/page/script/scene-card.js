@@ -59,7 +59,9 @@ function sceneCard() {
     if (!isOther) return;
     const { x, y, z, yaw } = current().at;
     title.textContent = current().name;
-    where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°`;
+    const { orientation } = current().entry;
+    const lies = orientation ? `, part “${orientation}”` : '';
+    where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°${lies}`;
   });
   // WebGL is not printed: a picture takes its place.
   const still = /** @type {HTMLImageElement} */ (el('img.still', { alt: '' }));

@@ -11,6 +11,8 @@ const LAYERS = [
 ].filter(({ isThere }) => isThere);
 
 const SHADOW_PIXELS = 2048;
+/** How much of a wall of the cell is seen: what is behind it stays readable. */
+const PANE = 0.16;
 const SUN = unit([0.42, -0.52, 0.86]);
 
 /**
@@ -221,7 +223,7 @@ function sceneIn(host) {
     if (shown.around) {
       // Only what faces the eye, so that a wall is one pane.
       gl.enable(gl.CULL_FACE);
-      paint(MODE.lit, [1, 1, 1], 0.16);
+      paint(MODE.lit, [1, 1, 1], PANE);
       put(program, parts.walls);
       gl.disable(gl.CULL_FACE);
       paint(MODE.plain, soft, 0.55);
