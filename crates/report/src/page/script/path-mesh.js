@@ -45,12 +45,12 @@ function pathMeshes(of) {
       const length = size(less(tips[next], tips[i]));
       const score = Math.max(of.columns.score_mm[i], of.columns.score_mm[next]);
       if (length > 0) {
-        const profile = /** @type {[number, number][]} */ ([
-          [-2, 0],
+        // Of a long path the ends of its many tubes are not seen.
+        const side = [
           [-2, radius],
           [length + 2, radius],
-          [length + 2, 0],
-        ]);
+        ];
+        const profile = /** @type {[number, number][]} */ (stride > 1 ? side : [[-2, 0], ...side, [length + 2, 0]]);
         lathe(tube, tips[i], tips[next], profile, stride > 1 ? 5 : 8, colourOf(score));
       }
       const base = curtain.p.length / 3;
