@@ -192,7 +192,7 @@ Examples:
 Files written to the results folder:
   corrected-path.csv                 target and commanded pose, joint angles, deflection before and after, status
   compensation.svg                   deflection before and after along the path
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done; points that cannot be compensated keep their target, and a warning says so
