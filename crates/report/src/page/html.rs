@@ -6,7 +6,7 @@ use stead_format::input::sha256;
 
 const MARKUP: &str = include_str!("page.html");
 /// The style of all pages.
-pub(super) const STYLE: &str = include_str!("page.css");
+pub(super) const STYLE: &str = concat!(include_str!("base.css"), include_str!("page.css"));
 
 /// The script, module by module; each uses only what stands above it when it is loaded.
 const MODULES: [&str; 28] = [
