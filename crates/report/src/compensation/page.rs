@@ -48,7 +48,12 @@ fn tiles(outcome: &CompensatedPath) -> Card {
         let largest = |figures_: &MeanAndMax| format!("largest {} mm", figures(figures_.max * 1e3));
         [
             Tile::new(&format!("mean {what} before"), figures(before.mean * 1e3), "mm", largest(&before)),
-            Tile::new(&format!("mean {what} after"), figures(after.mean * 1e3), "mm", format!("{}; {less}", largest(&after))),
+            Tile::new(
+                &format!("mean {what} after"),
+                figures(after.mean * 1e3),
+                "mm",
+                format!("{}; {less}", largest(&after)),
+            ),
         ]
     };
     let moved = outcome.figures(|point| Some(point.correction.linear.norm())).max * 1e3;

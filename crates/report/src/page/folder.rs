@@ -44,7 +44,9 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
             kinds if kinds.iter().any(|kind| !content::sources(kind).is_empty()) => {
                 format!("{MANIFEST} lists no {DATA}: the run left no page")
             }
-            kinds => format!("has results of `stead {}`, which alone makes the page of them", kinds.join("` and `stead ")),
+            kinds => {
+                format!("has results of `stead {}`, which alone makes the page of them", kinds.join("` and `stead "))
+            }
         };
         return Err(missing(problem).into());
     };
@@ -54,8 +56,7 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
         if set.file(name).is_none() && !is_needed {
             continue;
         }
-        let bytes = std::fs::read(&file)
-            .map_err(|cause| InputError::new(&file, unread(&cause)).allowed(ALLOWED))?;
+        let bytes = std::fs::read(&file).map_err(|cause| InputError::new(&file, unread(&cause)).allowed(ALLOWED))?;
         manifest::check(&file, &bytes, Unlisted::Refused)?;
         files.push((name.to_owned(), bytes));
     }

@@ -60,11 +60,8 @@ impl Writer {
                 parent,
             );
             let frame = place.map_or(moving, |place| {
-                let back = Node {
-                    name: format!("on {}", axis.name),
-                    translation: Some(single(&-place)),
-                    ..Node::default()
-                };
+                let back =
+                    Node { name: format!("on {}", axis.name), translation: Some(single(&-place)), ..Node::default() };
                 self.add_child(back, moving)
             });
             nodes.push(AxisNodes { moving, frame });

@@ -15,9 +15,9 @@ pub(crate) use kept::scene;
 pub use motion::{Motion, Stop};
 
 use super::shapes::{BodyFrame, BodyMesh, shaded};
+use axes::AxisNodes;
 use buffer::Buffer;
 use document::{Animation, Asset, Document, Extras, Material, Mesh, Node, Primitive, Scene, Target};
-use axes::AxisNodes;
 use motion::{quaternion, turn_about};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;

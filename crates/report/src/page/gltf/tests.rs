@@ -213,17 +213,18 @@ fn scenes_are_consistent() {
 /// A rail with the robot and a tilting table with the part: what they carry is where the model has it, all along the animation.
 #[test]
 fn external_axes_move_what_they_carry() {
-    let axis = |name: &str, kind: AxisKind, carries: Carried, direction: Vector3<f64>, point: Vector3<f64>| ExternalAxis {
-        name: name.to_owned(),
-        kind,
-        carries,
-        direction,
-        point,
-        min: -2.0,
-        max: 2.0,
-        max_speed: None,
-        axis_use: AxisUse::Continuous,
-    };
+    let axis =
+        |name: &str, kind: AxisKind, carries: Carried, direction: Vector3<f64>, point: Vector3<f64>| ExternalAxis {
+            name: name.to_owned(),
+            kind,
+            carries,
+            direction,
+            point,
+            min: -2.0,
+            max: 2.0,
+            max_speed: None,
+            axis_use: AxisUse::Continuous,
+        };
     let axes = [
         axis("tilt", AxisKind::Turntable, Carried::Workpiece, Vector3::y(), Vector3::new(1.7, 0.0, 0.6)),
         axis("rail", AxisKind::Rail, Carried::Robot, Vector3::x(), Vector3::zeros()),
