@@ -271,7 +271,7 @@ Files written to the results folder:
   lobes.{csv,svg}                    critical depth over spindle speed
   frequency-response.{csv,svg}       frequency response function of the tool tip
   modes.csv                          natural frequencies, damping ratios and mode shapes
-  summary.json, report.html          all of it for programs, with the verdict on the given cut; a page whose charts answer to the pointer
+  summary.json, report.html          all of it for programs, with the verdict on the given cut; a page of it
 
 Exit codes:
   0  done, whether the cut is stable or not
