@@ -110,9 +110,36 @@ async function meets(page, place) {
   return `${farthest.toFixed(4)} mm at most`;
 }
 
+/** What is fixed to an axis is where the axis, moved by those before it, has turned or pushed it: by the formula of Rodrigues, here again. */
+async function axesCarry(page, place) {
+  const { external_axes: axes } = JSON.parse(readFileSync(join(place, 'page-data.json'), 'utf8'));
+  const rows = table(join(place, PLANS[0]));
+  const found = await page.evaluate(() => window.stead.meets(0));
+  const move = ({ kind, direction: d, point_mm: c }, at, p) => {
+    if (kind === 'rail') return p.map((v, k) => v + d[k] * at);
+    const [angle, r] = [(at * Math.PI) / 180, p.map((v, k) => v - c[k])];
+    const along = r[0] * d[0] + r[1] * d[1] + r[2] * d[2];
+    const side = [d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]];
+    return p.map((_, k) => c[k] + r[k] * Math.cos(angle) + side[k] * Math.sin(angle) + d[k] * along * (1 - Math.cos(angle)));
+  };
+  for (const [i, row] of rows.entries()) {
+    axes.forEach((axis, k) => {
+      const corner = [1234, -321, 777];
+      const before = axes.slice(0, k + 1).filter((other) => other.carries === axis.carries);
+      const due = before.reduceRight((p, other) => move(other, +row[other.column], p), corner);
+      const m = found[i].axes[k];
+      const is = [0, 1, 2].map((j) => m[j] * corner[0] + m[4 + j] * corner[1] + m[8 + j] * corner[2] + m[12 + j]);
+      const off = Math.hypot(...is.map((v, j) => v - due[j]));
+      assert.ok(off < 0.01, `what ${axis.name} carries is ${off} mm off at point ${i}`);
+    });
+  }
+  return axes.length;
+}
+
 for (const run of ['tilting-table', 'rail-panel', 'wall-raster']) {
   await check('tool, path and tables meet at every point', run, async (page, place) => {
     const said = await meets(page, place);
+    assert.equal(await axesCarry(page, place), { 'tilting-table': 2, 'rail-panel': 1, 'wall-raster': 0 }[run]);
     const rows = table(join(place, PLANS[0]));
     for (const [k, column] of ['e1_deg', 'e1_mm', 'e2_deg'].filter((name) => name in rows[0]).entries()) {
       await page.evaluate((t) => window.stead.set({ t }, true), rows.length - 1);

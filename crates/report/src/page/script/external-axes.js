@@ -67,12 +67,13 @@ function inWorkpiece(of, i, vector) {
   return [0, 4, 8].map((k) => dot([part[k], part[k + 1], part[k + 2]], inCell));
 }
 
-/** At every point of a plan the tool by the arm and the path by the workpiece, in the cell, and what carries the robot: for tests. @param {number} number */
+/** At every point of a plan the tool by the arm and the path by the workpiece, in the cell, what carries the robot, and what each axis moves: for tests. @param {number} number */
 function meets(number) {
   const of = CASES[number];
   return of.joints.map((joints, i) => ({
     tool: moved(framesOf(joints, baseFrame(of, i))[7], [0, 0, 0]),
     path: moved(workpieceFrame(of, i), TASK.position[i]),
     carriage: carriedBy('robot', axesAt(of, i)),
+    axes: AXES.map((_, k) => axisFrame(k, axesAt(of, i))),
   }));
 }
