@@ -89,7 +89,7 @@ fn the_corrected_path_brings_the_loaded_tool_to_the_plan() {
     assert!(document["reality"].is_null());
     assert_eq!(
         bench.tree("out").keys().collect::<Vec<_>>(),
-        ["compensation.svg", "corrected-path.csv", "manifest.json", "summary.json"]
+        ["compensation.svg", "corrected-path.csv", "manifest.json", "report.html", "summary.json"]
     );
     assert_eq!(bench.read("out/summary.json"), ended.stdout);
 

@@ -31,7 +31,11 @@ fn a_run_leaves_a_page_unless_it_is_not_wanted_and_it_can_be_made_again() {
     );
     let refused = bench.stead(&["page", "out"]);
     assert_eq!(refused.code, Some(2));
-    assert!(refused.stderr.contains("out: manifest.json lists no page-data.json; allowed: "), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("out: manifest.json lists no page-data.json: the run left no page; allowed: "),
+        "{}",
+        refused.stderr
+    );
 }
 
 #[test]

@@ -87,6 +87,7 @@ fn files_are_written_alike_with_any_number_of_threads() {
         "lobes.svg",
         "manifest.json",
         "modes.csv",
+        "report.html",
         "summary.json",
     ];
     assert_eq!(names, expected);

@@ -192,7 +192,7 @@ Examples:
 Files written to the results folder:
   corrected-path.csv                 target and commanded pose, joint angles, deflection before and after, status
   compensation.svg                   deflection before and after along the path
-  summary.json                       all of it for programs
+  summary.json, report.html          all of it for programs; a page whose charts answer to the pointer
 
 Exit codes:
   0  done; points that cannot be compensated keep their target, and a warning says so
@@ -271,7 +271,7 @@ Files written to the results folder:
   lobes.{csv,svg}                    critical depth over spindle speed
   frequency-response.{csv,svg}       frequency response function of the tool tip
   modes.csv                          natural frequencies, damping ratios and mode shapes
-  summary.json                       all of it for programs, with the verdict on the given cut
+  summary.json, report.html          all of it for programs, with the verdict on the given cut; a page of it
 
 Exit codes:
   0  done, whether the cut is stable or not

@@ -1,6 +1,9 @@
-//! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, and a table for people.
+//! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, `report.html`, and a table for people.
+
+mod page;
 
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::columns::aligned;
@@ -25,7 +28,7 @@ const DIRECTION: Unit = Unit { factor: 1.0, decimals: 9 };
 /// Shares in per cent.
 const PER_CENT: Unit = Unit { factor: 100.0, decimals: 6 };
 
-/// Writes `corrected-path.csv`, `summary.json` and `compensation.svg`. Returns their paths in that order.
+/// Writes `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`. Returns their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -47,6 +50,7 @@ pub fn compensation_files(run: &CompensateRun, outcome: &CompensatedPath) -> Res
         ("corrected-path.csv", corrected_path(outcome)?),
         ("summary.json", bytes(&compensation_json(run, outcome))),
         ("compensation.svg", picture::compensation(outcome).into_bytes()),
+        (PAGE, page::page(run, outcome).html()),
     ]))
 }
 

@@ -7,6 +7,8 @@ use serde_json::{Map, Value, json};
 
 /// `page-data.json`.
 pub(super) const DATA: &str = "page-data.json";
+/// The boxes that a certificate has not excluded.
+const OPEN_REGION: &str = "open-region.csv";
 /// Longer paths are thinned for drawing.
 const MAX_POINTS: usize = 6000;
 
@@ -40,7 +42,7 @@ pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     names.extend(kind.plans.iter().map(|name| (*name, true)));
     let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
     names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
-    names.extend(["convergence.csv", "certificate.json"].map(|name| (name, false)));
+    names.extend(["convergence.csv", "certificate.json", OPEN_REGION].map(|name| (name, false)));
     names
 }
 
@@ -100,6 +102,9 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         }
         optional.insert("certificate".to_owned(), certificate);
     }
+    if let Some(found) = bytes(OPEN_REGION) {
+        optional.insert("open_region".to_owned(), open_region(&Table::read(OPEN_REGION, found)?)?);
+    }
     let mut page = json!({
         "document": document,
         "plans": plans,
@@ -109,12 +114,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     if let Some(chosen) = &chosen {
         for key in ["position_mm", "feed", "axis"] {
             let all = data["task"][key].as_str().unwrap_or_default();
-            data["task"][key] = json!(vectors(all, chosen, 3));
-        }
-        for key in ["part_frames", "carriage_frames"] {
-            for list in data[key].as_array_mut().into_iter().flatten() {
-                *list = json!(vectors(list.as_str().unwrap_or_default(), chosen, 12));
-            }
+            data["task"][key] = json!(vectors(all, chosen));
         }
     }
     if let (Value::Object(page), Value::Object(data)) = (&mut page, data) {
@@ -125,10 +125,32 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     Ok(page)
 }
 
-/// Those chosen of a list of so many singles each in Base64, a multiple of three: three singles are sixteen characters.
-fn vectors(all: &str, chosen: &[usize], singles: usize) -> String {
-    let width = singles / 3 * 16;
-    chosen.iter().filter_map(|point| all.get(width * point..width * (point + 1))).collect()
+/// For each search the extent of all its boxes.
+fn open_region(boxes: &Table) -> Result<Value, PageError> {
+    let searches = boxes.texts("search")?;
+    let mut regions = Map::new();
+    for [key, from, to] in [
+        ["radius_mm", "radius_from_mm", "radius_to_mm"],
+        ["z_mm", "z_from_mm", "z_to_mm"],
+        ["yaw_less_azimuth_deg", "yaw_less_azimuth_from_deg", "yaw_less_azimuth_to_deg"],
+    ] {
+        let (from, to) = (boxes.numbers(from)?, boxes.numbers(to)?);
+        for name in ["best", "worst"] {
+            let of = |values: &[f64], start: f64, choose: fn(f64, f64) -> f64| {
+                searches.iter().zip(values).filter(|(search, _)| *search == name).fold(start, |a, (_, b)| choose(a, *b))
+            };
+            let (low, high) = (of(&from, f64::INFINITY, f64::min), of(&to, f64::NEG_INFINITY, f64::max));
+            if low.is_finite() && high.is_finite() {
+                regions.entry(name).or_insert_with(|| json!({}))[key] = json!([low, high]);
+            }
+        }
+    }
+    Ok(Value::Object(regions))
+}
+
+/// Those chosen of a list of three singles each in Base64, which are sixteen characters.
+fn vectors(all: &str, chosen: &[usize]) -> String {
+    chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
 }
 
 pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {

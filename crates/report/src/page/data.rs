@@ -3,7 +3,7 @@
 use super::base64::base64;
 use super::map_data;
 use super::packed::singles;
-use super::setup::{carriage_frames, part_frames};
+use super::setup::{external_axes, part_turns};
 use super::shapes::{BodyFrame, BodyMesh, bodies};
 use super::surroundings::surroundings;
 use crate::document::Document;
@@ -55,10 +55,10 @@ pub(crate) fn page_data(
             .iter()
             .map(|((placement, setup), map, table)| map_data::joints(&problem.in_setup(setup), placement, map, table))
             .collect::<Value>(),
-        "bodies": bodies(problem).iter().map(|mesh| body(mesh, &frame(mesh.frame))).collect::<Value>(),
-        "surroundings": surroundings(problem).iter().map(|(mesh, frame)| body(mesh, frame)).collect::<Value>(),
-        "part_frames": part_frames(problem, plans),
-        "carriage_frames": carriage_frames(problem, plans),
+        "bodies": bodies(problem).iter().map(body).collect::<Value>(),
+        "surroundings": surroundings(problem).iter().map(body).collect::<Value>(),
+        "external_axes": external_axes(problem),
+        "part_turns": part_turns(problem, plans),
     }))
 }
 
@@ -105,7 +105,7 @@ fn task(problem: &Problem) -> Value {
 }
 
 /// Corners in 32767 steps from the middle of a mesh to its farthest side: `mm_per_step` each.
-fn body(mesh: &BodyMesh, frame: &str) -> Value {
+fn body(mesh: &BodyMesh) -> Value {
     let ends = |k: usize| {
         let values = mesh.positions.iter().map(|position| f64::from(position[k]));
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -127,7 +127,7 @@ fn body(mesh: &BodyMesh, frame: &str) -> Value {
     };
     json!({
         "name": mesh.name,
-        "frame": frame,
+        "frame": frame(mesh.frame),
         "color": mesh.color.map(|part| (f64::from(part) * 1e3).round() / 1e3),
         "is_illustration": mesh.is_illustration,
         "middle_mm": middle.map(|value| value * 1e3),
@@ -144,14 +144,16 @@ fn frame(frame: BodyFrame) -> String {
         BodyFrame::Link(number) => format!("link_{number}"),
         BodyFrame::Tool => "tool".to_owned(),
         BodyFrame::Workpiece => "workpiece".to_owned(),
+        BodyFrame::Cell => "cell".to_owned(),
+        BodyFrame::Axis(number) => format!("axis_{}", number + 1),
     }
 }
 
-fn rows(rotation: &nalgebra::Matrix3<f64>) -> Value {
+pub(super) fn rows(rotation: &nalgebra::Matrix3<f64>) -> Value {
     (0..3).map(|row| json!([0, 1, 2].map(|column| rotation[(row, column)]))).collect()
 }
 
-fn mm(vector: &Vector3<f64>) -> [f64; 3] {
+pub(super) fn mm(vector: &Vector3<f64>) -> [f64; 3] {
     [vector.x, vector.y, vector.z].map(|value| value * 1e3)
 }
 

@@ -38,7 +38,17 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
     };
     let set = manifest.results.iter().find(|set| set.file(DATA).is_some());
     let Some(set) = set else {
-        return Err(missing(format!("{MANIFEST} lists no {DATA}")).into());
+        let kinds: Vec<&str> = manifest.results.iter().map(|set| set.command.as_str()).collect();
+        let problem = match &kinds[..] {
+            [] => format!("{MANIFEST} lists no results"),
+            kinds if kinds.iter().any(|kind| !content::sources(kind).is_empty()) => {
+                format!("{MANIFEST} lists no {DATA}: the run left no page")
+            }
+            kinds => {
+                format!("has results of `stead {}`, which alone makes the page of them", kinds.join("` and `stead "))
+            }
+        };
+        return Err(missing(problem).into());
     };
     let mut files = Files::new();
     for (name, is_needed) in content::sources(&set.command) {
@@ -46,8 +56,7 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
         if set.file(name).is_none() && !is_needed {
             continue;
         }
-        let bytes = std::fs::read(&file)
-            .map_err(|cause| InputError::new(&file, format!("cannot be read: {cause}")).allowed(ALLOWED))?;
+        let bytes = std::fs::read(&file).map_err(|cause| InputError::new(&file, unread(&cause)).allowed(ALLOWED))?;
         manifest::check(&file, &bytes, Unlisted::Refused)?;
         files.push((name.to_owned(), bytes));
     }
@@ -56,4 +65,12 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
     let folder = Folder::create(path)?;
     let (anchor, bytes) = &files[0];
     Ok(folder.results(&set.command, &[]).joining(anchor, bytes).write(&made)?)
+}
+
+/// Why a file that the manifest lists is not read.
+fn unread(cause: &std::io::Error) -> String {
+    match cause.kind() {
+        std::io::ErrorKind::NotFound => format!("is missing, though {MANIFEST} lists it"),
+        _ => format!("cannot be read: {cause}"),
+    }
 }

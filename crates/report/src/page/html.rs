@@ -6,14 +6,15 @@ use stead_format::input::sha256;
 
 const MARKUP: &str = include_str!("page.html");
 /// The style of all pages.
-pub(super) const STYLE: &str = include_str!("page.css");
+pub(super) const STYLE: &str = concat!(include_str!("base.css"), include_str!("page.css"));
 
 /// The script, module by module; each uses only what stands above it when it is loaded.
-const MODULES: [&str; 25] = [
+const MODULES: [&str; 28] = [
     include_str!("script/data.js"),
     include_str!("script/linear.js"),
     include_str!("script/path.js"),
     include_str!("script/kinematics.js"),
+    include_str!("script/external-axes.js"),
     include_str!("script/colour.js"),
     include_str!("script/state.js"),
     include_str!("script/dom.js"),
@@ -21,10 +22,12 @@ const MODULES: [&str; 25] = [
     include_str!("script/bodies.js"),
     include_str!("script/path-mesh.js"),
     include_str!("script/surroundings.js"),
+    include_str!("script/axis-tracks.js"),
     include_str!("script/shaders.js"),
     include_str!("script/gpu.js"),
     include_str!("script/camera.js"),
     include_str!("script/scene.js"),
+    include_str!("script/scene-card.js"),
     include_str!("script/plot.js"),
     include_str!("script/line-chart.js"),
     include_str!("script/charts.js"),

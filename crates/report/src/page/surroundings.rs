@@ -11,22 +11,21 @@ const AROUND: u32 = 28;
 /// Rings of each half sphere.
 const RINGS: u32 = 6;
 
-/// All shapes with the frame that they move with: `cell`, `link_1` to `link_6`, or `workpiece`. Those that an external axis moves are left
-/// out.
-pub(super) fn surroundings(problem: &Problem) -> Vec<(BodyMesh, String)> {
+/// All shapes, each in the frame that it moves with.
+pub(super) fn surroundings(problem: &Problem) -> Vec<BodyMesh> {
     let Some(scene) = &problem.scene else { return Vec::new() };
     // The frame of the task that the page has.
     let turned = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
-    scene.surroundings().shapes().iter().filter_map(|shape| drawn(shape, &turned)).collect()
+    scene.surroundings().shapes().iter().map(|shape| drawn(shape, &turned)).collect()
 }
 
-fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> Option<(BodyMesh, String)> {
-    let (frame, name, color) = match shape.attached {
-        Attachment::Base => (BodyFrame::Base, "cell".to_owned(), [0.62, 0.66, 0.7]),
-        Attachment::Link(number) => (BodyFrame::Link(number), format!("link_{number}"), [0.35, 0.6, 0.8]),
-        Attachment::Flange => (BodyFrame::Link(6), "link_6".to_owned(), [0.35, 0.6, 0.8]),
-        Attachment::Workpiece => (BodyFrame::Workpiece, "workpiece".to_owned(), [0.73, 0.77, 0.82]),
-        Attachment::Axis(_) => return None,
+fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> BodyMesh {
+    let (frame, color) = match shape.attached {
+        Attachment::Base => (BodyFrame::Cell, [0.62, 0.66, 0.7]),
+        Attachment::Link(number) => (BodyFrame::Link(number), [0.35, 0.6, 0.8]),
+        Attachment::Flange => (BodyFrame::Link(6), [0.35, 0.6, 0.8]),
+        Attachment::Workpiece => (BodyFrame::Workpiece, [0.73, 0.77, 0.82]),
+        Attachment::Axis(number) => (BodyFrame::Axis(number), [0.5, 0.56, 0.62]),
     };
     let (corners, triangles) = mesh(&shape.solid);
     let place = |corner: &Vector3<f64>| {
@@ -35,7 +34,7 @@ fn drawn(shape: &Shape, turned: &Matrix3<f64>) -> Option<(BodyMesh, String)> {
         [point.x as f32, point.y as f32, point.z as f32]
     };
     let positions = corners.iter().map(place).collect();
-    Some((BodyMesh { name: shape.name.clone(), frame, color, positions, triangles, is_illustration: false }, name))
+    BodyMesh { name: shape.name.clone(), frame, color, positions, triangles, is_illustration: false }
 }
 
 /// Corners (m) and triangles of a form; of a hull those of the mesh that it is about.
@@ -88,6 +87,7 @@ fn turned_profile(profile: &[(f64, f64)]) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stead_model::robot::Pose;
 
     /// The volume inside, by the divergence theorem: positive where triangles are counter-clockwise from outside.
     fn volume(solid: &Solid) -> f64 {
@@ -97,6 +97,23 @@ mod tests {
             a.dot(&b.cross(&c)) / 6.0
         };
         triangles.iter().map(sixth).sum()
+    }
+
+    #[test]
+    fn what_an_axis_carries_is_in_the_frame_of_that_axis_and_only_the_part_is_turned() {
+        let turned = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let pose = Pose { translation: Vector3::new(1.0, 2.0, 3.0), ..Pose::identity() };
+        let at = |attached: Attachment| {
+            let shape = Shape { name: "plate".to_owned(), attached, solid: Solid::Box(Vector3::repeat(0.5)), pose };
+            let body = drawn(&shape, &turned);
+            let middle: Vector3<f32> =
+                body.positions.iter().map(|position| Vector3::from(*position)).sum::<Vector3<f32>>() / 8.0;
+            (body.frame, <[f32; 3]>::from(middle))
+        };
+        assert_eq!(at(Attachment::Axis(1)), (BodyFrame::Axis(1), [1.0, 2.0, 3.0]));
+        assert_eq!(at(Attachment::Base), (BodyFrame::Cell, [1.0, 2.0, 3.0]));
+        assert_eq!(at(Attachment::Workpiece), (BodyFrame::Workpiece, [-2.0, 1.0, 3.0]));
+        assert_eq!(at(Attachment::Flange), (BodyFrame::Link(6), [1.0, 2.0, 3.0]));
     }
 
     #[test]

@@ -61,13 +61,13 @@ fn folders_that_are_no_whole_run_are_refused_by_the_file() {
     let mut without = context();
     without.page = false;
     write_placement(&folder, problem(), outcome(), &without).unwrap();
-    refused(&["lists no page-data.json"]);
+    refused(&["lists no page-data.json: the run left no page"]);
     write_placement(&folder, problem(), outcome(), &context()).unwrap();
     drop(folder);
     let plan = place.path().join("worst.csv");
     let kept = std::fs::read(&plan).unwrap();
     std::fs::remove_file(&plan).unwrap();
-    refused(&["worst.csv: cannot be read"]);
+    refused(&["worst.csv: is missing, though manifest.json lists it"]);
     std::fs::write(&plan, "point\n").unwrap();
     refused(&["worst.csv: is not the file that `stead place` has written"]);
     std::fs::write(&plan, kept).unwrap();

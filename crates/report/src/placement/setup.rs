@@ -9,7 +9,7 @@ use stead_placement::problem::Problem;
 use stead_placement::setup::{AxisPath, AxisPositions, Setup, TriedSetup};
 
 /// The unit of the positions of an axis.
-fn unit(kind: AxisKind) -> Unit {
+pub(crate) fn unit(kind: AxisKind) -> Unit {
     match kind {
         AxisKind::Rail => Unit::PLACE_MM,
         AxisKind::Turntable => Unit::ANGLE_DEG,
@@ -25,16 +25,21 @@ fn unit_name(kind: AxisKind) -> &'static str {
 }
 
 /// The word for a kind.
-fn word(kind: AxisKind) -> &'static str {
+pub(crate) fn word(kind: AxisKind) -> &'static str {
     match kind {
         AxisKind::Rail => "rail",
         AxisKind::Turntable => "turntable",
     }
 }
 
-/// The columns of the positions of axes: `e1_mm`, `e2_deg`.
+/// The column of the positions of an axis, by its number from 0: `e1_mm`, `e2_deg`.
+pub(crate) fn column(number: usize, kind: AxisKind) -> String {
+    format!("e{}_{}", number + 1, unit_name(kind))
+}
+
+/// The columns of the positions of axes.
 pub(super) fn columns(axes: &[AxisPath]) -> Vec<String> {
-    axes.iter().zip(1..).map(|(axis, number)| format!("e{number}_{}", unit_name(axis.kind))).collect()
+    axes.iter().enumerate().map(|(number, axis)| column(number, axis.kind)).collect()
 }
 
 /// Positions of axes at a path point, as the plan files state them.

@@ -1,7 +1,8 @@
 //! `report.html` of a simulated pass.
 
 use super::end_words;
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
+use crate::page::cards::{Axis, Card, Chart, Mark, Page, Series, Style, Tile, Tiles};
+use crate::stability::page::modes;
 use crate::units::{figures, fixed};
 use std::f64::consts::TAU;
 use stead_format::SimulationRun;
@@ -36,7 +37,7 @@ pub(super) fn page(run: &SimulationRun, found: &Simulation) -> Page {
     ] {
         page = page.with(wall(title, profile, color));
     }
-    page.with(modes(found))
+    page.with(modes(&found.modes))
 }
 
 fn tiles(found: &Simulation) -> Card {
@@ -149,18 +150,5 @@ fn wall(title: &str, profile: &Profile, color: usize) -> Card {
         y: Axis::new("height (um)"),
         series: vec![Series::curve("", color, points).styled(Style::Line)],
         ..Chart::default()
-    })
-}
-
-fn modes(found: &Simulation) -> Card {
-    let row = |(number, mode): (usize, &stead_simulation::modes::Mode)| {
-        let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio, 5)];
-        std::iter::once(Cell::Number((number + 1).to_string())).chain(numbers.map(Cell::Number)).collect()
-    };
-    Card::Table(Table {
-        title: "Modes of the arm".to_owned(),
-        columns: ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec(),
-        rows: found.modes.iter().enumerate().map(row).collect(),
-        ..Table::default()
     })
 }

@@ -1,7 +1,8 @@
-//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`, and a
-//! text for people.
+//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`,
+//! `report.html`, and a text for people.
 
 mod json;
+pub(crate) mod page;
 pub(crate) mod path;
 mod tables;
 #[cfg(test)]
@@ -13,6 +14,7 @@ pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
 use super::output::{Folder, ReportError};
+use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::units::Unit;
@@ -33,8 +35,8 @@ pub(super) const RESPONSE: Unit = Unit { factor: 1e6, decimals: 6 };
 /// Rates of growth in 1/s.
 pub(super) const RATE: Unit = Unit { factor: 1.0, decimals: 4 };
 
-/// Writes `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg` and `lobes.svg`. Returns
-/// their paths in that order.
+/// Writes `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg`, `lobes.svg` and
+/// `report.html`. Returns their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -59,5 +61,6 @@ pub fn stability_files(run: &SimulationRun, analysis: &StabilityAnalysis) -> Res
         ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
         ("frequency-response.svg", picture::frequency_response(analysis).into_bytes()),
         ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
+        (PAGE, page::page(run, analysis).html()),
     ]))
 }

@@ -94,6 +94,11 @@ impl Buffer {
         self.floats(&times, "SCALAR", None, bounds)
     }
 
+    /// Places of a node.
+    pub fn translations(&mut self, translations: &[[f32; 3]]) -> usize {
+        self.floats(translations, "VEC3", None, None)
+    }
+
     /// Quaternions x, y, z, w.
     pub fn rotations(&mut self, rotations: &[[f32; 4]]) -> usize {
         self.floats(rotations, "VEC4", None, None)

@@ -98,6 +98,8 @@ impl Primitive {
 pub(super) struct Material {
     pub name: String,
     pub pbr_metallic_roughness: Surface,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alpha_mode: Option<&'static str>,
 }
 
 /// How a material reflects; the colour is linear.
@@ -112,7 +114,8 @@ pub(super) struct Surface {
 impl Material {
     pub fn new(name: &str, base_color_factor: [f32; 4], metallic_factor: f32, roughness_factor: f32) -> Self {
         let surface = Surface { base_color_factor, metallic_factor, roughness_factor };
-        Self { name: name.to_owned(), pbr_metallic_roughness: surface }
+        let alpha_mode = (base_color_factor[3] < 1.0).then_some("BLEND");
+        Self { name: name.to_owned(), pbr_metallic_roughness: surface, alpha_mode }
     }
 
     pub fn looks_like(&self, other: &Self) -> bool {
@@ -125,6 +128,14 @@ pub(super) struct Animation {
     pub name: String,
     pub samplers: Vec<Sampler>,
     pub channels: Vec<Channel>,
+}
+
+impl Animation {
+    /// Adds a track, with the accessors of its times and values.
+    pub fn add(&mut self, input: usize, output: usize, target: Target) {
+        self.channels.push(Channel { sampler: self.samplers.len(), target });
+        self.samplers.push(Sampler { input, output, interpolation: "LINEAR" });
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,8 +8,10 @@ use super::super::table::Table;
 use super::motion::{Motion, SHORTEST_MOVE, Stop, UNKNOWN_MOVE};
 use super::{Cell, glb};
 use crate::Files;
+use crate::placement::setup::{column, unit, word};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
 use stead_placement::problem::Placement;
 
@@ -30,23 +32,40 @@ pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {
         Value::Null => (&document, &document["best"]),
         case => (case, case),
     };
-    let base_from_workpiece = placement(case)?.base_from_workpiece();
-    let mut bodies =
-        data["bodies"].as_array().into_iter().flatten().map(body).collect::<Option<Vec<_>>>().ok_or_else(bad_bodies)?;
-    bodies.push(block_of(&vectors(&data["task"]["position_mm"], 1e-3), &vectors(&data["task"]["axis"], 1.0)));
+    let turn = &data["part_turns"][0];
+    let turn = if turn.is_null() { Matrix3::identity() } else { rotation(turn, "part_turns")? };
+    let mut cell_from_workpiece = placement(case)?.base_from_workpiece();
+    cell_from_workpiece.rotation *= turn;
+    let mount = &data["robot"]["mount"];
+    let axes = external_axes(&data["external_axes"])?;
+    // Collision shapes of the arm enclose the bodies of it.
+    let listed = ["bodies", "surroundings"].map(|key| data[key].as_array().map_or(&[][..], Vec::as_slice));
+    let read = listed.iter().flat_map(|list| list.iter()).map(body);
+    let mut bodies = read.collect::<Option<Vec<_>>>().ok_or_else(bad_bodies)?;
+    let is_drawn = |body: &BodyMesh| body.is_illustration || !matches!(body.frame, BodyFrame::Link(_));
+    bodies.retain(is_drawn);
+    let positions = vectors(&data["task"]["position_mm"], 1e-3);
+    if !bodies.iter().any(|body| body.frame == BodyFrame::Workpiece) {
+        bodies.push(block_of(&positions, &vectors(&data["task"]["axis"], 1.0)));
+    }
     let cell = Cell {
         name: data["robot"]["name"].as_str().unwrap_or_default(),
         rows: rows(&data["robot"]["rows"])?,
-        flange_from_tool: spindle(&data["spindle"])?,
-        base_from_workpiece,
+        flange_from_tool: pose(&data["spindle"], "spindle")?,
+        mount: if mount.is_null() { Pose::identity() } else { pose(mount, "mount")? },
+        axes: &axes,
+        cell_from_workpiece,
         bodies: &bodies,
-        motion: &motion(&plan, driven, &singles(&data["task"]["step_s"]))?,
+        motion: &motion(&plan, driven, &axes, &positions, &singles(&data["task"]["step_s"]))?,
     };
     Ok(glb(&cell))
 }
 
+/// What is wrong with an entry that is there.
+const NOT_OURS: &str = "is not as stead writes it";
+
 fn bad_bodies() -> PageError {
-    PageError::data("bodies", "are not as stead writes them")
+    PageError::data("bodies", NOT_OURS)
 }
 
 /// Numbers in single precision as Base64.
@@ -81,13 +100,39 @@ fn rows(list: &Value) -> Result<[Pose<f64>; 6], PageError> {
     Ok(rows)
 }
 
-fn spindle(value: &Value) -> Result<Pose<f64>, PageError> {
-    let rows = [0, 1, 2].map(|row| triple(&value["rotation"][row]));
-    let ([Some(first), Some(second), Some(third)], Some(place)) = (rows, triple(&value["xyz_mm"])) else {
-        return Err(PageError::data("spindle", "is not as stead writes it"));
-    };
-    let rotation = Matrix3::from_rows(&[first.transpose(), second.transpose(), third.transpose()]);
-    Ok(Pose { rotation, translation: place / 1e3 })
+fn pose(value: &Value, key: &str) -> Result<Pose<f64>, PageError> {
+    let translation = triple(&value["xyz_mm"]).ok_or_else(|| PageError::data(key, NOT_OURS))? / 1e3;
+    Ok(Pose { rotation: rotation(&value["rotation"], key)?, translation })
+}
+
+/// A rotation by rows.
+fn rotation(value: &Value, key: &str) -> Result<Matrix3<f64>, PageError> {
+    let rows = [0, 1, 2].map(|row| triple(&value[row]));
+    let [Some(first), Some(second), Some(third)] = rows else { return Err(PageError::data(key, NOT_OURS)) };
+    Ok(Matrix3::from_rows(&[first.transpose(), second.transpose(), third.transpose()]))
+}
+
+fn external_axes(list: &Value) -> Result<Vec<ExternalAxis>, PageError> {
+    list.as_array()
+        .into_iter()
+        .flatten()
+        .map(|value| external_axis(value).ok_or_else(|| PageError::data("external_axes", NOT_OURS)))
+        .collect()
+}
+
+fn external_axis(value: &Value) -> Option<ExternalAxis> {
+    Some(ExternalAxis {
+        name: value["name"].as_str()?.to_owned(),
+        kind: [AxisKind::Rail, AxisKind::Turntable].into_iter().find(|kind| value["kind"] == word(*kind))?,
+        carries: if value["carries"] == "robot" { Carried::Robot } else { Carried::Workpiece },
+        direction: triple(&value["direction"])?,
+        point: triple(&value["point_mm"])? / 1e3,
+        // What it may do is not asked for: the plan has what it does.
+        min: 0.0,
+        max: 0.0,
+        max_speed: None,
+        axis_use: AxisUse::Continuous,
+    })
 }
 
 fn placement(case: &Value) -> Result<Placement, PageError> {
@@ -128,18 +173,30 @@ fn frame(word: &str) -> Option<BodyFrame> {
         "base" => Some(BodyFrame::Base),
         "tool" => Some(BodyFrame::Tool),
         "workpiece" => Some(BodyFrame::Workpiece),
-        word => word.strip_prefix("link_")?.parse().ok().filter(|link| (1..=6).contains(link)).map(BodyFrame::Link),
+        "cell" => Some(BodyFrame::Cell),
+        word => match word.split_once('_')? {
+            ("link", link) => link.parse().ok().filter(|link| (1..=6).contains(link)).map(BodyFrame::Link),
+            ("axis", number) => number.parse().ok().and_then(|number: u8| number.checked_sub(1)).map(BodyFrame::Axis),
+            _ => None,
+        },
     }
 }
 
 /// The plan at the feed that is held, with the times of its moves between segments: as long as its document says.
-pub(super) fn motion(plan: &Table, driven: &Value, steps: &[f64]) -> Result<Motion, PageError> {
-    let column = |name: &str| plan.numbers(name);
-    let angles = [1, 2, 3, 4, 5, 6].map(|joint| column(&format!("theta{joint}_deg")));
+pub(super) fn motion(
+    plan: &Table,
+    driven: &Value,
+    axes: &[ExternalAxis],
+    positions: &[Vector3<f64>],
+    steps: &[f64],
+) -> Result<Motion, PageError> {
+    let numbers = |name: &str| plan.numbers(name);
+    let angles = [1, 2, 3, 4, 5, 6].map(|joint| numbers(&format!("theta{joint}_deg")));
     let [one, two, three, four, five, six] = angles;
     let angles = [one?, two?, three?, four?, five?, six?];
-    let places = [column("x_mm")?, column("y_mm")?, column("z_mm")?];
-    let (segments, scores) = (column("segment")?, column("score_mm")?);
+    let along = |(number, axis): (usize, &ExternalAxis)| column_of(plan, number, axis.kind);
+    let along = axes.iter().enumerate().map(along).collect::<Result<Vec<_>, _>>()?;
+    let (segments, scores) = (numbers("segment")?, numbers("score_mm")?);
     let programmed: f64 = steps.iter().sum();
     let scale = driven["cutting_s"].as_f64().filter(|_| programmed > 0.0).map_or(1.0, |cutting| cutting / programmed);
     let mut time = 0.0;
@@ -155,11 +212,19 @@ pub(super) fn motion(plan: &Table, driven: &Value, steps: &[f64]) -> Result<Moti
         }
         Stop {
             joints: std::array::from_fn(|joint| angles[joint][point].to_radians()),
-            position: Vector3::new(places[0][point], places[1][point], places[2][point]) / 1e3,
+            axes: along.iter().map(|positions| positions[point]).collect(),
+            position: positions.get(point).copied().unwrap_or_default(),
             segment,
             score: scores[point] / 1e3,
             time,
         }
     });
     Ok(Motion { name: "best plan".to_owned(), stops: stops.collect() })
+}
+
+/// The positions of an external axis along a plan. m or rad
+fn column_of(plan: &Table, number: usize, kind: AxisKind) -> Result<Vec<f64>, PageError> {
+    let mut positions = plan.numbers(&column(number, kind))?;
+    positions.iter_mut().for_each(|at| *at /= unit(kind).factor);
+    Ok(positions)
 }

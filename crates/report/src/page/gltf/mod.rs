@@ -1,8 +1,10 @@
 //! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along its best plan.
 //!
 //! glTF has y upwards: the node of the base is turned by -90 deg about x, and everything below it is in the robot's own frames, in m.
-//! Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated.
+//! Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated; an external axis is a node
+//! whose place or rotation is animated, with all that it carries.
 
+mod axes;
 mod buffer;
 mod document;
 mod kept;
@@ -13,11 +15,13 @@ pub(crate) use kept::scene;
 pub use motion::{Motion, Stop};
 
 use super::shapes::{BodyFrame, BodyMesh, shaded};
+use axes::AxisNodes;
 use buffer::Buffer;
-use document::{Animation, Asset, Channel, Document, Extras, Material, Mesh, Node, Primitive, Sampler, Scene, Target};
-use motion::{quaternion, turn_about_z};
+use document::{Animation, Asset, Document, Extras, Material, Mesh, Node, Primitive, Scene, Target};
+use motion::{quaternion, turn_about};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
+use stead_model::external_axis::{Carried, ExternalAxis};
 use stead_model::robot::Pose;
 
 /// `cell.glb`.
@@ -32,8 +36,12 @@ pub struct Cell<'a> {
     pub rows: [Pose<f64>; 6],
     /// The tool frame in frame 6.
     pub flange_from_tool: Pose<f64>,
-    /// The workpiece frame in the base frame.
-    pub base_from_workpiece: Pose<f64>,
+    /// The robot base frame on what carries the robot.
+    pub mount: Pose<f64>,
+    /// Rails and turntables.
+    pub axes: &'a [ExternalAxis],
+    /// The workpiece frame in the cell with all axes at zero.
+    pub cell_from_workpiece: Pose<f64>,
     /// All shapes.
     pub bodies: &'a [BodyMesh],
     /// What the arm does.
@@ -43,34 +51,36 @@ pub struct Cell<'a> {
 /// A scene as the bytes of a `.glb` file.
 pub fn glb(cell: &Cell) -> Vec<u8> {
     let mut writer = Writer::default();
-    let base = writer.add_node(Node {
-        name: "base (z up)".to_owned(),
-        rotation: Some(turn_about_x(-FRAC_PI_2)),
+    let root = writer.add_node(Node {
+        name: "cell (z up)".to_owned(),
+        rotation: Some(turn_about(&Vector3::x(), -FRAC_PI_2)),
         ..Node::default()
     });
-    writer.document.scenes.push(Scene { name: cell.name.to_owned(), nodes: vec![base] });
+    writer.document.scenes.push(Scene { name: cell.name.to_owned(), nodes: vec![root] });
+    let axes = writer.add_axes(cell.axes, root);
+    let on = |what: Carried| axes::last_of(cell.axes, &axes, what).unwrap_or(root);
+    let base = writer.add_frame("base", &cell.mount, on(Carried::Robot));
     let joints = writer.add_arm(&cell.rows, base);
     let tool = writer.add_frame("tool", &cell.flange_from_tool, joints[5]);
-    let workpiece = writer.add_frame("workpiece", &cell.base_from_workpiece, base);
+    let workpiece = writer.add_frame("workpiece", &cell.cell_from_workpiece, on(Carried::Workpiece));
     for body in cell.bodies {
         let parent = match body.frame {
+            BodyFrame::Cell => root,
             BodyFrame::Base => base,
             BodyFrame::Link(number) => joints[usize::from(number.clamp(1, 6)) - 1],
             BodyFrame::Tool => tool,
             BodyFrame::Workpiece => workpiece,
+            BodyFrame::Axis(number) => axes.get(usize::from(number)).map_or(root, |axis| axis.frame),
         };
         writer.add_body(body, parent);
     }
-    writer.add_path(&path::tubes(cell.motion), base);
-    writer.add_animation(cell.motion, &joints);
+    writer.add_path(&path::tubes(cell.motion), workpiece);
+    writer.add_animation(cell, &joints, &axes);
     writer.finish()
 }
 
-/// A turn about x, as the quaternion x, y, z, w.
-fn turn_about_x(angle: f64) -> [f32; 4] {
-    let (sine, cosine) = libm::sincos(angle / 2.0);
-    [sine as f32, 0.0, 0.0, cosine as f32]
-}
+/// How much of a body of the cell is seen: fences and walls stand before the robot.
+const OPACITY: f32 = 0.25;
 
 #[derive(Default)]
 struct Writer {
@@ -119,7 +129,8 @@ impl Writer {
             return;
         }
         let [red, green, blue] = body.color.map(linear);
-        let material = self.material(Material::new(&body.name, [red, green, blue, 1.0], 0.1, 0.45));
+        let opacity = if body.frame == BodyFrame::Cell { OPACITY } else { 1.0 };
+        let material = self.material(Material::new(&body.name, [red, green, blue, opacity], 0.1, 0.45));
         let primitive = Primitive::new(&mut self.buffer, &drawn, None, material);
         let extras = body.is_illustration.then_some(Extras { is_illustration: true });
         self.add_mesh(&body.name, primitive, extras, parent);
@@ -150,19 +161,23 @@ impl Writer {
         materials.len() - 1
     }
 
-    /// A rotation track for each joint.
-    fn add_animation(&mut self, motion: &Motion, joints: &[usize; 6]) {
-        let keys = motion.keys();
+    /// A track for each joint and each external axis.
+    fn add_animation(&mut self, cell: &Cell, joints: &[usize; 6], axes: &[AxisNodes]) {
+        let keys = cell.motion.keys();
         if keys.is_empty() {
             return;
         }
         let times: Vec<f32> = keys.iter().map(|key| key.time).collect();
         let input = self.buffer.times(&times);
-        let mut animation = Animation { name: motion.name.clone(), ..Animation::default() };
+        let mut animation = Animation { name: cell.motion.name.clone(), ..Animation::default() };
         for (joint, node) in joints.iter().enumerate() {
-            let turns: Vec<[f32; 4]> = keys.iter().map(|key| turn_about_z(key.joints[joint])).collect();
-            animation.samplers.push(Sampler { input, output: self.buffer.rotations(&turns), interpolation: "LINEAR" });
-            animation.channels.push(Channel { sampler: joint, target: Target { node: *node, path: "rotation" } });
+            let turns: Vec<[f32; 4]> = keys.iter().map(|key| turn_about(&Vector3::z(), key.joints[joint])).collect();
+            animation.add(input, self.buffer.rotations(&turns), Target { node: *node, path: "rotation" });
+        }
+        for (number, (axis, nodes)) in cell.axes.iter().zip(axes).enumerate() {
+            let positions = keys.iter().map(|key| key.axes.get(number).copied().unwrap_or(0.0));
+            let (output, path) = axes::track(&mut self.buffer, axis, positions);
+            animation.add(input, output, Target { node: nodes.moving, path });
         }
         self.document.animations.push(animation);
     }

@@ -13,11 +13,13 @@ const KEYS_OF_MOVE: usize = 16;
 pub(super) const MAX_STOPS: usize = 6000;
 
 /// The arm at a path point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
     /// Joint angles. rad
     pub joints: [f64; 6],
-    /// The tool centre point in the base frame. m
+    /// Positions of the external axes. m or rad
+    pub axes: Vec<f64>,
+    /// The path point in the workpiece frame. m
     pub position: Vector3<f64>,
     /// Number of the segment, from 1.
     pub segment: usize,
@@ -36,11 +38,12 @@ pub struct Motion {
     pub stops: Vec<Stop>,
 }
 
-/// Joint angles (rad) at a time (s) of the animation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Joint angles (rad) and positions of the external axes (m or rad) at a time (s) of the animation.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Key {
     pub time: f32,
     pub joints: [f64; 6],
+    pub axes: Vec<f64>,
 }
 
 impl Motion {
@@ -53,29 +56,30 @@ impl Motion {
             segment(index + 1) != own || index.checked_sub(1).and_then(segment) != own
         };
         let shown = self.stops.iter().enumerate().filter(|(index, _)| index % stride == 0 || is_end(*index));
-        shown.map(|(_, stop)| *stop).collect()
+        shown.map(|(_, stop)| stop.clone()).collect()
     }
 
-    /// The keys of the animation, at strictly rising times. Viewers turn a joint the short way round from key to key, so no joint turns
-    /// by more than 90 deg between two of them; moves between segments start and end at rest.
+    /// The keys of the animation, at strictly rising times. Viewers turn a joint the short way round from key to key, so no joint and no
+    /// turntable turns by more than 90 deg between two of them; moves between segments start and end at rest.
     pub(super) fn keys(&self) -> Vec<Key> {
         let stops = self.shown();
         let mut keys: Vec<Key> = Vec::new();
         // A key at the time of the one before, in the precision of the file, takes its place.
-        let mut put = |time: f64, joints: [f64; 6]| {
-            let key = Key { time: time as f32, joints };
+        let mut put = |time: f64, joints: [f64; 6], axes: Vec<f64>| {
+            let key = Key { time: time as f32, joints, axes };
             match keys.last_mut() {
-                Some(last) if last.time >= key.time => *last = Key { time: last.time, joints },
+                Some(last) if last.time >= key.time => *last = Key { time: last.time, ..key },
                 _ => keys.push(key),
             }
         };
         if let Some(first) = stops.first() {
-            put(first.time, first.joints);
+            put(first.time, first.joints, first.axes.clone());
         }
         for pair in stops.windows(2) {
-            let (from, to) = (pair[0], pair[1]);
+            let (from, to) = (&pair[0], &pair[1]);
             let turns: [f64; 6] = std::array::from_fn(|j| to.joints[j] - from.joints[j]);
-            let largest = turns.iter().fold(0.0_f64, |largest, turn| largest.max(turn.abs()));
+            let shifts: Vec<f64> = to.axes.iter().zip(&from.axes).map(|(to, from)| to - from).collect();
+            let largest = turns.iter().chain(&shifts).fold(0.0_f64, |largest, turn| largest.max(turn.abs()));
             let is_move = from.segment != to.segment;
             // The smooth start makes the steps in the middle of a move half as large again.
             let parts = ((largest * 1.5 / FRAC_PI_2).ceil() as usize).max(if is_move { KEYS_OF_MOVE } else { 1 });
@@ -83,17 +87,18 @@ impl Motion {
                 let share = part as f64 / parts as f64;
                 let done = if is_move { share * share * (3.0 - 2.0 * share) } else { share };
                 let time = from.time + (to.time - from.time) * share;
-                put(time, std::array::from_fn(|j| from.joints[j] + turns[j] * done));
+                let axes = from.axes.iter().zip(&shifts).map(|(at, shift)| at + shift * done).collect();
+                put(time, std::array::from_fn(|j| from.joints[j] + turns[j] * done), axes);
             }
         }
         keys
     }
 }
 
-/// A turn about z, as the quaternion x, y, z, w.
-pub(super) fn turn_about_z(angle: f64) -> [f32; 4] {
+/// A turn about a unit vector, as the quaternion x, y, z, w.
+pub(super) fn turn_about(direction: &Vector3<f64>, angle: f64) -> [f32; 4] {
     let (sine, cosine) = libm::sincos(angle / 2.0);
-    [0.0, 0.0, sine as f32, cosine as f32]
+    [(direction.x * sine) as f32, (direction.y * sine) as f32, (direction.z * sine) as f32, cosine as f32]
 }
 
 /// A rotation as the quaternion x, y, z, w.

@@ -19,7 +19,7 @@ pub(super) struct Tubes {
     pub colors: Vec<[f32; 3]>,
 }
 
-/// One tube for each segment, in the base frame.
+/// One tube for each segment, in the workpiece frame.
 pub(super) fn tubes(motion: &Motion) -> Tubes {
     let mut tubes = Tubes::default();
     for segment in motion.shown().chunk_by(|a, b| a.segment == b.segment) {

@@ -7,6 +7,7 @@ use crate::placement::placement_files;
 use crate::testing::{context, outcome, problem};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
+use stead_model::external_axis::{AxisKind, AxisUse, carried};
 
 /// A file taken apart.
 struct Read {
@@ -50,18 +51,17 @@ impl Read {
             |value: &Value| value.as_array().map(|list| list.iter().map(|v| v.as_f64().unwrap()).collect::<Vec<_>>());
         let animation = &self.json["animations"][0];
         let track = animation["channels"].as_array().unwrap().iter().find(|channel| channel["target"]["node"] == node);
-        let rotation = match track {
-            Some(channel) => {
-                assert_eq!(channel["target"]["path"], "rotation");
-                let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
-                Some(self.floats(&sampler["output"])[4 * key..4 * key + 4].to_vec())
-            }
-            None => numbers(&self.nodes()[node]["rotation"]),
+        let animated = |path: &str, width: usize| {
+            let channel = track.filter(|channel| channel["target"]["path"] == path)?;
+            let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+            Some(self.floats(&sampler["output"])[width * key..width * (key + 1)].to_vec())
         };
+        let rotation = animated("rotation", 4).or_else(|| numbers(&self.nodes()[node]["rotation"]));
         let rotation = rotation.map_or_else(UnitQuaternion::identity, |q| {
             UnitQuaternion::from_quaternion(Quaternion::new(q[3], q[0], q[1], q[2]))
         });
-        let t = numbers(&self.nodes()[node]["translation"]).unwrap_or(vec![0.0; 3]);
+        let still = || numbers(&self.nodes()[node]["translation"]).unwrap_or(vec![0.0; 3]);
+        let t = animated("translation", 3).unwrap_or_else(still);
         let own = Isometry3::from_parts(Translation3::new(t[0], t[1], t[2]), rotation);
         let is_parent =
             |other: &Value| other["children"].as_array().is_some_and(|list| list.contains(&Value::from(node)));
@@ -90,7 +90,8 @@ fn motion_of(files: &Files) -> Motion {
         .map(|k| if task.segments().iter().any(|segment| segment.start == k) { 0.0 } else { problem().step_time(k) })
         .collect();
     let plan = Table::read("best.csv", bytes("best.csv")).unwrap();
-    kept::motion(&plan, &document["cases"][0], &steps).unwrap()
+    let positions: Vec<Vector3<f64>> = task.points().iter().map(|point| point.position).collect();
+    kept::motion(&plan, &document["cases"][0], &[], &positions, &steps).unwrap()
 }
 
 /// The column of a CSV file at its last row, in mm.
@@ -151,6 +152,7 @@ fn joints_turn_as_in_the_plan() {
 fn long_turns_go_the_long_way_round() {
     let stop = |turn: f64, segment: usize, time: f64| Stop {
         joints: [0.0, 0.0, 0.0, turn, 0.0, 0.0],
+        axes: Vec::new(),
         position: Vector3::new(time, 0.0, 0.0),
         segment,
         score: 1e-4,
@@ -172,6 +174,7 @@ fn long_turns_go_the_long_way_round() {
 fn long_paths_are_thinned() {
     let stops = (0..50_000).map(|k| Stop {
         joints: [k as f64 * 1e-5; 6],
+        axes: Vec::new(),
         position: Vector3::new(k as f64 * 1e-3, 0.0, 0.0),
         segment: 1 + k / 20_000,
         score: 1e-4,
@@ -205,4 +208,92 @@ fn scenes_are_consistent() {
     assert_eq!(attributes.iter().filter(|count| **count == 3).count(), 1);
     let illustrations = read.nodes().iter().filter(|node| node["extras"]["is_illustration"] == true);
     assert_eq!(illustrations.count(), crate::page::bodies(problem()).len() + 1);
+}
+
+/// A rail with the robot and a tilting table with the part: what they carry is where the model has it, all along the animation.
+#[test]
+fn external_axes_move_what_they_carry() {
+    let axis =
+        |name: &str, kind: AxisKind, carries: Carried, direction: Vector3<f64>, point: Vector3<f64>| ExternalAxis {
+            name: name.to_owned(),
+            kind,
+            carries,
+            direction,
+            point,
+            min: -2.0,
+            max: 2.0,
+            max_speed: None,
+            axis_use: AxisUse::Continuous,
+        };
+    let axes = [
+        axis("tilt", AxisKind::Turntable, Carried::Workpiece, Vector3::y(), Vector3::new(1.7, 0.0, 0.6)),
+        axis("rail", AxisKind::Rail, Carried::Robot, Vector3::x(), Vector3::zeros()),
+        axis("turn", AxisKind::Turntable, Carried::Workpiece, Vector3::z(), Vector3::new(1.7, 0.2, 0.0)),
+    ];
+    let positions = [[0.0, 0.0, 0.0], [0.4, -0.5, 0.3], [-0.7, 1.2, 3.0]];
+    let stop = |(k, at): (usize, &[f64; 3])| Stop {
+        joints: [0.0; 6],
+        axes: at.to_vec(),
+        position: Vector3::new(k as f64, 0.0, 0.0),
+        segment: 1,
+        score: 1e-4,
+        time: k as f64,
+    };
+    let motion = Motion { name: String::new(), stops: positions.iter().enumerate().map(stop).collect() };
+    let plate = |frame: BodyFrame, name: &str| BodyMesh {
+        name: name.to_owned(),
+        frame,
+        color: [0.5; 3],
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        triangles: vec![[0, 1, 2]],
+        is_illustration: false,
+    };
+    let bodies = [
+        plate(BodyFrame::Axis(0), "cradle"),
+        plate(BodyFrame::Axis(1), "carriage"),
+        plate(BodyFrame::Axis(2), "platter"),
+        plate(BodyFrame::Cell, "fence"),
+    ];
+    let mount = Pose { translation: Vector3::new(0.0, 0.0, 0.8), ..Pose::identity() };
+    let placed = Pose { translation: Vector3::new(1.7, 0.1, 0.9), ..Pose::identity() };
+    let file = glb(&Cell {
+        name: "cell",
+        rows: [Pose::identity(); 6],
+        flange_from_tool: Pose::identity(),
+        mount,
+        axes: &axes,
+        cell_from_workpiece: placed,
+        bodies: &bodies,
+        motion: &motion,
+    });
+    let read = Read::new(&file);
+    let times = read.times();
+    for (k, at) in positions.iter().enumerate() {
+        let key = times.iter().position(|time| *time == k as f64).unwrap();
+        let on = |what: Carried, count: usize| carried(&axes[..count], at, what);
+        let expected = [
+            ("cradle", on(Carried::Workpiece, 1)),
+            ("carriage", on(Carried::Robot, 3)),
+            ("platter", on(Carried::Workpiece, 3)),
+            ("workpiece", on(Carried::Workpiece, 3).then(&placed)),
+            ("tool path", on(Carried::Workpiece, 3).then(&placed)),
+            ("tool", on(Carried::Robot, 3).then(&mount)),
+            ("fence", Pose::identity()),
+        ];
+        for (name, pose) in expected {
+            let found = read.world(read.named(name), key);
+            for corner in [Vector3::zeros(), Vector3::x(), Vector3::y()] {
+                let (is, due) = (found * nalgebra::Point3::from(corner), pose.point(&corner));
+                let off = (is.coords - Vector3::new(due.x, due.z, -due.y)).norm();
+                assert!(off < 1e-5, "{name} is {off} m off at stop {k}");
+            }
+        }
+    }
+    // What stands in the cell is seen through.
+    let material = |name: &str| {
+        let node = &read.nodes()[read.named(name)];
+        let mesh = &read.json["meshes"][node["mesh"].as_u64().unwrap() as usize];
+        read.json["materials"][mesh["primitives"][0]["material"].as_u64().unwrap() as usize]["alphaMode"].clone()
+    };
+    assert_eq!((material("fence"), material("platter")), ("BLEND".into(), Value::Null));
 }

@@ -44,5 +44,8 @@ const ARM_FRAMES = ['base', 'link_1', 'link_2', 'link_3', 'link_4', 'link_5', 'l
 /** Whether collision shapes are known of the arm. */
 const HAS_ENVELOPES = SHAPES.some((body) => ARM_FRAMES.includes(body.frame));
 
+/** Whether anything is known that stands in the cell. */
+const HAS_SURROUNDINGS = SHAPES.some((body) => body.frame === 'cell' || body.frame.startsWith('axis_'));
+
 /** Whether shapes are drawn that no drawing of the real part is behind. */
 const HAS_ILLUSTRATIONS = BODIES.some((body) => body.isIllustration);

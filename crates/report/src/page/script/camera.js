@@ -60,11 +60,11 @@ const middleOf = (of) =>
 
 /** Where the scene looks to: between the robot and the places of the workpiece. */
 const WORK = CASES.reduce((sum, of) => add(sum, times(middleOf(of), 1 / CASES.length)), [0, 0, 0]);
-/** Where the robot stands: on a floor, or mounted on a wall or a ceiling. */
-const STAND = baseFrame(CASES[0], 0).slice(12, 15);
-const WORK_SIDE = Math.atan2(WORK[1] - STAND[1], WORK[0] - STAND[0]);
+/** The middle of the robot's reach: on a floor above its foot, or beside a wall or under a ceiling that it hangs on. */
+const SHOULDER = moved(baseFrame(CASES[0], 0), [0, 0, REACH.height]);
+const WORK_SIDE = Math.atan2(WORK[1] - SHOULDER[1], WORK[0] - SHOULDER[0]);
 /** The middle of the views: between the two, level with the robot where it stands upright. */
-const MIDDLE = add(mix(STAND, [WORK[0], WORK[1], STAND[2]], 0.52), [0, 0, MOUNT[10] > 0.9 ? 0 : (WORK[2] - STAND[2]) / 2]);
+const MIDDLE = add(mix(SHOULDER, [WORK[0], WORK[1], SHOULDER[2]], 0.52), [0, 0, MOUNT[10] > 0.9 ? 0 : (WORK[2] - SHOULDER[2]) / 2]);
 
 /** @typedef {{ around: number, up: number, distance: number, target: Vec }} Eye angles in rad */
 

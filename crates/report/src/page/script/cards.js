@@ -2,12 +2,14 @@
 
 /** @param {string[]} heads @param {(string | number | Node)[][]} rows */
 function smallTable(heads, rows) {
+  const isNumber = (/** @type {string | number | Node} */ value) => typeof value === 'number' || /^[-–]?\d|^–$/.test(String(value));
+  const isWords = heads.map((_, k) => k === 0 || !rows.every((row) => isNumber(row[k])));
   const cell = (/** @type {string | number | Node} */ value, /** @type {number} */ k) =>
-    el(k ? 'td' : 'td.words', {}, value);
+    el(isWords[k] ? 'td.words' : 'td', {}, value);
   const head = el(
     'thead',
     {},
-    el('tr', {}, ...heads.map((name, k) => el(k ? 'th' : 'th.words', { scope: 'col' }, name))),
+    el('tr', {}, ...heads.map((name, k) => el(isWords[k] ? 'th.words' : 'th', { scope: 'col' }, name))),
   );
   return el('table', {}, head, el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map(cell)))));
 }
@@ -95,6 +97,7 @@ function convergenceCard() {
     'Search',
     'best and worst objective in mm over generations; drag to zoom, double click to reset',
     chart.host,
+    legendOf(lines),
   );
 }
 
@@ -102,29 +105,35 @@ function convergenceCard() {
 function certificateCard() {
   const found = RAW.certificate;
   if (!found) return null;
-  const rows = [];
-  const relaxed = [];
-  for (const [name, side, reason] of [
+  const sides = /** @type {[string, any, string | null][]} */ ([
     ['Best', found.best, found.best_reason],
     ['Worst', found.worst, found.worst_reason],
-  ]) {
-    if (!side) {
-      rows.push([name, '–', '–', '–', '–', reason || '']);
-      continue;
+  ]);
+  const rows = [];
+  const words = [];
+  for (const [name, side, reason] of sides) {
+    if (side) {
+      const gap = `${fixed(side.gap_percent, 3)} %`;
+      rows.push([name, fixed(side.value_mm, 4), fixed(side.bound_mm, 4), gap, String(side.open_boxes)]);
+      words.push(`${name}: left out of the bound: ${side.limits_relaxed.join('; ') || 'nothing'}.`);
+      words.push(...openRegion(name));
     }
-    rows.push([
-      name,
-      fixed(side.value_mm, 4),
-      fixed(side.bound_mm, 4),
-      `${fixed(side.gap_percent, 3)} %`,
-      String(side.open_boxes),
-      reason || '',
-    ]);
-    relaxed.push(`${name}: ${side.limits_relaxed.join(', ') || 'none'}`);
+    if (reason) words.push(`${name}: ${reason}.`);
   }
-  const heads = ['Placement', 'Found mm', 'Bound mm', 'Gap', 'Open boxes', 'Short of what was asked'];
-  const words = el('p.sub', {}, `Limits left out of the bounds. ${relaxed.join('. ')}.`);
-  return card('Certificate', `a gap of ${found.gap_percent_asked} % was asked for`, smallTable(heads, rows), words);
+  const heads = ['Placement', 'Found mm', 'Bound mm', 'Gap', 'Open boxes'];
+  const said = words.map((text) => el('p.sub', {}, text));
+  const table = rows.length ? [smallTable(heads, rows)] : [];
+  return card('Certificate', `a gap of ${found.gap_percent_asked} % was asked for`, ...table, ...said);
+}
+
+/** Where a better or a worse placement is not excluded. @param {string} name @returns {string[]} */
+function openRegion(name) {
+  const region = RAW.open_region?.[name.toLowerCase()];
+  if (!region) return [];
+  const span = (/** @type {string} */ key, /** @type {string} */ unitText) => `${fixed(region[key][0], 1)} to ${fixed(region[key][1], 1)}${unitText}`;
+  return [
+    `${name}: not excluded within ${span('radius_mm', ' mm')} from the axis of joint 1, z ${span('z_mm', ' mm')}, yaw less azimuth ${span('yaw_less_azimuth_deg', '°')}.`,
+  ];
 }
 
 /** How the mean answers to the stiffness of each joint, and what force errors would do. */
@@ -193,8 +202,9 @@ function stabilityCard() {
   });
   return card(
     'Critical depth of cut',
-    `mm; the cut is ${said.axial_depth_mm} mm deep. ${words.join('; ')}`,
+    `mm; the cut is ${said.axial_depth_mm} mm deep, no line: stable beyond ${said.max_depth_mm} mm. ${words.join('; ')}`,
     chart.host,
+    legendOf(lines),
   );
 }
 

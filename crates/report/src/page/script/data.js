@@ -103,7 +103,12 @@ const IS_SCORE = RAW.command === 'score';
 function caseEntries() {
   const { document } = RAW;
   if (!IS_SCORE) return document.cases;
-  return ['best', 'worst'].map((plan, k) => ({ ...document[plan], placement: document.placement, case: k + 1 }));
+  return ['best', 'worst'].map((plan, k) => ({
+    ...document[plan],
+    placement: document.placement,
+    orientation: document.orientation,
+    case: k + 1,
+  }));
 }
 
 const CASE_NAMES = IS_SCORE

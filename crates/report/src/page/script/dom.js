@@ -24,8 +24,20 @@ function el(name, attributes = {}, ...children) {
 
 /** @param {number | null | undefined} value @param {number} digits */
 function fixed(value, digits = 3) {
-  return value === null || value === undefined || !Number.isFinite(value) ? '–' : value.toFixed(digits);
+  return value === null || value === undefined || !Number.isFinite(value) ? '–' : value.toFixed(digits).replace(/^-(0\.?0*)$/, '$1');
 }
+
+/** What the lines of a chart are. @param {Line[]} lines */
+const legendOf = (lines) =>
+  el(
+    'div.legend',
+    {},
+    ...lines.map(({ name, colour }) => {
+      const swatch = el('span.swatch');
+      swatch.style.background = `var(${colour})`;
+      return el('span', {}, swatch, name);
+    }),
+  );
 
 /** A number by its three leading figures. @param {number} value */
 const figures = (value) =>

@@ -1,18 +1,16 @@
 // Where the frames of the arm are (Khalil and Dombre 2002: modified Denavit-Hartenberg rows).
 
+/** A pose from a rotation by rows and a place. @param {number[][]} q @param {Vec} at @returns {Mat} */
+const poseOf = (q, at) => [
+  ...[q[0][0], q[1][0], q[2][0], 0, q[0][1], q[1][1], q[2][1], 0],
+  ...[q[0][2], q[1][2], q[2][2], 0, at[0], at[1], at[2], 1],
+];
+
 /** @type {Mat} tool frame to flange frame */
-const FLANGE_FROM_TOOL = (() => {
-  const { rotation: q, xyz_mm: at } = RAW.spindle;
-  return [q[0][0], q[1][0], q[2][0], 0, q[0][1], q[1][1], q[2][1], 0, q[0][2], q[1][2], q[2][2], 0, ...at, 1];
-})();
+const FLANGE_FROM_TOOL = poseOf(RAW.spindle.rotation, RAW.spindle.xyz_mm);
 
 /** The robot base frame on what carries it: the mount. @type {Mat} */
-const MOUNT = (() => {
-  const mount = RAW.robot.mount;
-  if (!mount) return IDENTITY;
-  const { rotation: q, xyz_mm: at } = mount;
-  return [q[0][0], q[1][0], q[2][0], 0, q[0][1], q[1][1], q[2][1], 0, q[0][2], q[1][2], q[2][2], 0, ...at, 1];
-})();
+const MOUNT = RAW.robot.mount ? poseOf(RAW.robot.mount.rotation, RAW.robot.mount.xyz_mm) : IDENTITY;
 
 /** Frames 0 (base) to 6 (flange) and 7 (tool). @param {number[]} joints @param {Mat} base @returns {Mat[]} */
 function framesOf(joints, base = MOUNT) {
@@ -27,41 +25,16 @@ function framesOf(joints, base = MOUNT) {
   return frames;
 }
 
-/** Frames of twelve numbers a point, by columns, where a run has them. @param {string[] | null} packed @returns {Float32Array[] | null} */
-const framesBy = (packed) => (packed ? packed.map(singlesOf) : null);
-const PART_FRAMES = framesBy(RAW.part_frames);
-const CARRIAGE_FRAMES = framesBy(RAW.carriage_frames);
-
-/** One of them at a fractional point: a little further on than the last where external axes move. @param {Float32Array} all @param {number} t @returns {Mat} */
-function frameAt(all, t) {
-  const i = Math.min(Math.floor(t), COUNT - 1);
-  const next = Math.min(i + 1, COUNT - 1);
-  const [from, to] = [all.subarray(12 * i, 12 * i + 12), all.subarray(12 * next, 12 * next + 12)];
-  const m = mix(Array.from(from), Array.from(to), t - i);
-  return [m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0, m[9], m[10], m[11], 1];
-}
-
-/** What external axes have done with the robot: the frame that plans are stated in, in the cell. @param {Case} of @param {number} t @returns {Mat} */
-const carriageFrame = (of, t) => (CARRIAGE_FRAMES ? frameAt(CARRIAGE_FRAMES[of.number - 1], t) : IDENTITY);
-
-/** The robot base frame in the cell at a path point. @param {Case} of @param {number} t @returns {Mat} */
-const baseFrame = (of, t) => (CARRIAGE_FRAMES ? product(carriageFrame(of, t), MOUNT) : MOUNT);
-
-/** The workpiece frame in the cell at a path point. @param {Case} of @param {number} t @returns {Mat} */
-function workpieceFrame(of, t) {
-  if (PART_FRAMES) return product(carriageFrame(of, t), frameAt(PART_FRAMES[of.number - 1], t));
-  const { x, y, z, yaw } = of.at;
-  const [c, s] = [Math.cos(yaw * RADIANS), Math.sin(yaw * RADIANS)];
-  return [c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1];
-}
-
-/** Joint angles at a fractional path point; between segments the arm moves from posture to posture. @param {Case} of @param {number} t */
-function jointsAt(of, t) {
+/** What a plan has at a fractional path point; between segments everything moves over smoothly. @param {(i: number) => number[]} at @param {number} t */
+function between(at, t) {
   const i = Math.min(Math.floor(t), COUNT - 1);
   const f = t - i;
-  if (!f) return of.joints[i];
-  return mix(of.joints[i], of.joints[i + 1], isMove(i) ? f * f * (3 - 2 * f) : f);
+  if (!f) return at(i);
+  return mix(at(i), at(i + 1), isMove(i) ? f * f * (3 - 2 * f) : f);
 }
+
+/** Joint angles at a fractional path point. @param {Case} of @param {number} t */
+const jointsAt = (of, t) => between((i) => of.joints[i], t);
 
 /** How far the wrist centre reaches from the shoulder, and the shoulder's distance from axis 1 and height. */
 const REACH = {

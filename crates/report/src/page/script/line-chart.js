@@ -17,6 +17,9 @@ function lineChart(wants) {
   let zoom = null;
   let drag = /** @type {[number, number] | null} */ (null);
   let isStale = true;
+  /** What is drawn until it is stale: the lines, and the ends of the axis upwards. */
+  let lines = /** @type {Line[]} */ ([]);
+  let [lowest, highest] = [0, 1];
   const scale = wants.log ? Math.log10 : (/** @type {number} */ v) => v;
   const xs = () => zoom || wants.xRange();
   const xOf = (/** @type {number} */ x) => {
@@ -28,8 +31,7 @@ function lineChart(wants) {
     return low + ((pixel - margins.left) / Math.max(1, plot.width - margins.left - margins.right)) * (high - low);
   };
   const yOf = (/** @type {number} */ value) => {
-    const [low, high] = wants.range().map(scale);
-    const share = (clamp(scale(value), low, high) - low) / (high - low || 1);
+    const share = (clamp(scale(value), lowest, highest) - lowest) / (highest - lowest || 1);
     return plot.height - margins.bottom - share * (plot.height - margins.top - margins.bottom);
   };
 
@@ -37,6 +39,8 @@ function lineChart(wants) {
     const g = plot.still;
     clear(g, plot);
     const [low, high] = wants.range();
+    [lowest, highest] = [scale(low), scale(high)];
+    lines = wants.lines();
     const bottom = plot.height - margins.bottom;
     g.textBaseline = 'middle';
     g.textAlign = 'right';
@@ -72,7 +76,6 @@ function lineChart(wants) {
         [margins.left, yOf(y)],
         [plot.width, yOf(y)],
       ]);
-    const lines = wants.lines();
     for (const line of lines) {
       g.strokeStyle = themeColour(line.colour);
       g.lineWidth = line.width || 1.6;
@@ -81,7 +84,7 @@ function lineChart(wants) {
       drawLine(g, line);
     }
     g.restore();
-    if (wants.endNames) nameEnds(g, lines);
+    if (wants.endNames) nameEnds(g);
   };
 
   /** Many points to a pixel are drawn by the lowest and the highest of them. @param {CanvasRenderingContext2D} g @param {Line} line */
@@ -110,7 +113,7 @@ function lineChart(wants) {
     g.stroke();
   };
 
-  const nameEnds = (/** @type {CanvasRenderingContext2D} */ g, /** @type {Line[]} */ lines) => {
+  const nameEnds = (/** @type {CanvasRenderingContext2D} */ g) => {
     g.textAlign = 'left';
     g.font = `600 ${g.font}`;
     let last = -99;
@@ -132,7 +135,7 @@ function lineChart(wants) {
         [xOf(at), margins.top],
         [xOf(at), plot.height - margins.bottom],
       ]);
-      for (const line of wants.lines()) {
+      for (const line of lines) {
         const y = line.y[Math.round(at)];
         if (line.dash || line.x || !Number.isFinite(y)) continue;
         g.fillStyle = themeColour('--card');
@@ -172,7 +175,7 @@ function lineChart(wants) {
   });
 
   const read = (/** @type {number} */ x) => {
-    const words = wants.lines().map((line) => {
+    const words = lines.map((line) => {
       const index = line.x ? nearestIndex(line.x, x) : Math.round(x);
       return `${line.name}  ${fixed(line.y[index], wants.digits ?? 3)}`;
     });

@@ -45,3 +45,10 @@ const turned = (m, p) => [
   m[1] * p[0] + m[5] * p[1] + m[9] * p[2],
   m[2] * p[0] + m[6] * p[1] + m[10] * p[2],
 ];
+
+/** A pose the other way. @param {Mat} m @returns {Mat} */
+function inverseOf(m) {
+  const back = [m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0, 0, 0, 0, 1];
+  const at = turned(back, [m[12], m[13], m[14]]);
+  return [...back.slice(0, 12), -at[0], -at[1], -at[2], 1];
+}

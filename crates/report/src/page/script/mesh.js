@@ -126,3 +126,21 @@ function smoothed(corners, triangles, colour) {
   }
   return out;
 }
+
+/** Edges where a surface bends sharply or ends. @param {Mesh} of three corners a triangle @returns {Vec[]} ends of the edges */
+function creasesOf({ p }) {
+  /** @type {Map<string, { ends: Vec[], facing: Vec, isSharp: boolean }>} */
+  const edges = new Map();
+  for (let t = 0; t < p.length; t += 9) {
+    const corners = [0, 3, 6].map((k) => [p[t + k], p[t + k + 1], p[t + k + 2]]);
+    const facing = unit(cross(less(corners[1], corners[0]), less(corners[2], corners[0])));
+    for (let k = 0; k < 3; k++) {
+      const ends = [corners[k], corners[(k + 1) % 3]];
+      const key = ends.map(String).sort().join();
+      const known = edges.get(key);
+      if (known) known.isSharp = dot(known.facing, facing) < CREASE;
+      else edges.set(key, { ends, facing, isSharp: true });
+    }
+  }
+  return [...edges.values()].filter((edge) => edge.isSharp).flatMap((edge) => edge.ends);
+}

@@ -12,8 +12,7 @@ function errorAt(of, i) {
   if (DIRECTION === 'wall') return times(unit(cross(TASK.axis[i], TASK.feed[i])), columns.normal_mm[i]);
   if (DIRECTION === 'axis') return times(TASK.axis[i], columns.axial_mm[i]);
   const whole = [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
-  const frame = PART_FRAMES ? frameAt(PART_FRAMES[of.number - 1], i) : workpieceFrame(of, i);
-  return [0, 4, 8].map((k) => dot([frame[k], frame[k + 1], frame[k + 2]], whole));
+  return inWorkpiece(of, i, whole);
 }
 
 /** The extent of the path in the workpiece frame. */
@@ -46,12 +45,12 @@ function pathMeshes(of) {
       const length = size(less(tips[next], tips[i]));
       const score = Math.max(of.columns.score_mm[i], of.columns.score_mm[next]);
       if (length > 0) {
-        const profile = /** @type {[number, number][]} */ ([
-          [-2, 0],
+        // Of a long path the ends of its many tubes are not seen.
+        const side = [
           [-2, radius],
           [length + 2, radius],
-          [length + 2, 0],
-        ]);
+        ];
+        const profile = /** @type {[number, number][]} */ (stride > 1 ? side : [[-2, 0], ...side, [length + 2, 0]]);
         lathe(tube, tips[i], tips[next], profile, stride > 1 ? 5 : 8, colourOf(score));
       }
       const base = curtain.p.length / 3;

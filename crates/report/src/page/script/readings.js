@@ -40,36 +40,65 @@ function tiles() {
   return el('div.tiles', {}, here.tile, mean.tile, kappa.tile, limit.tile);
 }
 
+/**
+ * @typedef {{
+ *   name: string, low: number, high: number, unit: string, colour: string, id: string,
+ *   now: () => number, used: () => number[]
+ * }} Gauge something that moves within a range; `used` are its values along the path
+ */
+
+/** @returns {Gauge[]} the joints, and the external axes behind them */
+function gaugesOf() {
+  const joints = ROWS.map((row, j) => ({
+    name: `A${j + 1}`,
+    low: row.min,
+    high: row.max,
+    unit: '°',
+    colour: JOINT_COLOURS[j],
+    id: `joint-${j + 1}`,
+    now: () => currentJoints()[j],
+    used: () => current().joints.map((angles) => angles[j]),
+  }));
+  const axes = AXES.map((axis, k) => ({
+    name: axis.name,
+    low: axis.range[0],
+    high: axis.range[1],
+    unit: axis.isRail ? ' mm' : '°',
+    colour: '--accent',
+    id: `axis-${k + 1}`,
+    now: () => axesAt(current(), state.t)[k],
+    used: () => Array.from(current().columns[axis.column]),
+  }));
+  return [...joints, ...axes];
+}
+
 function gauges() {
-  const rows = ROWS.map((row, j) => {
-    const [range, pin, value] = [el('div.rng'), el('div.pin'), el('b', { id: `joint-${j + 1}` })];
-    range.style.background = pin.style.background = `var(${JOINT_COLOURS[j]})`;
+  const rows = gaugesOf().map((gauge) => {
+    const [range, pin, value] = [el('div.rng'), el('div.pin'), el('b', { id: gauge.id })];
+    range.style.background = pin.style.background = `var(${gauge.colour})`;
     const host = el(
       'div.g',
       {},
-      el('b', {}, `A${j + 1}`),
-      el('span', {}, fixed(row.min, 0)),
+      el('b', { title: gauge.name }, gauge.name),
+      el('span', {}, fixed(gauge.low, 0)),
       el('div.rail', {}, range, pin),
-      el('span', {}, fixed(row.max, 0)),
+      el('span', {}, fixed(gauge.high, 0)),
       value,
     );
-    return { host, range, pin, value };
+    const share_ = (/** @type {number} */ at) => (100 * (at - gauge.low)) / (gauge.high - gauge.low || 1);
+    return { gauge, host, range, pin, value, share_ };
   });
   onChange(({ case: isOther }) => {
-    const joints = currentJoints();
-    rows.forEach(({ range, pin, value }, j) => {
-      pin.style.left = `${clamp(share(j, joints[j]), 0, 100)}%`;
-      value.textContent = `${fixed(joints[j], 1)}°`;
+    rows.forEach(({ gauge, range, pin, value, share_ }) => {
+      const at = gauge.now();
+      pin.style.left = `${clamp(share_(at), 0, 100)}%`;
+      value.textContent = `${fixed(at, 1)}${gauge.unit}`;
       if (!isOther) return;
-      const used = current().joints.map((angles) => share(j, angles[j]));
-      const [least, most] = used.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [100, 0]);
+      const [least, most] = gauge.used().map(share_).reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [100, 0]);
       range.style.left = `${least}%`;
       range.style.width = `${most - least}%`;
     });
   });
-  return card(
-    'Joints now',
-    'deg; shaded: range over the whole path',
-    el('div.gauges', {}, ...rows.map((row) => row.host)),
-  );
+  const words = AXES.some((axis) => axis.isRail) ? 'deg, rails in mm; shaded: range over the whole path' : 'deg; shaded: range over the whole path';
+  return card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
 }

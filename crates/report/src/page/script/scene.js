@@ -1,15 +1,18 @@
 // The cell in three dimensions.
 
-/** What can be left out of the view, with its words. @type {[string, string][]} */
+/** What can be left out of the view, with its words, where there is such a thing. */
 const LAYERS = [
-  ['curtain', `${SCORED} error ×${MAGNIFIED}`],
-  ['cell', 'cell volume'],
-  ['reach', 'reach'],
-  ['ghost', 'other placement'],
-  ['envelopes', 'collision shapes of the arm'],
-];
+  { name: 'curtain', words: `${SCORED} error ×${MAGNIFIED}`, isThere: true },
+  { name: 'cell', words: 'cell volume', isThere: true },
+  { name: 'reach', words: 'reach', isThere: true },
+  { name: 'ghost', words: 'other placement', isThere: CASES.length > 2 },
+  { name: 'around', words: 'surroundings', isThere: HAS_SURROUNDINGS },
+  { name: 'envelopes', words: 'collision shapes of the arm', isThere: HAS_ENVELOPES, isOff: true },
+].filter(({ isThere }) => isThere);
 
 const SHADOW_PIXELS = 2048;
+/** How much of a wall of the cell is seen: what is behind it stays readable. */
+const PANE = 0.16;
 const SUN = unit([0.42, -0.52, 0.86]);
 
 /**
@@ -35,7 +38,10 @@ function sceneParts(gl) {
     shadow: shadowTarget(gl, SHADOW_PIXELS),
     arm: ARM_FRAMES.map((frame) => buffersOf(gl, bodiesOf(BODIES, frame))),
     envelopes: ARM_FRAMES.map((frame) => buffersOf(gl, bodiesOf(SHAPES, frame))),
-    around: buffersOf(gl, bodiesOf(SHAPES, 'cell')),
+    walls: buffersOf(gl, bodiesOf(SHAPES, 'cell')),
+    wallEdges: linesOf(gl, wallEdges()),
+    onAxes: AXES.map((_, k) => buffersOf(gl, bodiesOf(SHAPES, `axis_${k + 1}`))),
+    tracks: AXES.map((_, k) => buffersOf(gl, axisTrack(k))),
     part: buffersOf(gl, bodiesOf([...BODIES, ...SHAPES], 'workpiece')),
     thin: linesOf(gl, thin),
     thick: linesOf(gl, thick),
@@ -59,6 +65,7 @@ function caseParts(gl) {
     edges: linesOf(gl, partEdges()),
     axes: buffersOf(gl, arrows(IDENTITY, FARTHEST * 0.09)),
     ghost: other ? buffersOf(gl, pathMeshes(other).tube) : null,
+    platters: AXES.map((_, k) => buffersOf(gl, platter(of, k))),
     ghostEdges: other ? buffersOf(gl, tubes(partEdges(), FARTHEST * 0.0008)) : null,
   };
 }
@@ -73,7 +80,7 @@ function sceneIn(host) {
   }
   host.append(canvas);
   /** @type {Record<string, boolean>} */
-  const shown = Object.fromEntries(LAYERS.map(([name]) => [name, name !== 'envelopes']));
+  const shown = Object.fromEntries(LAYERS.map(({ name, isOff }) => [name, !isOff]));
   const eye = viewOf('cell');
   let parts = sceneParts(gl);
   let ofCase = caseParts(gl);
@@ -126,6 +133,7 @@ function sceneIn(host) {
   const draw = () => {
     if (gl.isContextLost()) return;
     const of = current();
+    const at = axesAt(of, state.t);
     const base = baseFrame(of, state.t);
     const frames = framesOf(currentJoints(), base);
     const part = workpieceFrame(of, state.t);
@@ -134,7 +142,9 @@ function sceneIn(host) {
     const bodies = (/** @type {Program} */ program) => {
       parts.arm.forEach((buffers, k) => put(program, buffers, frames[k]));
       put(program, parts.part, part);
-      put(program, parts.around);
+      if (shown.around) parts.onAxes.forEach((buffers, k) => put(program, buffers, axisFrame(k, at)));
+      parts.tracks.forEach((buffers, k) => put(program, buffers, carriedBy(AXES[k].carries, at, k)));
+      ofCase.platters.forEach((buffers, k) => put(program, buffers, axisFrame(k, at)));
       put(program, ofCase.block, part);
     };
     const far = FARTHEST;
@@ -210,6 +220,15 @@ function sceneIn(host) {
       paint(MODE.plain, [1, 1, 1], 0.62);
       put(program, ofCase.curtain, part);
     }
+    if (shown.around) {
+      // Only what faces the eye, so that a wall is one pane.
+      gl.enable(gl.CULL_FACE);
+      paint(MODE.lit, [1, 1, 1], PANE);
+      put(program, parts.walls);
+      gl.disable(gl.CULL_FACE);
+      paint(MODE.plain, soft, 0.55);
+      put(program, parts.wallEdges);
+    }
     if (shown.envelopes) {
       paint(MODE.plain, [1, 1, 1], 0.25);
       parts.envelopes.forEach((buffers, k) => put(program, buffers, frames[k]));
@@ -232,7 +251,7 @@ function sceneIn(host) {
   onChange((changed) => {
     if (gl.isContextLost()) return;
     if (changed.case || changed.theme) {
-      Object.values(ofCase).forEach((buffers) => buffers && free(gl, buffers));
+      Object.values(ofCase).flat().forEach((buffers) => buffers && free(gl, buffers));
       ofCase = caseParts(gl);
     }
     if (changed.case || changed.theme || changed.size) resize();
@@ -267,73 +286,4 @@ function sceneIn(host) {
 function rendererOf(gl) {
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   return info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
-}
-
-/** The view as it is now, as the address of a picture; the card of the scene puts it in. */
-let viewPicture = () => '';
-
-/** The card with the view, its switches and its words. */
-function sceneCard() {
-  const view = el('div.view');
-  const [title, where] = [el('h2'), el('div.sub')];
-  const host = el(
-    'section.card.scene',
-    { 'aria-label': 'The cell in three dimensions', id: 'scene' },
-    view,
-    el('div.tl', {}, title, where),
-  );
-  const scene = sceneIn(view);
-  viewPicture = scene.picture;
-  const views = [
-    ['cell', '3-D'],
-    ['top', 'Top'],
-    ['front', 'Front'],
-    ['tool', 'Tool'],
-  ].map(([name, text]) =>
-    el('button.chip', { type: 'button', 'data-view': name, onclick: () => scene.view(name) }, text),
-  );
-  const layers = LAYERS.filter(([name]) => (name !== 'ghost' || CASES.length > 2) && (name !== 'envelopes' || HAS_ENVELOPES)).map(([name, text]) => {
-    const box = /** @type {HTMLInputElement} */ (
-      el('input', {
-        type: 'checkbox',
-        checked: name !== 'envelopes',
-        'data-layer': name,
-        onchange: () => scene.layer(name, box.checked),
-      })
-    );
-    return el('label.chip', {}, box, text);
-  });
-  const words = [
-    HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '',
-    HAS_BLOCK ? 'the block is the extent of the path' : '',
-  ];
-  host.append(
-    el('div.tr', {}, ...views),
-    el('div.bl', {}, el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),
-  );
-  view.tabIndex = 0;
-  view.setAttribute('role', 'img');
-  view.setAttribute('aria-label', 'Robot, spindle, path and cell; arrow keys turn the view, plus and minus zoom');
-  view.addEventListener('keydown', (event) => {
-    const turn = { ArrowLeft: [-25, 0], ArrowRight: [25, 0], ArrowUp: [0, 25], ArrowDown: [0, -25] }[event.key];
-    if (turn) scene.turn(turn[0], turn[1]);
-    else if (event.key === '+' || event.key === '=') scene.zoom(0.85);
-    else if (event.key === '-') scene.zoom(1 / 0.85);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-  });
-  onChange(({ case: isOther }) => {
-    if (!isOther) return;
-    const { x, y, z, yaw } = current().at;
-    title.textContent = current().name;
-    where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°`;
-  });
-  // WebGL is not printed: a picture takes its place.
-  const still = /** @type {HTMLImageElement} */ (el('img.still', { alt: '' }));
-  view.append(still);
-  addEventListener('beforeprint', () => {
-    still.src = viewPicture();
-  });
-  return host;
 }

@@ -3,16 +3,49 @@
 /** Whether a block can be drawn under the path: the tool comes from above everywhere, and no body of the part is known. */
 const HAS_BLOCK = TASK.axis.every((axis) => axis[2] > 0.8) && ![...BODIES, ...SHAPES].some((body) => body.frame === 'workpiece');
 
-/** The floor of the cell: below the robot's foot, the fences and all places of the workpiece. */
-const FLOOR = (() => {
-  let lowest = Math.min(RAW.cell.z_mm[0] + EXTENT[2][0], RAW.cell.z_mm[0]) - PATH_SIZE * 0.15;
-  for (const body of [...BODIES, ...SHAPES].filter(({ frame }) => frame === 'base' || frame === 'cell')) {
-    const frame = body.frame === 'base' ? baseFrame(CASES[0], 0) : IDENTITY;
-    const { p } = body.mesh;
-    for (let k = 0; k < p.length; k += 3) lowest = Math.min(lowest, moved(frame, [p[k], p[k + 1], p[k + 2]])[2]);
+/** Lowest and highest place of a body in a direction of the frame that a pose is in. @param {Body} body @param {Mat} pose @param {number} k @returns {[number, number]} */
+function spanOf({ mesh: { p } }, pose, k) {
+  let [low, high] = [Infinity, -Infinity];
+  for (let c = 0; c < p.length; c += 3) {
+    const value = pose[k] * p[c] + pose[4 + k] * p[c + 1] + pose[8 + k] * p[c + 2] + pose[12 + k];
+    [low, high] = [Math.min(low, value), Math.max(high, value)];
   }
-  return lowest;
+  return [low, high];
+}
+
+/** The lowest place of the path, wherever it is placed. */
+const LOWEST_WORK = Math.min(
+  RAW.cell.z_mm[0] + Math.min(EXTENT[2][0], 0),
+  ...CASES.map((of) => boxCorners(EXTENT).reduce((low, corner) => Math.min(low, moved(workpieceFrame(of, 0), corner)[2]), Infinity)),
+);
+
+/** @param {number[][]} extent along three axes @returns {Vec[]} its corners */
+function boxCorners(extent) {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => [0, 1, 2].map((k) => extent[k][(bits >> k) & 1]));
+}
+
+/** Whether a body of the cell is its floor: flat, wide and below the work. @param {Body} body */
+function isFloor(body) {
+  const [[x0, x1], [y0, y1], [z0, z1]] = [0, 1, 2].map((k) => spanOf(body, IDENTITY, k));
+  const wide = Math.min(x1 - x0, y1 - y0);
+  return wide > 0.6 * FARTHEST && z1 - z0 < 0.2 * wide && z1 <= LOWEST_WORK;
+}
+
+/** The height of the floor: as the cell has it, else below the robot's foot, the fences and all places of the workpiece. */
+const FLOOR = (() => {
+  const standing = SHAPES.filter(({ frame }) => frame === 'cell');
+  const floors = standing.filter(isFloor).map((body) => spanOf(body, IDENTITY, 2)[1]);
+  if (floors.length) return Math.max(...floors);
+  const foot = baseFrame(CASES[0], 0);
+  const lows = [
+    ...standing.map((body) => spanOf(body, IDENTITY, 2)[0]),
+    ...[...BODIES, ...SHAPES].filter(({ frame }) => frame === 'base').map((body) => spanOf(body, foot, 2)[0]),
+  ];
+  return Math.min(LOWEST_WORK - PATH_SIZE * 0.15, ...lows);
 })();
+
+/** @returns {Vec[]} edges of what stands in the cell */
+const wallEdges = () => SHAPES.filter(({ frame }) => frame === 'cell').flatMap((body) => creasesOf(body.mesh));
 
 /** @param {Vec} low @param {Vec} high @returns {Vec[]} ends of the twelve edges of a box */
 function edgesOf(low, high) {

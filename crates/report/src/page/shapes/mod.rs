@@ -26,6 +26,10 @@ pub enum BodyFrame {
     Tool,
     /// The workpiece frame.
     Workpiece,
+    /// The frame of the cell, in which nothing moves.
+    Cell,
+    /// What an external axis moves, by its number from 0: the frame of the cell where all axes are at zero.
+    Axis(u8),
 }
 
 /// A closed surface, or several, that moves with one frame.

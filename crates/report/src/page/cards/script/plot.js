@@ -88,6 +88,11 @@ class Plot {
       const first = direction > 0 ? 0 : list.length - 1;
       this.step = this.step < 0 ? first : Math.min(list.length - 1, Math.max(0, this.step + direction * stride));
       this.show(list[this.step]);
+    } else if (event.key === 'Home' || event.key === 'End') {
+      const list = this.drawing.list();
+      if (list.length === 0) return;
+      this.step = event.key === 'Home' ? 0 : list.length - 1;
+      this.show(list[this.step]);
     } else if (event.key === '+' || event.key === '=') this.zoom(0.7);
     else if (event.key === '-') this.zoom(1 / 0.7);
     else if (event.key === '0' || event.key === 'Escape') this.reset();

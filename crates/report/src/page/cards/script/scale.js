@@ -14,7 +14,8 @@ function along(axis, value) {
  * @param {number} value
  */
 function shown(value) {
-  return String(Number(value.toPrecision(5)));
+  const rounded = Number(value.toPrecision(5));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
 }
 
 /**

@@ -1,0 +1,115 @@
+//! `report.html` of a stability analysis.
+
+use super::RPM;
+use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
+use crate::units::{figures, fixed};
+use stead_format::SimulationRun;
+use stead_simulation::modes::Mode;
+use stead_simulation::stability::Lobe;
+use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
+
+/// The lobes with the cut among them, what the tip answers, and the modes.
+pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
+    let verdict = &analysis.cut_stability.verdict;
+    let speed = rpm(run);
+    let depth = fixed(run.cut.section.axial_depth * 1e3, 3);
+    let lead = if verdict.is_stable() {
+        format!("The cut of {depth} mm at {speed} rpm is stable.")
+    } else {
+        format!("The cut of {depth} mm at {speed} rpm chatters ({}).", verdict.kind().word())
+    };
+    let subtitle = format!("stability · {}", run.setup.variant.word());
+    Page::new(run.setup.robot.name(), subtitle, lead, &run.inputs)
+        .messages(&[] as &[&str], &analysis.notes)
+        .with(tiles(run, analysis))
+        .with(lobes(run, analysis))
+        .with(response(analysis))
+        .with(modes(&analysis.modes))
+}
+
+/// Turns a minute, as few digits as say it.
+fn rpm(run: &SimulationRun) -> String {
+    RPM.number(run.cut.spindle_speed).to_string()
+}
+
+fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
+    let found = &analysis.cut_stability;
+    let verdict = &found.verdict;
+    let max = format!("more than {}", fixed(run.analysis.max_depth * 1e3, 1));
+    let depth = |depth: Option<f64>| depth.map_or_else(|| max.clone(), |depth| fixed(depth * 1e3, 3));
+    let rate = verdict.growth_rate();
+    let per_second = if rate > 0.0 { "vibrations grow" } else { "vibrations die out" };
+    let at = format!("at {} rpm", rpm(run));
+    Card::Tiles(Tiles {
+        tiles: vec![
+            Tile::new("cut", if verdict.is_stable() { "stable" } else { "chatters" }, "", verdict.kind().word()),
+            Tile::new("critical depth", depth(found.semi_discretisation), "mm", format!("semi-discretisation, {at}")),
+            Tile::new("critical depth", depth(found.zero_order), "mm", format!("zero-order solution, {at}")),
+            Tile::new("growth rate", figures(rate), "1/s", per_second),
+        ],
+    })
+}
+
+fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
+    let curve = |name: &str, color: usize, of: fn(&Lobe) -> Option<f64>| {
+        let speed = |lobe: &Lobe| lobe.spindle_speed * RPM.factor;
+        let points = analysis.lobes.iter().map(|lobe| [speed(lobe), of(lobe).map_or(f64::NAN, |depth| depth * 1e3)]);
+        Series::curve(name, color, points)
+    };
+    let (speed, depth) = (run.cut.spindle_speed * RPM.factor, run.cut.section.axial_depth * 1e3);
+    let cut = Series::dots("this cut", 3, [[speed, depth]]);
+    Card::Chart(Chart {
+        title: "Stability lobes".to_owned(),
+        detail: "cuts below the curve are stable; no value: all depths up to the largest asked for are".to_owned(),
+        x: Axis::new("spindle speed (rpm)"),
+        y: Axis::new("critical depth of cut (mm)"),
+        series: vec![
+            curve("semi-discretisation", 0, |lobe| lobe.semi_discretisation),
+            curve("zero-order solution", 1, |lobe| lobe.zero_order).styled(Style::Dashed),
+            cut,
+        ],
+        marks: vec![Mark { is_level: true, at: depth, label: "depth of this cut".to_owned() }],
+        is_wide: true,
+        ..Chart::default()
+    })
+}
+
+fn response(analysis: &StabilityAnalysis) -> Card {
+    let curve = |name: &str, color: usize, of: fn(&FrequencyResponse) -> f64| {
+        let points = analysis.frequency_response.iter().map(|at| [at.frequency, of(at) * 1e6]);
+        Series::curve(name, color, points)
+    };
+    Card::Chart(Chart {
+        title: "Frequency response of the tip".to_owned(),
+        detail: "dashed: the modes of the arm".to_owned(),
+        x: Axis::new("frequency (Hz)"),
+        y: Axis::log("answer (um/N)"),
+        series: vec![
+            curve("along the feed", 0, |at| at.feed.norm()),
+            curve("normal to the wall", 1, |at| at.normal.norm()),
+            curve("across", 2, |at| at.cross.norm()).styled(Style::Dashed),
+        ],
+        marks: analysis
+            .modes
+            .iter()
+            .zip(1_usize..)
+            .map(|(mode, number)| Mark { is_level: false, at: mode.natural_frequency(), label: number.to_string() })
+            .collect(),
+        is_wide: true,
+        ..Chart::default()
+    })
+}
+
+/// The modes of an arm by frequency and damping.
+pub(crate) fn modes(modes: &[Mode]) -> Card {
+    let row = |(number, mode): (usize, &Mode)| {
+        let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio, 5)];
+        std::iter::once(Cell::Number((number + 1).to_string())).chain(numbers.map(Cell::Number)).collect()
+    };
+    Card::Table(Table {
+        title: "Modes of the arm".to_owned(),
+        columns: ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec(),
+        rows: modes.iter().enumerate().map(row).collect(),
+        ..Table::default()
+    })
+}

@@ -1,0 +1,156 @@
+// The view of cells: the robot behind fences, and what external axes carry; with runs that the program makes here.
+//
+//   STEAD=target/debug/stead node cells.mjs [FOLDER]     FOLDER keeps the runs, and is taken as it is where they are there
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import assert from 'node:assert/strict';
+import { inShort, launch, withScript } from './browser.mjs';
+import { PLANS, open, table } from './suite.mjs';
+import { validated } from './validated.mjs';
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+const stead = process.env.STEAD ?? join(root, 'target/debug/stead');
+const kept = process.argv[2];
+const scratch = kept ?? mkdtempSync(join(tmpdir(), 'stead-cells-'));
+let failures = 0;
+
+/** A small run of a shipped file. */
+function folder(name) {
+  const place = join(scratch, name);
+  const small = ['population=12', 'generations=2', 'basins=1'].flatMap((value) => ['--set', `search.${value}`]);
+  if (!existsSync(join(place, 'report.html'))) {
+    execFileSync(stead, ['place', `configs/${name}.toml`, ...small, '--out', place], { cwd: root, stdio: ['ignore', 'ignore', 'pipe'] });
+  }
+  return place;
+}
+
+const browser = await launch();
+
+async function check(name, run, test) {
+  try {
+    const place = folder(run);
+    const { page, seen, close } = await open(browser, pathToFileURL(join(place, 'report.html')).href);
+    const said = await test(page, place);
+    assert.deepEqual(seen, { requests: [], complaints: [] });
+    await close();
+    const scene = await validated(place);
+    assert.equal(scene.wrong, 0, scene.text);
+    console.log(`ok    ${run}: ${name}${said ? `: ${said}` : ''}; ${scene.text}`);
+  } catch (error) {
+    failures++;
+    console.log(`FAIL  ${run}: ${name}: ${inShort(error)}`);
+  }
+}
+
+/** How many pixels of the view have the colour of the arm, and of the light parts in its middle. */
+const orange = (page) =>
+  page.evaluate(async () => {
+    const picture = new Image();
+    picture.src = window.stead.picture();
+    await picture.decode();
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [picture.width, picture.height];
+    const g = canvas.getContext('2d', { willReadFrequently: true });
+    g.drawImage(picture, 0, 0);
+    const { data } = g.getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let k = 0; k < data.length; k += 4) count += data[k + 3] > 200 && data[k] > 1.35 * data[k + 2] && data[k] > 90 ? 1 : 0;
+    return { count, picture: picture.src };
+  });
+
+await check('the robot is seen through the fence', 'collision', async (page) => {
+  const layer = page.locator('[data-layer=around]');
+  const counts = [];
+  for (const view of ['cell', 'front', 'tool']) {
+    await page.locator(`[data-view=${view}]`).click();
+    const fenced = await orange(page);
+    await layer.click();
+    const bare = await orange(page);
+    await layer.click();
+    assert.notEqual(fenced.picture, bare.picture, `no fence in the view ${view}`);
+    assert.ok(bare.count > 2000, `${bare.count} pixels of the arm in the view ${view}`);
+    counts.push(fenced.count / bare.count);
+    assert.ok(fenced.count > 0.7 * bare.count, `${fenced.count} of ${bare.count} pixels of the arm are seen in the view ${view}`);
+  }
+  return `${(100 * Math.min(...counts)).toFixed(0)} % of its pixels at least`;
+});
+
+// Fences that are drawn as solid walls must fail.
+{
+  const html = readFileSync(join(folder('collision'), 'report.html'), 'utf8');
+  const file = join(mkdtempSync(join(tmpdir(), 'stead-solid-')), 'report.html');
+  writeFileSync(file, withScript(html, (script) => script.replace('paint(MODE.lit, [1, 1, 1], PANE)', 'paint(MODE.lit, [1, 1, 1], 1)')));
+  const { page, close } = await open(browser, pathToFileURL(file).href);
+  const solid = (await orange(page)).count;
+  await page.locator('[data-layer=around]').click();
+  const bare = (await orange(page)).count;
+  const isHidden = solid < 0.7 * bare;
+  console.log(`${isHidden ? 'ok   ' : 'FAIL '} collision: behind solid walls ${((100 * solid) / bare).toFixed(0)} % of the robot is left, which the test above refuses`);
+  failures += isHidden ? 0 : 1;
+  await close();
+  rmSync(dirname(file), { recursive: true });
+}
+
+/** In every plan the tool by the arm is where the path by the workpiece is, and both where the table says, seen from the robot's carriage. */
+async function meets(page, place) {
+  let farthest = 0;
+  for (const [number, name] of PLANS.entries()) {
+    const rows = table(join(place, name));
+    const found = await page.evaluate((number) => window.stead.meets(number), number);
+    rows.forEach((row, k) => {
+      const { tool, path, carriage } = found[k];
+      const [x, y, z] = [0, 4, 8].map((j) => carriage[j / 4] * row.x_mm + carriage[4 + j / 4] * row.y_mm + carriage[8 + j / 4] * row.z_mm + carriage[12 + j / 4]);
+      farthest = Math.max(farthest, Math.hypot(tool[0] - x, tool[1] - y, tool[2] - z), Math.hypot(path[0] - x, path[1] - y, path[2] - z));
+    });
+  }
+  assert.ok(farthest < 0.01, `${farthest} mm off`);
+  return `${farthest.toFixed(4)} mm at most`;
+}
+
+/** What is fixed to an axis is where the axis, moved by those before it, has turned or pushed it: by the formula of Rodrigues, here again. */
+async function axesCarry(page, place) {
+  const { external_axes: axes } = JSON.parse(readFileSync(join(place, 'page-data.json'), 'utf8'));
+  const rows = table(join(place, PLANS[0]));
+  const found = await page.evaluate(() => window.stead.meets(0));
+  const move = ({ kind, direction: d, point_mm: c }, at, p) => {
+    if (kind === 'rail') return p.map((v, k) => v + d[k] * at);
+    const [angle, r] = [(at * Math.PI) / 180, p.map((v, k) => v - c[k])];
+    const along = r[0] * d[0] + r[1] * d[1] + r[2] * d[2];
+    const side = [d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]];
+    return p.map((_, k) => c[k] + r[k] * Math.cos(angle) + side[k] * Math.sin(angle) + d[k] * along * (1 - Math.cos(angle)));
+  };
+  for (const [i, row] of rows.entries()) {
+    axes.forEach((axis, k) => {
+      const corner = [1234, -321, 777];
+      const before = axes.slice(0, k + 1).filter((other) => other.carries === axis.carries);
+      const due = before.reduceRight((p, other) => move(other, +row[other.column], p), corner);
+      const m = found[i].axes[k];
+      const is = [0, 1, 2].map((j) => m[j] * corner[0] + m[4 + j] * corner[1] + m[8 + j] * corner[2] + m[12 + j]);
+      const off = Math.hypot(...is.map((v, j) => v - due[j]));
+      assert.ok(off < 0.01, `what ${axis.name} carries is ${off} mm off at point ${i}`);
+    });
+  }
+  return axes.length;
+}
+
+for (const run of ['tilting-table', 'rail-panel', 'wall-raster']) {
+  await check('tool, path and tables meet at every point', run, async (page, place) => {
+    const said = await meets(page, place);
+    assert.equal(await axesCarry(page, place), { 'tilting-table': 2, 'rail-panel': 1, 'wall-raster': 0 }[run]);
+    const rows = table(join(place, PLANS[0]));
+    for (const [k, column] of ['e1_deg', 'e1_mm', 'e2_deg'].filter((name) => name in rows[0]).entries()) {
+      await page.evaluate((t) => window.stead.set({ t }, true), rows.length - 1);
+      const shown = await page.locator(`#axis-${k + 1}`).textContent();
+      assert.ok(Math.abs(parseFloat(shown) - rows.at(-1)[column]) < 0.051, `${column}: ${shown}`);
+    }
+    return said;
+  });
+}
+
+await browser.close();
+if (!kept) rmSync(scratch, { recursive: true });
+console.log(failures ? `${failures} failed` : 'all passed');
+process.exit(failures ? 1 : 0);
