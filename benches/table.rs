@@ -10,7 +10,7 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
-use stead_placement::lookup::{BetaGrid, LookupTable};
+use stead_placement::lookup::{BetaGrid, Look, LookupTable};
 use stead_placement::redundancy::Planner;
 use stead_placement::sense::Sense;
 
@@ -24,7 +24,7 @@ fn main() {
     let mut errors: Vec<f64> = poses(40)
         .iter()
         .filter_map(|pose| {
-            let looked = table.objective(pose, &grid, None, &mut looking).mean()?;
+            let looked = table.objective(pose, &grid, None, Look::ALL, &mut looking).mean()?;
             Some((looked / planner.objective(pose, Sense::Min, None, &mut space).mean()? - 1.0).abs())
         })
         .collect();
@@ -54,7 +54,7 @@ fn objective(bencher: Bencher, count: usize) {
     let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
-            black_box(table.objective(black_box(pose), &grid, None, &mut workspace));
+            black_box(table.objective(black_box(pose), &grid, None, Look::ALL, &mut workspace));
         }
     });
 }

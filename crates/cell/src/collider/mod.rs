@@ -110,6 +110,7 @@ impl Collider {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solid::TriangleMesh;
     use crate::solid::tests::box_mesh;
     use proptest::prelude::*;
     use std::sync::Arc;

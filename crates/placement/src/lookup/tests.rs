@@ -160,9 +160,9 @@ fn objective_agrees_with_the_planner() {
         let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
         for (k, placement) in drawn_poses(&problem, 40).iter().enumerate() {
             let planned = planner.objective(placement, Sense::Min, None, &mut space);
-            let looked = table.objective(placement, &grid, None, &mut looking);
+            let looked = table.objective(placement, &grid, None, Look::ALL, &mut looking);
             // A fresh workspace, with nothing kept from the placement before, says the same.
-            assert_eq!(table.objective(placement, &grid, None, &mut table.workspace(&grid)), looked);
+            assert_eq!(table.objective(placement, &grid, None, Look::ALL, &mut table.workspace(&grid)), looked);
             let (Some(planned), Some(looked)) = (planned.mean(), looked.mean()) else {
                 disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
                 continue;
@@ -178,10 +178,10 @@ fn objective_agrees_with_the_planner() {
                 && let Ok(plans) = planner.plan(placement, Sense::Min, None, &mut space)
             {
                 let mut scheme: Vec<_> = plans.iter().map(|plan| plan.posture).collect();
-                let held = table.objective(placement, &grid, Some(&scheme), &mut looking).mean().unwrap();
+                let held = table.objective(placement, &grid, Some(&scheme), Look::ALL, &mut looking).mean().unwrap();
                 assert!((held / looked - 1.0).abs() < 1e-3);
                 scheme[2] = stead_model::robot::Posture::ALL[(usize::from(scheme[2].number()) + 3) % 8];
-                let other = table.objective(placement, &grid, Some(&scheme), &mut looking);
+                let other = table.objective(placement, &grid, Some(&scheme), Look::ALL, &mut looking);
                 assert!(rank(Sense::Min, other, Objective::Feasible(held * (1.0 - 1e-6))).is_gt());
             }
         }
@@ -202,7 +202,7 @@ fn what_nothing_reaches_is_counted_as_the_planner_counts_it() {
     let (mut blocked, mut apart) = (0, 0);
     for placement in drawn_poses(&problem, 30) {
         let planned = planner.objective(&placement, Sense::Min, None, &mut space);
-        let looked = table.objective(&placement, &grid, None, &mut looking);
+        let looked = table.objective(&placement, &grid, None, Look::ALL, &mut looking);
         if let (Objective::Infeasible { points: a, .. }, Objective::Infeasible { points: b, .. }) = (planned, looked) {
             blocked += a;
             apart += a.abs_diff(b);
@@ -230,7 +230,7 @@ fn a_long_path_keeps_its_digits() {
     let grid = BetaGrid::of(&planner);
     let placement = Placement::from([0.0, -1.8, -0.4, 0.7]);
     let planned = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean().unwrap();
-    let looked = table.objective(&placement, &grid, None, &mut table.workspace(&grid)).mean().unwrap();
+    let looked = table.objective(&placement, &grid, None, Look::ALL, &mut table.workspace(&grid)).mean().unwrap();
     assert!((looked / planned - 1.0).abs() < 2e-5, "{looked} {planned}");
 }
 
@@ -254,9 +254,9 @@ fn coordinate_search_gets_better_inside_the_cell() {
     let mut workspace = table.workspace(&grid);
     for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let start = Placement::from(start);
-        let before = table.objective(&start, &grid, None, &mut workspace);
+        let before = table.objective(&start, &grid, None, Look::ALL, &mut workspace);
         for directions in [Directions::WithoutAzimuth, Directions::All] {
-            let mut evaluate = |placement: &Placement| table.objective(placement, &grid, None, &mut workspace);
+            let mut evaluate = |placement: &Placement| table.objective(placement, &grid, None, Look::ALL, &mut workspace);
             let (end, objective, evaluations) =
                 coordinate_search(&problem, &start, sense, directions, &mut evaluate, &Monitor::silent());
             assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
