@@ -10,7 +10,7 @@ use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::query::details::closest_points_support_map_support_map_with_params;
 use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
-use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, Cylinder, Segment, Shape as ParryShape, SupportMap};
+use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, Cylinder, Segment, SupportMap};
 use std::sync::Arc;
 
 /// All points that are not farther than a radius from a core.
@@ -26,8 +26,34 @@ enum Core {
     Segment(Segment),
     Box(Cuboid),
     Cylinder(Cylinder),
-    Hull(Arc<ConvexPolyhedron>),
+    Hull(Arc<Hull>),
 }
+
+/// The convex hull of points.
+struct Hull {
+    /// At least one.
+    points: Vec<Vector>,
+}
+
+impl SupportMap for Hull {
+    fn local_support_point(&self, direction: Vector) -> Vector {
+        let farther = |best: Vector, point: &Vector| if point.dot(direction) > best.dot(direction) { *point } else { best };
+        self.points.iter().fold(self.points[0], farther)
+    }
+}
+
+/// The corners of the hull of points, or all points where the library forms no hull that contains them: the hull is the same, only more
+/// is looked at.
+fn corners(points: Vec<Vector>) -> Vec<Vector> {
+    // A corrupt mesh must not end the program: the library asserts that its links are right.
+    let formed = std::panic::catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
+    let Some(hull) = formed.ok().flatten() else { return points };
+    // What the library makes of flat meshes does not contain them.
+    let size = hull.local_aabb().half_extents().length();
+    let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
+    if points.iter().all(is_inside) { hull.points().to_vec() } else { points }
+}
+
 
 /// How far a vertex may be outside of the hull, relative to its size.
 const HULL_TOLERANCE: f64 = 1e-6;
@@ -52,26 +78,13 @@ impl Convex {
             }
             Solid::Hull(mesh) | Solid::Mesh(mesh) => {
                 let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-                let hull = ConvexPolyhedron::from_convex_hull(&points)?;
-                // What the library makes of flat meshes does not contain them.
-                let size = hull.local_aabb().half_extents().length();
-                let is_outside = |point: &Vector| hull.distance_to_local_point(*point, true) > HULL_TOLERANCE * size;
-                if points.iter().any(is_outside) { None } else { plain(Core::Hull(Arc::new(hull))) }
+                if points.is_empty() { None } else { plain(Core::Hull(Arc::new(Hull { points: corners(points) }))) }
             }
         }
     }
 
     /// What its points are not farther from than its radius.
     pub fn core(&self) -> &dyn SupportMap {
-        match &self.core {
-            Core::Segment(segment) => segment,
-            Core::Box(cuboid) => cuboid,
-            Core::Cylinder(cylinder) => cylinder,
-            Core::Hull(hull) => hull.as_ref(),
-        }
-    }
-
-    fn shape(&self) -> &dyn ParryShape {
         match &self.core {
             Core::Segment(segment) => segment,
             Core::Box(cuboid) => cuboid,
@@ -93,10 +106,19 @@ impl Convex {
 
     /// A sphere and a box around it, at a pose.
     pub fn bounds(&self, pose: &ParryPose) -> (BoundingSphere, Aabb) {
-        let shape = self.shape();
-        let sphere = shape.compute_bounding_sphere(pose);
+        let (sphere, core) = match &self.core {
+            Core::Segment(shape) => (shape.bounding_sphere(pose), shape.aabb(pose)),
+            Core::Box(shape) => (shape.bounding_sphere(pose), shape.aabb(pose)),
+            Core::Cylinder(shape) => (shape.bounding_sphere(pose), shape.aabb(pose)),
+            Core::Hull(hull) => {
+                let points = || hull.points.iter().map(|point| pose * *point);
+                // Its centre is inside.
+                let centre = points().fold(Vector::ZERO, |sum, point| sum + point) / hull.points.len() as f64;
+                let radius = points().map(|point| (point - centre).length()).fold(0.0, f64::max);
+                (BoundingSphere::new(centre, radius), Aabb::from_points(points()))
+            }
+        };
         let outside = Vector::splat(self.radius);
-        let core = shape.compute_aabb(pose);
         let bounds = Aabb::new(core.mins - outside, core.maxs + outside);
         (BoundingSphere::new(sphere.center, sphere.radius + self.radius), bounds)
     }

@@ -33,11 +33,12 @@ struct Other<'a> {
 impl Mesh {
     pub fn new(mesh: &TriangleMesh) -> Option<Self> {
         let vertices: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-        let is_closed = mesh.is_closed();
+        let formed =
+            |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
         // What is inside of a closed mesh is told by the normals of its edges and vertices.
-        let flags = if is_closed { TriMeshFlags::ORIENTED } else { TriMeshFlags::empty() };
-        let triangles = TriMesh::with_flags(vertices, mesh.triangles().to_vec(), flags).ok()?;
-        Some(Self { triangles, is_closed })
+        let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
+        let is_closed = solid.is_some();
+        Some(Self { triangles: solid.or_else(|| formed(TriMeshFlags::empty()))?, is_closed })
     }
 
     /// How far the box around it extends along a direction. m

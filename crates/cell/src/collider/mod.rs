@@ -55,7 +55,7 @@ pub struct Separation {
 }
 
 impl Collider {
-    /// Makes a solid ready, at a pose in the frame of its attachment. `None` where the hull of a mesh cannot be formed.
+    /// Makes a solid ready, at a pose in the frame of its attachment. `None` where a mesh has no triangle.
     pub fn new(solid: &Solid, pose: &Pose<f64>) -> Option<Self> {
         let at = parry_pose(pose);
         Some(match solid {
@@ -152,8 +152,53 @@ mod tests {
         assert!((distance(&open, &collider(&Solid::Mesh(Arc::new(little)))) - 0.95).abs() < 1e-9);
     }
 
+    #[test]
+    fn the_hull_of_flat_points_is_flat() {
+        let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]].map(Vector3::from);
+        let mesh = TriangleMesh::new(&corners, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        let plate = collider(&Solid::Hull(Arc::new(mesh)));
+        let capsule = collider(&Solid::Capsule { radius: 0.1, length: 0.4 });
+        let cylinder = collider(&Solid::Cylinder { radius: 0.1, length: 0.4 });
+        let here = Pose::identity();
+        for (place, off) in [(at(0.3, -0.8, 0.5), 0.3), (at(0.0, 0.0, -1.0), 0.8), (at(1.4, 0.2, 0.1), 0.4)] {
+            let distance = plate.distance(&here, &capsule, &place, 5.0);
+            let expected = if place.translation.x > 1.0 { off - 0.1 } else { off - 0.1 };
+            assert!((distance - expected).abs() < 1e-9, "{distance} {expected}");
+        }
+        assert!((plate.distance(&here, &cylinder, &at(0.3, 0.2, 0.5), 5.0) - 0.3).abs() < 1e-9);
+        assert_eq!(plate.distance(&here, &cylinder, &at(0.3, 0.2, 0.1), 5.0), 0.0);
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]
+        /// No direction shows two solids farther apart than they are, and the one found shows just that.
+        #[test]
+        fn a_gap_is_never_above_the_distance(
+            place in prop::array::uniform3(-2.0..2.0_f64), turn in prop::array::uniform3(-3.0..3.0_f64), any in prop::array::uniform3(0.1..1.0_f64)
+        ) {
+            let pose = Pose { rotation: rotation_from_zyx(turn), translation: place.into() };
+            let here = Pose { translation: Vector3::new(0.1, -0.3, 0.2), ..Pose::identity() };
+            let mesh = Arc::new(box_mesh(Vector3::new(0.5, 0.3, 0.7)));
+            let solids = [
+                Solid::Box(Vector3::new(0.8, 1.2, 0.4)),
+                Solid::Capsule { radius: 0.2, length: 0.9 },
+                Solid::Cylinder { radius: 0.3, length: 0.5 },
+                Solid::Hull(mesh.clone()),
+                Solid::Mesh(mesh),
+            ].map(|solid| Collider::new(&solid, &Pose { rotation: rotation_from_zyx(any), ..Pose::identity() }).unwrap());
+            for a in &solids {
+                for b in &solids {
+                    let found = a.separation(&here, b, &pose, 10.0);
+                    let axis = Vector3::from(any).normalize();
+                    let rounding = 1e-5;
+                    prop_assert!(a.gap(&here, b, &pose, &axis) <= found.distance + rounding);
+                    if let Some(axis) = found.axis.filter(|_| found.distance > 0.0) {
+                        prop_assert!((a.gap(&here, b, &pose, &axis) - found.distance).abs() < rounding);
+                    }
+                }
+            }
+        }
+
         /// A box as a box, as a hull, and as a mesh is as far from another solid.
         #[test]
         fn three_forms_of_a_box_agree(

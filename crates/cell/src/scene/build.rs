@@ -13,9 +13,9 @@ use stead_model::robot::{Pose, Robot};
 /// Why surroundings and an arm do not make a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SceneError {
-    /// The hull of a shape cannot be formed.
-    #[error("the vertices of {0:?} have no hull that contains them: do they lie in a line or a plane?")]
-    FlatHull(String),
+    /// A shape without a triangle.
+    #[error("the mesh of {0:?} has nothing that could collide")]
+    Empty(String),
     /// Pairs that touch in every posture.
     #[error("{} in every posture tried: leave room between them, or list them in ignore", listed(.0))]
     AlwaysTouching(Vec<[String; 2]>),
@@ -38,7 +38,7 @@ impl Scene {
         let mut bodies = Vec::with_capacity(surroundings.shapes().len());
         for shape in surroundings.shapes() {
             let collider = Collider::new(&shape.solid, &shape.pose);
-            let collider = collider.ok_or_else(|| SceneError::FlatHull(shape.name.clone()))?;
+            let collider = collider.ok_or_else(|| SceneError::Empty(shape.name.clone()))?;
             let cover = Cover::new(&shape.solid, &shape.pose);
             let box_from_attachment = cover.box_pose.inverse();
             let frame = frame(shape.attached);

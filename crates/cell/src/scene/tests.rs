@@ -93,6 +93,103 @@ fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
     assert!(hits > 10 && free > 50, "{hits} {free}");
 }
 
+/// A path of states: small steps, and now and then a jump.
+fn path(random: &mut ChaCha8Rng, steps: usize) -> Vec<[f64; 6]> {
+    let mut joints = random_joints(random);
+    let mut path = vec![joints];
+    for step in 1..steps {
+        if step % 40 == 0 {
+            joints = random_joints(random);
+        } else {
+            joints.iter_mut().for_each(|angle| *angle += 0.05 * (random.random::<f64>() - 0.5));
+        }
+        path.push(joints);
+    }
+    path
+}
+
+#[test]
+fn what_is_known_of_the_state_before_changes_no_answer() {
+    for (seed, clearance) in [(3, 0.0), (4, 0.01), (5, 0.05)] {
+        let (scene, mut random) = (scene_of(kr270_shapes(), clearance), ChaCha8Rng::seed_from_u64(seed));
+        let workpiece = workpiece(&mut random);
+        let (mut known, mut hits, mut free) = (Proximity::default(), 0, 0);
+        for joints in path(&mut random, 2000) {
+            let poses = scene.poses(&joints, &workpiece);
+            let plain = (0..scene.pairs().len()).find(|number| {
+                PairKind::OF_STATES.contains(&scene.pairs()[*number].kind) && !scene.keeps_apart(*number, &poses)
+            });
+            let found = scene.next_hit(&mut known, &poses, &PairKind::OF_STATES);
+            match (plain, found) {
+                // Any pair that hits may be named.
+                (_, Some(found)) => assert!(!scene.keeps_apart(found, &poses)),
+                (Some(number), None) => {
+                    // GJK on round surfaces: 0.01 mm.
+                    let (distance, required) = (scene.distance(number, &poses, FAR), scene.pairs()[number].required);
+                    assert!(distance > required - 1e-5 && required > 0.0, "{distance} {required}");
+                }
+                (None, None) => {}
+            }
+            hits += usize::from(found.is_some());
+            free += usize::from(found.is_none());
+        }
+        assert!(hits > 200 && free > 100, "{hits} {free}");
+    }
+}
+
+#[test]
+fn a_path_called_free_by_what_is_known_is_free_in_small_steps() {
+    let (scene, mut random) = (scene_of(kr270_shapes(), 0.01), ChaCha8Rng::seed_from_u64(6));
+    let workpiece = workpiece(&mut random);
+    let (mut known, mut free, mut hits) = (Proximity::default(), 0, 0);
+    let mut before: Option<([f64; 6], Poses)> = None;
+    for (step, joints) in path(&mut random, 1200).into_iter().enumerate() {
+        let poses = scene.poses(&joints, &workpiece);
+        let is_free = scene.next_hit(&mut known, &poses, &PairKind::OF_STATES).is_none();
+        let last = before.replace((joints, poses)).filter(|_| is_free && step % 40 != 0);
+        let Some((from, start)) = last else {
+            before = before.filter(|_| is_free);
+            continue;
+        };
+        let hit = scene.motion_to(&known, (&from, &start), (&joints, &poses));
+        let plain = scene.motion((&from, &start), (&joints, &poses));
+        hits += usize::from(hit.is_some());
+        free += usize::from(hit.is_none());
+        // Both are good to a tenth of the clearance where a motion comes just so near.
+        if let (None, Some(plain)) | (Some(plain), None) = (hit, plain) {
+            let at: [f64; 6] = std::array::from_fn(|j| from[j] + plain.share * (joints[j] - from[j]));
+            assert!(scene.distance(plain.pair, &scene.poses(&at, &workpiece), FAR) > 0.008);
+        }
+        if hit.is_none() {
+            for k in 0..=20 {
+                let at: [f64; 6] = std::array::from_fn(|j| from[j] + f64::from(k) / 20.0 * (joints[j] - from[j]));
+                let clearance = scene.clearance(&scene.poses(&at, &workpiece), &PairKind::OF_STATES).unwrap();
+                assert!(clearance.distance > 0.005, "{clearance:?}");
+            }
+        }
+    }
+    assert!(free > 50 && hits + free > 100, "{hits} {free}");
+}
+
+#[test]
+fn what_an_axis_carries_moves_on_an_arc() {
+    let platter = shape("platter", Attachment::Axis(0), Solid::Box(Vector3::new(0.2, 0.2, 0.2)), [1.0, 0.0, 0.0]);
+    let post = shape("post", Attachment::Base, Solid::Box(Vector3::new(0.1, 0.1, 1.0)), [0.0, 1.0, 0.0]);
+    let arm = shape("arm", Attachment::Link(2), Solid::Capsule { radius: 0.05, length: 0.1 }, [0.0, 0.0, 0.0]);
+    let around = Surroundings::new(vec![platter, post, arm], Vec::new(), 0.0, Vec::new()).unwrap();
+    let scene = Scene::new(&kr270(), &spindle().flange_from_tool, around).unwrap();
+    let joints = [0.0; 6];
+    let at = |degrees: f64| {
+        let turn = stead_numerics::rotation::rotation_from_vector(&Vector3::new(0.0, 0.0, degrees.to_radians()));
+        let pose = Pose { rotation: turn, translation: Vector3::zeros() };
+        scene.poses(&joints, &Pose::identity()).with_axis(0, pose)
+    };
+    // Over the chord from one side to the other it would pass the post at a distance of 0.3 m.
+    let hit = scene.motion((&joints, &at(30.0)), (&joints, &at(150.0))).unwrap();
+    assert!((hit.share - 0.5).abs() < 0.2, "{hit:?}");
+    assert_eq!(scene.motion((&joints, &at(-30.0)), (&joints, &at(60.0))), None);
+}
+
 #[test]
 fn pairs_that_always_touch_are_named() {
     let mut shapes = kr270_shapes();

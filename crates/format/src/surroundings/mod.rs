@@ -156,13 +156,9 @@ fn no_surroundings(parts: &[Part<'_>], error: &SurroundingsError) -> InputError 
 /// Why shapes and arm are no scene, at the shape.
 fn no_scene(parts: &[Part<'_>], error: &SceneError) -> InputError {
     match error {
-        SceneError::FlatHull(name) => {
-            let place = named(parts, name).next().map(|place| place.key("hull"));
-            located(
-                place,
-                "has all its vertices in a plane, so that they have no hull",
-                "mesh in place of hull, or another file",
-            )
+        SceneError::Empty(name) => {
+            let place = named(parts, name).next().map(|place| place.key("mesh"));
+            located(place, "has nothing that could collide", "a mesh of triangles")
         }
         SceneError::AlwaysTouching(pairs) => {
             let place = pairs.first().and_then(|[first, _]| named(parts, first).next());
