@@ -150,19 +150,21 @@ impl Problem {
         scene.next_hit(known, &poses, &[PairKind::ToolWorkpiece]).is_some()
     }
 
-    /// The states of a segment's plan that hit, and with `with_motions` also the motions from point to point.
+    /// The states of a segment's plan that hit, and with `with_motions` also the moves from point to point.
     pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
-        self.path_hits(placement, &plan.points, &plan.joints, &PairKind::OF_STATES, with_motions).collect()
+        let posture = with_motions.then_some(plan.posture);
+        self.path_hits(placement, &plan.points, &plan.joints, &PairKind::OF_STATES, posture).collect()
     }
 
-    /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other.
+    /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other; moves from point to
+    /// point are looked at where a posture is given.
     pub(crate) fn path_hits(
         &self,
         placement: &Placement,
         points: &Span<usize>,
         joints: &[[f64; 6]],
         kinds: &'static [PairKind],
-        with_motions: bool,
+        posture: Option<Posture>,
     ) -> impl Iterator<Item = PlanHit> {
         let mut known = Proximity::default();
         // Where all stands at the point before, if nothing hits there.
@@ -170,14 +172,18 @@ impl Problem {
         let hit = move |(place, point): (usize, usize)| {
             let scene = self.scene.as_deref()?;
             let poses = self.poses(scene, point, placement, &joints[place]);
+            let before = free_before.zip(posture);
+            let between = before.and_then(|(before, posture)| {
+                let ends = [(joints[place - 1], before), (joints[place], poses)];
+                self.move_hit(scene, placement, (point, posture), ends, &mut known)
+            });
             let pair = scene.next_hit(&mut known, &poses, kinds);
-            let before = std::mem::replace(&mut free_before, pair.is_none().then_some(poses));
-            if let Some(pair) = pair {
-                return Some(PlanHit { point, is_between: false, pair });
+            free_before = pair.is_none().then_some(poses);
+            match (pair, between) {
+                (Some(pair), _) => Some(PlanHit { point, is_between: false, pair }),
+                (None, Some(pair)) => Some(PlanHit { point, is_between: true, pair }),
+                (None, None) => None,
             }
-            let before = before.filter(|_| with_motions)?;
-            let hit = scene.motion_to(&known, (&joints[place - 1], &before), (&joints[place], &poses))?;
-            Some(PlanHit { point, is_between: true, pair: hit.pair })
         };
         points.clone().enumerate().filter_map(hit)
     }
@@ -190,5 +196,6 @@ impl Problem {
     }
 }
 
+mod between;
 #[cfg(test)]
 mod tests;

@@ -183,6 +183,9 @@ impl fmt::Display for Finding {
                 } else {
                     write!(f, "points {first} to {last}")?;
                 }
+                if nearest.violations.is_empty() {
+                    return write!(f, ": no way past the shapes that come too near, though they leave states");
+                }
                 write!(
                     f,
                     ": no allowed state; nearest at point {}, beta {:.1} deg, posture {}: ",

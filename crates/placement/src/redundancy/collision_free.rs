@@ -179,7 +179,7 @@ impl Planner<'_> {
                     let path = choice.joint_paths.iter().find(|path| path.posture == *posture);
                     path.is_none_or(|path| {
                         let kinds = &PairKind::OF_JOINTS;
-                        self.problem.path_hits(placement, &choice.points, &path.joints, kinds, false).next().is_some()
+                        self.problem.path_hits(placement, &choice.points, &path.joints, kinds, None).next().is_some()
                     })
                 };
                 let free: BTreeSet<Posture> = postures.iter().copied().filter(|posture| !hits(posture)).collect();
