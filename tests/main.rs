@@ -7,6 +7,7 @@ mod bad_input;
 mod cell_setup;
 mod certify;
 mod circularity;
+mod collision;
 mod common;
 mod compensate;
 mod criterion;

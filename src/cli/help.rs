@@ -1,7 +1,6 @@
-//! The words of the long help: examples, files written and exit codes of each command, and the overview of all commands by
-//! the question that they answer.
+//! The words of the long help: examples, files written and exit codes of each command, and the overview of all commands.
 
-/// The commands by the question that they answer. Commands that stand in no group are listed last.
+/// The commands by the question that they answer, those of no group last.
 const GROUPS: [(&str, &[&str]); 8] = [
     ("Where to put the workpiece", &["place", "score", "explain", "page"]),
     ("Which cell layout is best", &["study"]),
@@ -13,7 +12,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ("Input files, shell and manual", &[]),
 ];
 
-/// The overview of all commands by the question that they answer.
+/// The overview of all commands.
 pub(super) fn overview(command: &clap::Command) -> String {
     let line = |command: &clap::Command| {
         let about = command.get_about().map(ToString::to_string).unwrap_or_default();
@@ -22,10 +21,9 @@ pub(super) fn overview(command: &clap::Command) -> String {
     let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
     let mut text = String::new();
     for (question, names) in GROUPS {
-        let is_rest = names.is_empty();
         let members = command.get_subcommands().filter(|member| {
             let name = member.get_name();
-            names.contains(&name) || (is_rest && !is_grouped(name))
+            names.contains(&name) || (names.is_empty() && !is_grouped(name))
         });
         text.push_str(&format!("{question}:\n{}\n", members.map(line).collect::<String>()));
     }

@@ -11,21 +11,24 @@
 //! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
 //! seed alone and not on the number of threads.
 
+mod evaluation;
+#[cfg(test)]
+mod tests;
+
 use super::candidate::{Candidate, Objective, rank};
-use super::evaluator::{self, Evaluator};
+use super::evaluator::Evaluator;
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
 use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use super::symmetry::{apart_about_axis_1, is_axis_1_vertical};
+use evaluation::{EVERYTHING, better_half, evaluate};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -177,7 +180,7 @@ pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<
     let objective = |candidate: &Candidate, workspace: &mut redundancy::Workspace| {
         planner.objective(&candidate.placement, Sense::Min, candidate.scheme.as_deref(), workspace)
     };
-    evaluate_by(&|| planner.workspace(), &objective, candidates, 0, (2, monitor));
+    evaluation::by(&|| planner.workspace(), &objective, candidates, 0, (2, monitor));
     candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
     let feasible = candidates.iter().filter(|candidate| candidate.objective.mean().is_some()).count();
     candidates.truncate(feasible.max(1));
@@ -246,45 +249,6 @@ fn random_posture(allowed: &[Posture], random: &mut impl Rng) -> Posture {
     allowed[random.random_range(0..allowed.len())]
 }
 
-/// Evaluates candidates from one on. Collisions are looked for only where the objective without them is `within` two bounds (m).
-fn evaluate(
-    evaluator: &Evaluator<'_>,
-    population: &mut Vec<Candidate>,
-    (from, within): (usize, [f64; 2]),
-    monitor: &Monitor,
-) {
-    let objective = |candidate: &Candidate, workspace: &mut evaluator::Workspace| {
-        evaluator.rough_objective(&candidate.placement, candidate.scheme.as_deref(), within, workspace)
-    };
-    evaluate_by(&|| evaluator.workspace(), &objective, population, from, (LAST_LOOK, monitor));
-}
-
-/// Evaluates all candidates from one on. Once the caller asks to stop, those not begun yet are taken out; only where nothing feasible
-/// was met, `last_look` of them are evaluated all the same.
-fn evaluate_by<W>(
-    workspace: &(impl Fn() -> W + Sync),
-    objective: &(impl Fn(&Candidate, &mut W) -> Objective + Sync),
-    candidates: &mut Vec<Candidate>,
-    from: usize,
-    (last_look, monitor): (usize, &Monitor),
-) {
-    let is_feasible = |candidate: &Candidate| candidate.objective.mean().is_some();
-    let is_met = AtomicBool::new(candidates[..from].iter().any(is_feasible));
-    let looked = AtomicUsize::new(0);
-    candidates[from..].par_iter_mut().for_each_init(workspace, |workspace, candidate| {
-        let is_enough = || is_met.load(Relaxed) || looked.fetch_add(1, Relaxed) >= last_look;
-        if monitor.should_stop() && is_enough() {
-            candidate.objective = UNEVALUATED;
-            return;
-        }
-        candidate.objective = objective(candidate, workspace);
-        if is_feasible(candidate) {
-            is_met.store(true, Relaxed);
-        }
-    });
-    candidates.retain(|candidate| candidate.objective != UNEVALUATED);
-}
-
 /// One child: of two parents, or a mutant of one.
 fn breed(
     problem: &Problem,
@@ -329,19 +293,6 @@ fn breed(
     }
     child.placement = cell.clamp(&child.placement);
     child
-}
-
-/// Any objective. m
-const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-
-/// The bounds of the objectives of the better half of a sorted population: what is not within them even without collisions hardly ever
-/// becomes a parent, and is looked at more closely before it is refined. Where the worst placement is sought there are none: collisions
-/// make a mean larger. m
-fn better_half(population: &[Candidate], sense: Sense) -> [f64; 2] {
-    match (population[population.len() / 2].objective.mean(), sense) {
-        (Some(middle), Sense::Min) => [f64::NEG_INFINITY, middle],
-        _ => EVERYTHING,
-    }
 }
 
 fn tournament<'p>(population: &'p [Candidate], sense: Sense, random: &mut ChaCha8Rng) -> &'p Candidate {
@@ -411,6 +362,3 @@ fn is_near_after_turn(problem: &Problem, [a, b]: [&Placement; 2]) -> bool {
     let [distance, height, yaw] = apart_about_axis_1(problem, a, b);
     distance <= BASIN.0 * x.width().max(y.width()) && height <= BASIN.0 * z.width() && yaw <= BASIN.1
 }
-
-#[cfg(test)]
-mod tests;

@@ -37,7 +37,8 @@ struct Hull {
 
 impl SupportMap for Hull {
     fn local_support_point(&self, direction: Vector) -> Vector {
-        let farther = |best: Vector, point: &Vector| if point.dot(direction) > best.dot(direction) { *point } else { best };
+        let farther =
+            |best: Vector, point: &Vector| if point.dot(direction) > best.dot(direction) { *point } else { best };
         self.points.iter().fold(self.points[0], farther)
     }
 }
@@ -53,7 +54,6 @@ fn corners(points: Vec<Vector>) -> Vec<Vector> {
     let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
     if points.iter().all(is_inside) { hull.points().to_vec() } else { points }
 }
-
 
 /// How far a vertex may be outside of the hull, relative to its size.
 const HULL_TOLERANCE: f64 = 1e-6;

@@ -33,8 +33,7 @@ struct Other<'a> {
 impl Mesh {
     pub fn new(mesh: &TriangleMesh) -> Option<Self> {
         let vertices: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-        let formed =
-            |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
+        let formed = |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
         // What is inside of a closed mesh is told by the normals of its edges and vertices.
         let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
         let is_closed = solid.is_some();
