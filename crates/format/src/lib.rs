@@ -42,6 +42,7 @@ mod points;
 pub mod program;
 pub mod published_tables;
 pub mod quantity;
+mod quote;
 pub mod robot;
 pub mod run;
 pub mod scalars;

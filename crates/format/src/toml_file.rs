@@ -3,6 +3,7 @@
 use crate::field::{FieldOverride, FieldOverrides};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
+use crate::quote::shorten;
 use crate::shipped;
 use crate::sources::Sources;
 use std::ops::Range;
@@ -20,9 +21,6 @@ pub struct TomlFile {
     /// Where files that it names come from.
     pub(crate) sources: Sources,
 }
-
-/// Longest piece of a file that is quoted in a message, in characters.
-const QUOTE: usize = 80;
 
 impl TomlFile {
     /// Reads a file, or the file of a shipped arm for `name:` and its name.
@@ -140,14 +138,6 @@ fn line_after(text: &[u8]) -> usize {
     1 + text.iter().filter(|byte| **byte == b'\n').count()
 }
 
-pub(crate) fn shorten(text: &str) -> String {
-    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    match line.char_indices().nth(QUOTE) {
-        Some((end, _)) => format!("{}...", &line[..end]),
-        None => line,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,12 +150,5 @@ mod tests {
     fn bytes_that_are_no_text_are_located() {
         let message = source(b"a = 1\nb = '\xff'\n").unwrap_err().to_string();
         assert_eq!(message, "a.toml:2: is not UTF-8 text, found byte 0xff; allowed: UTF-8 text");
-    }
-
-    #[test]
-    fn long_quotes_are_cut_between_characters() {
-        let long = "\u{e4}".repeat(200);
-        assert_eq!(shorten(&long).chars().count(), QUOTE + 3);
-        assert_eq!(shorten("[1,\n   2]"), "[1, 2]");
     }
 }

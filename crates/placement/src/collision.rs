@@ -5,9 +5,8 @@
 //! plan that is free is as good as if all states had been looked at.
 
 use crate::constraints::Measured;
-use crate::outcome::PlanPoint;
 use crate::problem::{Placement, Problem};
-use crate::redundancy::SegmentPlan;
+use crate::segment_plan::SegmentPlan;
 use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Proximity, Scene};
@@ -37,18 +36,6 @@ pub struct PlanClearance {
 }
 
 impl Problem {
-    /// The point of a plan at which a pair has the least room beyond what it has to keep.
-    pub(crate) fn plan_clearance(&self, points: &[PlanPoint]) -> Option<PlanClearance> {
-        let scene = self.scene.as_deref()?;
-        let rooms = points.iter().filter_map(|point| {
-            let clearance = point.clearance?;
-            let pair = scene.pair(clearance.pair)?;
-            Some((clearance.distance - pair.required, point.point, clearance.distance, pair.names.clone()))
-        });
-        let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(PlanClearance { point, distance, names })
-    }
-
     /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the base frame, in which
     /// the cell moves the other way where an external axis carries the robot.
     pub fn poses(&self, scene: &Scene, point: usize, placement: &Placement, joints: &[f64; 6]) -> Poses {

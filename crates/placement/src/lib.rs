@@ -43,6 +43,7 @@ pub mod problem;
 pub mod redundancy;
 pub mod refine;
 pub mod search;
+mod segment_plan;
 pub mod sense;
 pub mod sensitivity;
 pub mod settings;

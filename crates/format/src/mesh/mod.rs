@@ -10,7 +10,6 @@ mod stl;
 mod tests;
 
 use crate::input::InputError;
-use crate::scalars::words;
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{MeshError, TriangleMesh};
@@ -23,8 +22,6 @@ pub enum MeshUnit {
     /// Metres.
     Metre,
 }
-
-words!(MeshUnit: "mm" => MeshUnit::Millimetre, "m" => MeshUnit::Metre);
 
 impl MeshUnit {
     /// Its length. m

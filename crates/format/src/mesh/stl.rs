@@ -120,5 +120,5 @@ pub(super) fn number_of(word: &str) -> Option<f64> {
 
 /// A line as messages quote it.
 pub(super) fn shortened(line: &str) -> String {
-    crate::toml_file::shorten(line)
+    crate::quote::shorten(line)
 }

@@ -18,12 +18,11 @@ pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
 pub use external_axes::ExternalAxisTable;
 pub use forces::ForcesTable;
-pub use orientations::OrientationTable;
 pub use output::OutputTable;
 pub use postures::{Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
-pub use tables::{CellTable, ConstraintsTable, ReferenceTable, SearchTable, TransferTable};
+pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, SearchTable, TransferTable};
 
 use crate::document::Document;
 use crate::field::FieldOverrides;

@@ -1,36 +1,13 @@
 //! The ways in which the part may lie: `[cell] orientations` and `orientation`.
 
-use super::tables::CellTable;
+use super::tables::{CellTable, OrientationTable};
 use crate::input::InputError;
-use crate::orientation::{Quaternion, orientation_keys};
+use crate::orientation::orientation_keys;
 use crate::place::Place;
-use crate::shapes::{Matrix, Vector};
-use crate::units::Deg;
 use nalgebra::Matrix3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use stead_model::task::Task;
 use stead_placement::setup::Orientation;
-
-/// A way in which the part may lie: turned before it is placed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct OrientationTable {
-    /// Its name, as results and `--orientation` have it.
-    pub name: String,
-    /// Rotation from the workpiece frame of the task to the frame that is placed, by rows; at most one of this and the four keys
-    /// below, as in the task where none is there.
-    pub rotation: Option<Matrix>,
-    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
-    pub abc_deg: Option<Vector<Deg>>,
-    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
-    pub wpr_deg: Option<Vector<Deg>>,
-    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
-    pub rpy_deg: Option<Vector<Deg>>,
-    /// The same as ABB's quaternion.
-    pub quaternion_wxyz: Option<Quaternion>,
-}
 
 /// What a name is.
 pub(super) const NAME: &str = "a text on one line that is not empty";

@@ -1,12 +1,12 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
 use super::certificate::Memory;
-use super::orientations::OrientationTable;
 use crate::input::InputError;
+use crate::orientation::Quaternion;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
-use crate::shapes::{Array, Interval};
+use crate::shapes::{Array, Interval, Matrix, Vector};
 use crate::units::{Deg, Gb, Mm, NotNegative, Number, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,25 @@ ranges! {
     Margin: Included(0.0), Excluded(180.0);
     /// A blending distance. mm
     Blend: Included(0.1), Included(1000.0);
+}
+
+/// A way in which the part may lie: turned before it is placed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrientationTable {
+    /// Its name, as results and `--orientation` have it.
+    pub name: String,
+    /// Rotation from the workpiece frame of the task to the frame that is placed, by rows; at most one of this and the four keys
+    /// below, as in the task where none is there.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
 }
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.

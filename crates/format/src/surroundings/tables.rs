@@ -15,6 +15,7 @@ use stead_cell::{Attachment, KeepOut, TrackedPoint, Zone};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::Pose;
 
+words!(MeshUnit: "mm" => MeshUnit::Millimetre, "m" => MeshUnit::Metre);
 words!(TrackedPoint: "tool" => TrackedPoint::Tool, "wrist" => TrackedPoint::Wrist, "elbow" => TrackedPoint::Elbow);
 
 /// What stands around a robot, and on it: the file that `surroundings` of a run file names.

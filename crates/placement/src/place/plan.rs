@@ -1,6 +1,7 @@
 //! Plans with everything that there is to say of them.
 
 use super::refined::Refined;
+use crate::collision::PlanClearance;
 use crate::evaluate::reference::{scored_part_by_parameters, state};
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::problem::{Placement, Problem};
@@ -95,8 +96,20 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         deflection: DeflectionFigures::of(scored),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
-        clearance: problem.plan_clearance(&points),
+        clearance: plan_clearance(problem, &points),
         points,
         axes: problem.axis_paths(),
     }
+}
+
+/// The point of a plan at which a pair has the least room beyond what it has to keep.
+fn plan_clearance(problem: &Problem, points: &[PlanPoint]) -> Option<PlanClearance> {
+    let scene = problem.scene.as_deref()?;
+    let rooms = points.iter().filter_map(|point| {
+        let clearance = point.clearance?;
+        let pair = scene.pair(clearance.pair)?;
+        Some((clearance.distance - pair.required, point.point, clearance.distance, pair.names.clone()))
+    });
+    let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(PlanClearance { point, distance, names })
 }

@@ -41,6 +41,7 @@ pub use state_set::StateSet;
 use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
 use super::problem::{Placement, Problem, Redundancy};
+pub use super::segment_plan::SegmentPlan;
 use super::sense::Sense;
 use grid::finer;
 use off_grid::Spacing;
@@ -49,21 +50,6 @@ use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::simd::Instructions;
-
-/// The plan of one segment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SegmentPlan {
-    /// The path points.
-    pub points: Span<usize>,
-    /// The posture kept all along.
-    pub posture: Posture,
-    /// Free angle at each point, changing from point to point by less than half a turn. rad
-    pub betas: Vec<f64>,
-    /// Real joint angles at each point. rad
-    pub joints: Vec<[f64; 6]>,
-    /// What its points add to the objective ([`Problem::objective`]): by default the sum of the scores. m
-    pub cost: f64,
-}
 
 /// Why a placement has no plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
