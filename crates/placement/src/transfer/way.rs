@@ -16,8 +16,10 @@ use stead_model::robot::{Pose, Posture};
 /// How a move between two segments goes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way {
-    /// Joint angles one after the other, from the end of one segment to the start of the next. rad
+    /// Joint angles one after the other, from the end of one segment to the start of the next, at least these two. rad
     pub joints: Vec<[f64; 6]>,
+    /// From which of them on the external axes stand where the next segment has them; before it, where the last one has.
+    pub axes_from: usize,
     /// Whether the first and the last move follow the tool axis; all others are straight in joint space.
     pub along_axis: [bool; 2],
     /// Number of the pair of the scene that hits on the straight move, where no free way was found: `joints` is then that move.
@@ -37,8 +39,22 @@ const EDGE: f64 = 0.35;
 /// Tries to shorten a way by going straight between two places of it.
 const SHORTCUTS: usize = 60;
 
-/// What a move is found in.
-struct Space<'a> {
+/// The arm at a path point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtPoint {
+    /// The path point, from 0.
+    pub point: usize,
+    /// The free angle about the tool axis. rad
+    pub beta: f64,
+    /// The posture of the arm.
+    pub posture: Posture,
+    /// Its joint angles. rad
+    pub joints: [f64; 6],
+}
+
+/// What moves are found in: an arm among shapes, at a placement.
+#[derive(Debug, Clone, Copy)]
+pub struct Space<'a> {
     problem: &'a Problem,
     scene: &'a Scene,
     placement: &'a Placement,
@@ -52,23 +68,29 @@ pub fn way(
     plans: [&SegmentPlan; 2],
     number: usize,
 ) -> Option<Way> {
-    let scene = problem.scene.as_deref()?;
-    let space = Space { problem, scene, placement };
+    let space = Space::new(problem, placement)?;
     let [from, to] = plans;
-    let end = (from.points.end.checked_sub(1)?, *from.betas.last()?, from.posture, *from.joints.last()?);
-    let start = (to.points.start, *to.betas.first()?, to.posture, *to.joints.first()?);
+    let end = AtPoint {
+        point: from.points.end.checked_sub(1)?,
+        beta: *from.betas.last()?,
+        posture: from.posture,
+        joints: *from.joints.last()?,
+    };
+    let (point, posture) = (to.points.start, to.posture);
+    let start = AtPoint { point, beta: *to.betas.first()?, posture, joints: *to.joints.first()? };
+    let are_axes_moved = problem.axis_positions(end.point) != problem.axis_positions(start.point);
     let out = space.retracted(end, settings.retract);
     let into = space.retracted(start, settings.retract);
     let (a, b) = (*out.last()?, *into.last()?);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
-    let points = (end.0, start.0);
-    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else { return Some(joined(&out, &[], &into)) };
+    let points = (end.point, start.point);
+    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else { return Some(joined(&out, &[], &into, are_axes_moved)) };
     for lift in LIFTS {
         let [up, down] = [end, start].map(|end| space.retracted(end, settings.retract + lift));
         if let (Some(high), Some(low)) = (up.last(), down.last())
             && space.hit((high, points.0), (low, points.1)).is_none()
         {
-            return Some(joined(&up, &[], &down));
+            return Some(joined(&up, &[], &down, are_axes_moved));
         }
     }
     let mut random = ChaCha8Rng::seed_from_u64(number as u64);
@@ -77,28 +99,56 @@ pub fn way(
         None => space.around((a, b), points.1, &mut random),
     };
     Some(match over {
-        Some(over) => joined(&out, &over, &into),
-        None => Way { joints: vec![end.3, start.3], along_axis: [false; 2], blocked_by: Some(blocked) },
+        Some(over) => joined(&out, &over, &into, are_axes_moved),
+        None => Way {
+            joints: vec![end.joints, start.joints],
+            axes_from: 1,
+            along_axis: [false; 2],
+            blocked_by: Some(blocked),
+        },
     })
 }
 
-/// A retraction, joint moves, and an approach (given backwards).
-fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]]) -> Way {
+/// A retraction, joint moves, and an approach (given backwards). Joint moves begin where the external axes, which they then leave alone,
+/// have moved already.
+fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]], are_axes_moved: bool) -> Way {
     let ends = |followed: &[[f64; 6]]| match followed {
         [first, .., last] => vec![*first, *last],
         all => all.to_vec(),
     };
     let mut joints = ends(out);
-    joints.extend(over);
-    joints.extend(ends(into).into_iter().rev());
-    joints.dedup();
-    Way { joints, along_axis: [out.len() > 1, into.len() > 1], blocked_by: None }
+    let axes_from = joints.len();
+    let mut rest = over.to_vec();
+    rest.extend(ends(into).into_iter().rev());
+    rest.dedup();
+    // The same place again is a move where the external axes move there, or where there is no other move.
+    let stays = !are_axes_moved && joints.len() + rest.len() > 2 && rest.first() == joints.last();
+    joints.extend(rest.into_iter().skip(usize::from(stays)));
+    Way { joints, axes_from, along_axis: [out.len() > 1, into.len() > 1], blocked_by: None }
 }
 
-impl Space<'_> {
-    /// The pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path point to
-    /// where they stand at another.
-    fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
+impl Way {
+    /// Whether the move to one of its places (from 1) follows the tool axis.
+    pub fn is_along_axis(&self, place: usize) -> bool {
+        let [out, into] = self.along_axis;
+        (out && place == 1) || (into && place + 1 == self.joints.len())
+    }
+}
+
+impl<'a> Space<'a> {
+    /// Among the shapes of a problem; `None` where there are none.
+    pub fn new(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
+        Some(Self { problem, scene: problem.scene.as_deref()?, placement })
+    }
+
+    /// The number of the pair that hits where the tool is drawn back along its axis from a path point, or goes in there again.
+    pub fn retraction_hit(&self, at: AtPoint, by: f64) -> Option<usize> {
+        self.retraction(at, by).1
+    }
+
+    /// The number of the pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path
+    /// point to where they stand at another.
+    pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
         let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
         let between = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
             a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect()
@@ -120,7 +170,13 @@ impl Space<'_> {
 
     /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits: joint angles
     /// from the point on. rad
-    fn retracted(&self, (point, beta, posture, joints): (usize, f64, Posture, [f64; 6]), by: f64) -> Vec<[f64; 6]> {
+    fn retracted(&self, at: AtPoint, by: f64) -> Vec<[f64; 6]> {
+        self.retraction(at, by).0
+    }
+
+    /// The same with the pair that ends it.
+    fn retraction(&self, at: AtPoint, by: f64) -> (Vec<[f64; 6]>, Option<usize>) {
+        let AtPoint { point, beta, posture, joints } = at;
         let flange = self.problem.base_from_flange(point, self.placement, beta);
         let axis: Vector3<f64> = self.problem.placed(point, self.placement).axes.column(2).into_owned();
         let steps = (by / STRAIGHT_STEP).ceil().max(0.0) as usize;
@@ -135,13 +191,16 @@ impl Space<'_> {
                 let joint = &self.problem.robot.joints()[j];
                 (joint.min..=joint.max).contains(&next[j])
             });
-            if !is_inside || self.hit((&last, point), (&next, point)).is_some() {
+            if !is_inside {
                 break;
+            }
+            if let Some(pair) = self.hit((&last, point), (&next, point)) {
+                return (all, Some(pair));
             }
             last = next;
             all.push(next);
         }
-        all
+        (all, None)
     }
 
     /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path point: the
