@@ -10,8 +10,8 @@ use crate::problem::{Placement, Problem};
 use crate::redundancy::SegmentPlan;
 use std::ops::Range as Span;
 use std::sync::Arc;
-use stead_model::external_axis::{Carried, carried};
 use stead_cell::{Clearance, PairKind, Poses, Proximity, Scene};
+use stead_model::external_axis::{Carried, carried};
 use stead_model::robot::Posture;
 
 /// A state of a plan in which two shapes are nearer than they may be.
@@ -56,13 +56,7 @@ impl Problem {
     }
 
     /// The same with the external axes at positions (m or rad).
-    pub(crate) fn poses_at(
-        &self,
-        scene: &Scene,
-        positions: &[f64],
-        placement: &Placement,
-        joints: &[f64; 6],
-    ) -> Poses {
+    pub(crate) fn poses_at(&self, scene: &Scene, positions: &[f64], placement: &Placement, joints: &[f64; 6]) -> Poses {
         let axes = &self.external_axes;
         let part = self.turned(self.base_from_workpiece_at(positions, placement));
         let poses = scene.poses(joints, &part);

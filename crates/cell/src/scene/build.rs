@@ -85,9 +85,11 @@ impl Scene {
         // In the order in which their kinds are cheapest to decide: a stable sort.
         pairs.sort_by_key(|pair| pair.kind);
         let spans = PairKind::ALL.map(|kind| {
-            pairs.partition_point(|pair: &Pair| pair.kind < kind)..pairs.partition_point(|pair: &Pair| pair.kind <= kind)
+            pairs.partition_point(|pair: &Pair| pair.kind < kind)
+                ..pairs.partition_point(|pair: &Pair| pair.kind <= kind)
         });
-        let scene = Self { surroundings, robot: robot.clone(), flange_from_tool: *flange_from_tool, bodies, pairs, spans };
+        let scene =
+            Self { surroundings, robot: robot.clone(), flange_from_tool: *flange_from_tool, bodies, pairs, spans };
         match scene.always_touching() {
             touching if touching.is_empty() => Ok(scene),
             touching => Err(SceneError::AlwaysTouching(touching)),

@@ -6,8 +6,8 @@
 //! it can be, so that short motions count hardly more than what they lead to. Where neither decides, the interval is halved. In the end
 //! nothing moves farther between two states looked at than the resolution, and both states keep nine tenths of the distance asked for.
 
-use super::quick::Quick;
 use super::build::on_arm;
+use super::quick::Quick;
 use super::{Body, FRAMES, Members, Poses, Scene};
 use nalgebra::Vector3;
 use stead_model::robot::Pose;

@@ -85,8 +85,7 @@ impl Scene {
     pub fn next_hit(&self, known: &mut Proximity, poses: &Poses, kinds: &[PairKind]) -> Option<usize> {
         known.advance(self, poses);
         let recent = known.recent.filter(|number| kinds.contains(&self.pairs[*number].kind));
-        let mut is_hit =
-            |number: &usize| known.now.of(self, *number) <= 0.0 && !self.has_room(known, *number, poses);
+        let mut is_hit = |number: &usize| known.now.of(self, *number) <= 0.0 && !self.has_room(known, *number, poses);
         let hit = recent.filter(&mut is_hit).or_else(|| self.of_kinds(kinds).find(&mut is_hit));
         known.recent = hit.or(known.recent);
         hit

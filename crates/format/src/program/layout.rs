@@ -60,7 +60,9 @@ impl Layout<'_> {
         let segment = step.segment;
         let mut lines = match (step.heading, step.kind) {
             (Some(Heading::FreeWay), _) => vec![format!("segment {segment}, by a free way")],
-            (Some(Heading::Segment), _) | (Some(Heading::Hits(_)), MoveKind::Joint) => vec![format!("segment {segment}")],
+            (Some(Heading::Segment), _) | (Some(Heading::Hits(_)), MoveKind::Joint) => {
+                vec![format!("segment {segment}")]
+            }
             _ if number == 0 => vec![format!("segment {segment} goes on")],
             _ => Vec::new(),
         };

@@ -17,9 +17,9 @@ mod rapid;
 mod split;
 mod status;
 mod table;
-mod ways;
 #[cfg(test)]
 pub(crate) mod tests;
+mod ways;
 
 pub use error::{ExportError, ProgramError};
 pub use frames::{OperatorFrame, Rotation};
@@ -34,10 +34,10 @@ use layout::Layout;
 use motion::{Ends, Frames, Move, MoveKind, Target};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use ways::Ways;
 use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
 use stead_placement::problem::{Placement, Problem};
+use ways::Ways;
 
 /// The form of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -270,12 +270,7 @@ struct Planned {
 }
 
 /// The targets of a plan, or those of its corrected path.
-fn targets(
-    run: &Run,
-    plan: &Path,
-    corrected: Option<CorrectedPath<'_>>,
-    ends: Ends,
-) -> Result<Planned, InputError> {
+fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: Ends) -> Result<Planned, InputError> {
     let (plan, file) = read_plan(plan, &run.problem)?;
     let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();

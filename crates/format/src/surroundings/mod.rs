@@ -14,10 +14,10 @@ use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
-use stead_model::robot::{Robot, Spindle};
 use stead_model::external_axis::ExternalAxis;
-pub(crate) use tables::{CLEARANCE, attachment};
+use stead_model::robot::{Robot, Spindle};
 use tables::axis_of;
+pub(crate) use tables::{CLEARANCE, attachment};
 
 /// The scene of a run, where it has one.
 #[derive(Debug, Default)]

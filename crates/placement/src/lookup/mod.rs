@@ -68,9 +68,8 @@ const SAME_STRETCH: f64 = 0.03;
 fn stride(problem: &Problem) -> usize {
     let task = &problem.task;
     let lengths = task.segments().iter().flat_map(|span| task.points()[span.clone()].windows(2));
-    let (length, steps) = lengths.fold((0.0, 0), |(length, steps), pair| {
-        (length + (pair[1].position - pair[0].position).norm(), steps + 1)
-    });
+    let (length, steps) = lengths
+        .fold((0.0, 0), |(length, steps), pair| (length + (pair[1].position - pair[0].position).norm(), steps + 1));
     if length > 0.0 { ((SAME_STRETCH * f64::from(steps) / length) as usize).max(1) } else { 1 }
 }
 

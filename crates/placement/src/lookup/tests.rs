@@ -256,7 +256,8 @@ fn coordinate_search_gets_better_inside_the_cell() {
         let start = Placement::from(start);
         let before = table.objective(&start, &grid, None, Look::ALL, &mut workspace);
         for directions in [Directions::WithoutAzimuth, Directions::All] {
-            let mut evaluate = |placement: &Placement| table.objective(placement, &grid, None, Look::ALL, &mut workspace);
+            let mut evaluate =
+                |placement: &Placement| table.objective(placement, &grid, None, Look::ALL, &mut workspace);
             let (end, objective, evaluations) =
                 coordinate_search(&problem, &start, sense, directions, &mut evaluate, &Monitor::silent());
             assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");

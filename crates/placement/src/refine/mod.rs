@@ -170,8 +170,7 @@ fn poll(
         Sense::Min => 1.0,
         Sense::Max => -1.0,
     };
-    let mut look =
-        |placement: &Placement, within: [f64; 2]| evaluator.approximate(placement, scheme, within, space);
+    let mut look = |placement: &Placement, within: [f64; 2]| evaluator.approximate(placement, scheme, within, space);
     let here = look(&centre.placement, [f64::NEG_INFINITY, f64::INFINITY]);
     // Collisions only make a mean larger.
     let most = here.filter(|_| sense == Sense::Min).unwrap_or(f64::INFINITY);
@@ -188,7 +187,9 @@ fn poll(
                 if monitor.should_stop() {
                     return best;
                 }
-                if placement == centre.placement || here.zip(look(&placement, [f64::NEG_INFINITY, most])).is_some_and(is_no_better) {
+                if placement == centre.placement
+                    || here.zip(look(&placement, [f64::NEG_INFINITY, most])).is_some_and(is_no_better)
+                {
                     continue;
                 }
                 let Some(near) = planned(planner, &placement, scheme, workspace) else { continue };

@@ -30,6 +30,8 @@ pub struct Way {
 const LIFTS: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
 const STRAIGHT_STEP: f64 = 0.01;
+/// A joint that turns farther in one such step swings round a singularity, which no controller follows at a useful speed. rad
+const MAX_SWING: f64 = 0.5;
 /// Positions of external axes between which all is taken to turn about one axis. m or rad
 const AXIS_STEP: f64 = 0.1;
 /// States that both trees together have at the most.
@@ -84,7 +86,9 @@ pub fn way(
     let (a, b) = (*out.last()?, *into.last()?);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
     let points = (end.point, start.point);
-    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else { return Some(joined(&out, &[], &into, are_axes_moved)) };
+    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else {
+        return Some(joined(&out, &[], &into, are_axes_moved));
+    };
     for lift in LIFTS {
         let [up, down] = [end, start].map(|end| space.retracted(end, settings.retract + lift));
         if let (Some(high), Some(low)) = (up.last(), down.last())
@@ -189,7 +193,7 @@ impl<'a> Space<'a> {
             let next: [f64; 6] = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
             let is_inside = (0..6).all(|j| {
                 let joint = &self.problem.robot.joints()[j];
-                (joint.min..=joint.max).contains(&next[j])
+                (joint.min..=joint.max).contains(&next[j]) && (next[j] - last[j]).abs() <= MAX_SWING
             });
             if !is_inside {
                 break;
@@ -326,6 +330,24 @@ mod tests {
         }
         assert_eq!(found.blocked_by, None);
         assert_eq!(way(&problem, &settings, &placement, [&free[0], &free[2]], 1), Some(found));
+    }
+
+    #[test]
+    fn external_axes_move_before_the_joints_on_a_way_and_with_them_on_the_direct_move() {
+        let [end, a, via, b, start] = [0.0, 1.0, 2.0, 3.0, 4.0].map(|angle| [angle; 6]);
+        let (out, into, over) = ([end, a], [start, b], [a, via, b]);
+        let found = |over: &[[f64; 6]], are_moved| {
+            let way = joined(&out, over, &into, are_moved);
+            (way.joints.clone(), way.axes_from, [1, 2, way.joints.len() - 1].map(|place| way.is_along_axis(place)))
+        };
+        let along = [true, false, true];
+        assert_eq!(found(&[], true), (vec![end, a, b, start], 2, along));
+        assert_eq!(found(&[], false), (vec![end, a, b, start], 2, along));
+        assert_eq!(found(&over, true), (vec![end, a, a, via, b, start], 2, along));
+        assert_eq!(found(&over, false), (vec![end, a, via, b, start], 2, along));
+        // Nothing moves but the axes, or nothing at all.
+        assert_eq!(joined(&[end], &[], &[end], true).joints, [end, end]);
+        assert_eq!(joined(&[end], &[], &[end], false).joints, [end, end]);
     }
 
     #[test]
