@@ -1,6 +1,6 @@
 //! Robot programs from plans, and programs read back.
 
-use crate::{Error, Run};
+use crate::{Error, Run, Warning};
 use serde_json::Value;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -94,6 +94,11 @@ impl ExportedProgram {
         &self.program.notes
     }
 
+    /// Which of its moves hit what stands around, one sentence for each.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.program.warnings
+    }
+
     /// The JSON document that the command prints with `--json`.
     pub fn to_json(&self) -> Value {
         program_json(&self.program)
@@ -124,18 +129,25 @@ impl CheckedProgram {
         &self.check
     }
 
-    /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg.
+    /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg, and none of its moves between segments hits what stands
+    /// around.
     ///
     /// # Errors
     /// [`Error::Failed`] where it is not.
     pub fn sound(&self) -> Result<(), Error> {
+        let (file, hits) = (self.check.file.display(), self.check.hits.len());
+        if self.check.is_sound() && hits > 0 {
+            let moves = if hits == 1 { "1 move hits".to_owned() } else { format!("{hits} moves hit") };
+            return Err(Error::Failed(format!(
+                "{file}: {moves} what stands around; allowed: programs of plans with a free way between all segments"
+            )));
+        }
         if self.check.is_sound() {
             return Ok(());
         }
         Err(Error::Failed(format!(
-            "{}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
-             plan, checked with the --corrected and --approach-mm that it was exported with",
-            self.check.file.display()
+            "{file}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
+             plan, checked with the --corrected and --approach-mm that it was exported with"
         )))
     }
 

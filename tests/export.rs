@@ -204,3 +204,74 @@ fn a_robot_without_a_controller_gets_a_table() {
     let sound = bench.stead(&["export", RUN, PLAN, "--check", "p/PART.csv"]);
     assert_eq!(sound.code, Some(0), "{}", sound.stderr);
 }
+
+/// A spindle, and what stands around it, for the end of a run file.
+fn among(shapes: &str) -> Bench {
+    let bench = bench();
+    let spindle = "[[shape]]\nname = 'spindle'\nattached = 'flange'\ncylinder_mm = { radius = 85.0, length = 420.0 }\n\
+                   xyz_mm = [-275.772, 0.0, 408.228]\nrpy_deg = [0.0, 45.0, 0.0]\n";
+    let run = bench.read(RUN);
+    bench.write(RUN, &format!("{run}\n{spindle}{shapes}"));
+    bench
+}
+
+#[test]
+fn among_surroundings_the_moves_between_segments_are_free_ways() {
+    // In the way from segment 2 to segment 3, and from 4 to 5.
+    let bench =
+        among("[[shape]]\nname = 'post'\nattached = 'base'\nbox_mm = [200, 200, 1700]\nxyz_mm = [300, -1850, 450]\n");
+    let ended = export(&bench, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(!ended.stderr.contains("warning: "), "{}", ended.stderr);
+    assert!(ended.stdout.contains("116 moves (6 to joint angles, 110 on lines)"), "{}", ended.stdout);
+    let part = bench.read("p/PART_01.src");
+    // A joint move round the post, and one to the retracted point; after segment 4 a higher lift.
+    let (_, way) = part.split_once("\n; segment 3, by a free way\n").unwrap();
+    let words: Vec<&str> = way.lines().filter(|line| !line.starts_with(';')).map(|line| &line[..3]).take(3).collect();
+    assert_eq!(words, ["PTP", "PTP", "LIN"]);
+    let (before, _) = part.split_once("\n; segment 5, by a free way\n").unwrap();
+    assert!(before.lines().last().unwrap().starts_with("LIN {X 208.000,Y 8.000,Z 250.000,"), "{before}");
+    let read = check(&bench, &[]);
+    assert_eq!(read.code, Some(0), "{}{}", read.stdout, read.stderr);
+    assert!(read.stdout.contains("116 moves read back, 6 to joint angles; the plan asks for 116\n"), "{}", read.stdout);
+
+    // A via point that was changed: elsewhere than planned, and through the post.
+    let (via, rest) = way.split_once("PTP {").map(|(_, rest)| rest.split_once('}').unwrap()).unwrap();
+    let (direct, _) = rest.split_once("PTP {").map(|(_, rest)| rest.split_once('}').unwrap()).unwrap();
+    bench.replace("p/PART_01.src", via, direct);
+    let document = bench.stead(&["export", RUN, PLAN, "--check", "p/PART.src", "--json"]).json();
+    assert_eq!(document["sound"], serde_json::Value::from(false));
+    assert_eq!(
+        (&document["hits"][0]["pair"], &document["hits"][0]["segment"]),
+        (&"spindle and post".into(), &3.into())
+    );
+}
+
+#[test]
+fn a_move_without_a_free_way_is_a_warning_a_comment_and_found() {
+    let bench = among(
+        "[[keep_out]]\nname = 'lid'\npoints = ['tool']\nhalf_space = { xyz_mm = [0, 0, 600], normal = [0, 0, 1] }\n",
+    );
+    let ended = export(&bench, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let warnings: Vec<&str> = ended.stderr.lines().filter(|line| line.starts_with("warning: ")).collect();
+    let wanted = |a, b| {
+        format!(
+            "warning: the move from segment {a} to segment {b} hits: tool and lid; no free way was found, and the program goes straight over"
+        )
+    };
+    assert_eq!(warnings, [wanted(2, 3), wanted(4, 5)]);
+    let part = bench.read("p/PART_01.src");
+    assert!(part.contains("; segment 3\n; NOT FREE: this move hits\n; - tool\n; - lid\n; start: "), "{part}");
+    assert!(part.contains("; segment 4, by a free way\n"), "{part}");
+    let read = check(&bench, &[]);
+    assert_eq!(read.code, Some(1), "{}", read.stdout);
+    assert!(read.stdout.contains(" hits: tool and lid (segment 3)\n"), "{}", read.stdout);
+    read.assert_says(&["error: p/PART.src: 2 moves hit what stands around; allowed: "]);
+
+    let table = bench.stead(&["export", RUN, PLAN, "--format", "csv", "--out", "t/PART", "--json"]);
+    assert_eq!(table.json()["warnings"].as_array().unwrap().len(), 2);
+    let text = bench.read("t/PART.csv");
+    assert!(text.lines().next().unwrap().ends_with(",hits"), "{text}");
+    assert_eq!(text.lines().filter(|line| line.ends_with(",,\"tool and lid\"")).count(), 2);
+}

@@ -1,7 +1,7 @@
 //! `stead export`: a robot program from a plan, or a program read back.
 
 use super::values::finite;
-use super::{Failure, print, print_json, say_notes};
+use super::{Failure, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(super) struct ExportCommand {
     /// Command points that could not be corrected as planned, instead of refusing the path
     #[arg(long, requires = "corrected")]
     pub uncorrected_as_planned: bool,
-    /// How far the tool is retracted along its axis before and after a segment; 0 for not at all
+    /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not at all
     #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
     pub approach_mm: f64,
     /// Distance from a corner at which blending begins; 0 for exact stops
@@ -62,11 +62,12 @@ Files written, none of which may be there yet:
   NAME.ls, NAME_01.ls, ..            fanuc, likewise
   NAME.csv                           csv: one row for each move
 The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
---check writes nothing. Collisions are not checked: run a program slowly and without a cut first.
+Where the run has surroundings, moves between segments are the free ways of `stead place`; a move without one is a warning and a comment in
+the program. Without surroundings collisions are not checked. Run a program slowly and without a cut first. --check writes nothing.
 
 Exit codes:
-  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg
-  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, and no move between segments hits the surroundings
+  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan or hits
   2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
@@ -107,6 +108,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
     let program = run.export(&options.plan, &asked)?;
     let written = program.write(out.parent().unwrap_or(Path::new("")))?;
     say_notes(program.notes());
+    say_warnings(program.warnings());
     if options.json {
         return print_json(&program);
     }

@@ -2,12 +2,12 @@
 
 use crate::document::Document;
 use serde_json::{Value, json};
-use stead_format::program::check::{ANGLE_DEG, Largest, POSITION_MM, ProgramCheck};
+use stead_format::program::check::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck};
 use stead_format::program::{OperatorFrame, Program, Rotation};
 
 /// What `stead export --json` prints.
 pub fn program_json(program: &Program) -> Value {
-    Document::new(&program.inputs).notes(&program.notes).with(json!({
+    Document::new(&program.inputs).notes(&program.notes).warnings(&program.warnings).with(json!({
         "robot": program.robot,
         "program_format": program.format.word(),
         "name": program.name,
@@ -65,14 +65,9 @@ pub fn program_text(program: &Program) -> String {
 pub fn program_check_json(check: &ProgramCheck) -> Value {
     let largest = |found: &Option<Largest>| {
         found.as_ref().map(|found| {
-            json!({
-                "value": found.value,
-                "file": found.at.file.display().to_string(),
-                "line": found.at.line,
-                "segment": found.at.segment,
-                "point": found.at.point,
-                "retracted": found.at.is_retracted,
-            })
+            let mut entry = place_json(&found.at);
+            entry["value"] = json!(found.value);
+            entry
         })
     };
     Document::new(&check.inputs).with(json!({
@@ -84,9 +79,26 @@ pub fn program_check_json(check: &ProgramCheck) -> Value {
         "position_mm": largest(&check.position),
         "angle_deg": largest(&check.angle),
         "mismatch": check.mismatch,
+        "hits": check.hits.iter().map(hit_json).collect::<Value>(),
         "allowed_mm": POSITION_MM,
         "allowed_deg": ANGLE_DEG,
     }))
+}
+
+fn place_json(at: &MovePlace) -> Value {
+    json!({
+        "file": at.file.display().to_string(),
+        "line": at.line,
+        "segment": at.segment,
+        "point": at.point,
+        "retracted": at.is_retracted,
+    })
+}
+
+fn hit_json(hit: &MoveHit) -> Value {
+    let mut entry = place_json(&hit.at);
+    entry["pair"] = json!(hit.pair);
+    entry
 }
 
 /// What `stead export --check` prints.
@@ -109,6 +121,9 @@ pub fn program_check_text(check: &ProgramCheck) -> String {
             at.segment,
             at.point
         ));
+    }
+    for MoveHit { at, pair } in &check.hits {
+        text.push_str(&format!("{}:{} hits: {pair} (segment {})\n", at.file.display(), at.line, at.segment));
     }
     if let Some(mismatch) = &check.mismatch {
         text.push_str(&format!("{mismatch}\n"));

@@ -94,9 +94,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     statements.push(format_args!("  UTOOL_NUM={FRAME_NUMBER}"));
     let moves = layout.moves_of(index);
     for (in_part, step) in moves.iter().enumerate() {
-        if let Some(text) = layout.heading(index, in_part) {
-            statements.remark(&text);
-        }
+        layout.heading(index, in_part).iter().for_each(|text| statements.remark(text));
         let position = in_part + 1;
         match step.kind {
             MoveKind::Joint => {

@@ -67,9 +67,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let mut feed = f64::NAN;
     let moves = layout.moves_of(index);
     for (number_in_part, step) in moves.iter().enumerate() {
-        if let Some(text) = layout.heading(index, number_in_part) {
-            lines.line(format_args!("; {text}"));
-        }
+        layout.heading(index, number_in_part).iter().for_each(|text| lines.line(format_args!("; {text}")));
         match step.kind {
             MoveKind::Joint => joint(&mut lines, layout, step),
             MoveKind::Linear => {

@@ -1,9 +1,10 @@
 //! What all writers need: the moves in their parts, the frames, and the texts around them.
 
-use super::motion::{Frames, Move, MoveKind};
+use super::motion::{Frames, Heading, Move, MoveKind};
 use super::names;
 use std::fmt::Write;
 use std::ops::Range;
+use stead_cell::Scene;
 
 /// One file of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,10 +36,12 @@ pub(super) struct Layout<'a> {
     pub external_units: [&'static str; 6],
     /// Mass and centre (m, flange frame) of what the flange carries, where known.
     pub load: Option<(f64, [f64; 3])>,
+    /// What stands around.
+    pub scene: Option<&'a Scene>,
 }
 
 impl Layout<'_> {
-    /// Share of the full joint speed in joint moves: slow, for they lead through a cell that nobody has checked.
+    /// Share of the full joint speed in joint moves: slow, for they lead through a cell that has not been tried.
     pub const JOINT_SPEED_PERCENT: u8 = 20;
 
     /// The name of a part, counted from 0.
@@ -51,16 +54,29 @@ impl Layout<'_> {
         &self.moves[self.parts[index].clone()]
     }
 
-    /// What a comment before a move of a part says, where a segment begins or goes on.
-    pub fn heading(&self, index: usize, number: usize) -> Option<String> {
+    /// What the comments before a move of a part say, where a segment begins or goes on, or the move hits.
+    pub fn heading(&self, index: usize, number: usize) -> Vec<String> {
         let step = &self.moves_of(index)[number];
-        match step.kind {
-            MoveKind::Joint => Some(format!("segment {}", step.segment)),
-            MoveKind::Linear if number == 0 => Some(format!("segment {} goes on", step.segment)),
-            MoveKind::Linear => None,
+        let segment = step.segment;
+        let mut lines = match (step.heading, step.kind) {
+            (Some(Heading::FreeWay), _) => vec![format!("segment {segment}, by a free way")],
+            (Some(Heading::Segment), _) | (Some(Heading::Hits(_)), MoveKind::Joint) => {
+                vec![format!("segment {segment}")]
+            }
+            _ if number == 0 => vec![format!("segment {segment} goes on")],
+            _ => Vec::new(),
+        };
+        if let Some(Heading::Hits(pair)) = step.heading {
+            lines.push("NOT FREE: this move hits".to_owned());
+            let names = self.scene.and_then(|scene| scene.pair(pair)).map(|pair| &pair.names[..]).unwrap_or_default();
+            lines.extend(names.iter().map(|name| format!("- {}", names::comment(name, LONGEST_NAME))));
         }
+        lines
     }
 }
+
+/// The longest name of a shape in a comment.
+const LONGEST_NAME: usize = 60;
 
 /// Lines of a text; writing to it cannot fail.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! Robot programs from plans: the moves (`motion`), in the words of a controller (`krl`, `rapid`, `fanuc`) or as a `table`, and a
 //! program read back and compared with its plan (`check`).
 //!
-//! Linear poses are in the workpiece frame, so that positions are those of the task. The two frames of a program are where the
+//! Between segments the moves are the free `ways`, where a run has surroundings. Linear poses are in the workpiece frame, so that positions are those of the task. The two frames of a program are where the
 //! workpiece stands in the controller's robot root, and where the tool is on the flange.
 
 pub mod check;
@@ -19,6 +19,7 @@ mod status;
 mod table;
 #[cfg(test)]
 pub(crate) mod tests;
+mod ways;
 
 pub use error::{ExportError, ProgramError};
 pub use frames::{OperatorFrame, Rotation};
@@ -34,7 +35,9 @@ use motion::{Ends, Frames, Move, MoveKind, Target};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use stead_model::robot::ControllerKind;
+use stead_numerics::message::Warning;
 use stead_placement::problem::{Placement, Problem};
+use ways::Ways;
 
 /// The form of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -159,6 +162,8 @@ pub struct Program {
     pub inputs: Vec<InputFile>,
     /// What the user should know.
     pub notes: Vec<String>,
+    /// Which of its moves hit what stands around.
+    pub warnings: Vec<Warning>,
 }
 
 impl Program {
@@ -187,10 +192,10 @@ const MAX_MOVES: usize = 1_000_000;
 /// tables that the form needs; [`ExportError::Program`] for options that are not taken, and points that the arm does not reach.
 pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Program, ExportError> {
     check_options(run, options)?;
-    let planned = targets(run, plan, options.corrected)?;
-    let problem = &planned.problem;
     let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
-    let moves = motion::moves(problem, &planned.placement, &planned.targets, ends)?;
+    let planned = targets(run, plan, options.corrected, ends)?;
+    let problem = &planned.problem;
+    let moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
     let frames = motion::frames(problem, &planned.placement);
     let parts = split::parts(&moves, options.max_moves);
     let mut notes = planned.notes;
@@ -212,6 +217,7 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
         uncorrected: planned.uncorrected,
         inputs: planned.inputs,
         notes,
+        warnings: planned.ways.warnings(problem.scene.as_deref(), ends),
     })
 }
 
@@ -226,7 +232,7 @@ fn files(
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
     let (Some(frames), Some(_)) = (frames, format.controller()) else {
-        return Ok(table::files(options.name, moves, motion::external_units(problem)));
+        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.as_deref()));
     };
     let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
@@ -242,6 +248,7 @@ fn files(
         external_units: motion::external_units(problem),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
+        scene: problem.scene.as_deref(),
     };
     Ok(match format {
         ProgramFormat::Rapid => rapid::files(&layout),
@@ -256,17 +263,19 @@ struct Planned {
     /// The problem in the setup of the plan.
     problem: Problem,
     targets: Vec<Target>,
+    ways: Ways,
     uncorrected: usize,
     inputs: Vec<InputFile>,
     notes: Vec<String>,
 }
 
 /// The targets of a plan, or those of its corrected path.
-fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>) -> Result<Planned, InputError> {
+fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: Ends) -> Result<Planned, InputError> {
     let (plan, file) = read_plan(plan, &run.problem)?;
     let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();
     inputs.push(file);
+    let ways = Ways::new(&problem, &run.transfer, &plan, ends.approach);
     let PlacedPlan { placement, points, note, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()
@@ -286,7 +295,8 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>) -> Resu
         }
         None => (planned, 0),
     };
-    Ok(Planned { placement: *placement, problem, targets, uncorrected, inputs, notes: note.iter().cloned().collect() })
+    let notes = note.iter().cloned().collect();
+    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes })
 }
 
 /// Whether the options are in their ranges, and the form is one for the robot.

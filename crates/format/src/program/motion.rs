@@ -1,11 +1,13 @@
 //! The moves of a program before it is put into the words of a controller: joint moves to a retracted point over each segment,
-//! then linear moves through its points, and back.
+//! then linear moves through its points, and back; among surroundings the free way to the next segment in place of these.
 
 use super::ProgramError;
+use super::ways::Ways;
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
 use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::transfer::Way;
 
 /// Positions of the external axes that there are, in mm and deg.
 pub(super) type External = [Option<f64>; 6];
@@ -52,10 +54,23 @@ pub(super) enum MoveKind {
     Linear,
 }
 
+/// What begins with a move, for a comment before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Heading {
+    /// The moves of a segment.
+    Segment,
+    /// The same, over a way that keeps free of all that stands around.
+    FreeWay,
+    /// A move that is known to hit: the number of the pair.
+    Hits(usize),
+}
+
 /// One move to a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Move {
     pub kind: MoveKind,
+    /// What begins with it, if anything does.
+    pub heading: Option<Heading>,
     /// Number of the segment, from 1.
     pub segment: usize,
     /// The path point, from 0; none where the tool is retracted from it.
@@ -124,7 +139,7 @@ fn at_zero(problem: &Problem, placement: &Placement) -> Pose<f64> {
     pose
 }
 
-/// All moves, segment by segment.
+/// All moves, segment by segment, with the free ways between them where there are any.
 ///
 /// # Errors
 /// [`ProgramError::Unreached`] where the arm cannot be at a point, or cannot retract from it, in the posture of the plan.
@@ -132,7 +147,7 @@ pub(super) fn moves(
     problem: &Problem,
     placement: &Placement,
     targets: &[Target],
-    ends: Ends,
+    (ends, ways): (Ends, &Ways),
 ) -> Result<Vec<Move>, ProgramError> {
     let maker = Maker { problem, placement };
     let mut moves = Vec::with_capacity(targets.len() + 2 * problem.task.segments().len());
@@ -140,7 +155,7 @@ pub(super) fn moves(
     let retracted = |point: usize, at: &At, when| {
         maker.retracted(point, &targets[point], at, ends.approach, when).map_err(|error| match error {
             ProgramError::Unreached { point, way, reason, .. } => {
-                ProgramError::Unreached { point, way, reason, most: Some(maker.farthest(targets, ends.approach)) }
+                ProgramError::Unreached { point, way, reason, most: Some(maker.farthest(targets, (ends, ways))) }
             }
             other => other,
         })
@@ -148,20 +163,36 @@ pub(super) fn moves(
     for (segment, range) in problem.task.segments().iter().enumerate() {
         let (first, last) = (range.start, range.end - 1);
         let start = maker.exact(first, &targets[first])?;
-        let entry = retracted(first, &start, "before")?;
-        let joint = maker.to(segment, first, MoveKind::Joint, &targets[first], &entry);
-        // Without an approach the joint move goes to the first point.
-        moves.push(if has_approach { joint.without_point() } else { joint });
-        for point in range.clone().skip(usize::from(!has_approach)) {
+        let way_here = ways.free_to(segment);
+        let is_at_first = match way_here {
+            Some(way) => {
+                moves.extend(maker.way_to(segment, way, targets, &start));
+                true
+            }
+            None => {
+                let entry = retracted(first, &start, "before")?;
+                let joint = maker.to(segment, first, MoveKind::Joint, &targets[first], &entry);
+                let heading = Some(ways.hit_before(segment).map_or(Heading::Segment, Heading::Hits));
+                // Without an approach the joint move goes to the first point.
+                moves.push(Move { heading, ..if has_approach { joint.without_point() } else { joint } });
+                !has_approach
+            }
+        };
+        for point in range.clone().skip(usize::from(is_at_first)) {
             let at = maker.exact(point, &targets[point])?;
             let linear = maker.to(segment, point, MoveKind::Linear, &targets[point], &at);
             let is_blended = ends.has_blending && point != first && point != last;
             moves.push(Move { is_blended, ..linear });
         }
-        if has_approach {
+        if let Some(way) = ways.free_from(segment) {
+            moves.extend(maker.way_out(segment, way, &targets[last]));
+        } else if has_approach {
             let end = maker.exact(last, &targets[last])?;
             let exit = retracted(last, &end, "after")?;
-            moves.push(maker.to(segment, last, MoveKind::Linear, &targets[last], &exit).without_point());
+            let linear = maker.to(segment, last, MoveKind::Linear, &targets[last], &exit).without_point();
+            let is_end = range.end == targets.len();
+            let heading = ways.ends_hit[1].filter(|_| is_end).map(Heading::Hits);
+            moves.push(Move { heading, ..linear });
         }
     }
     Ok(moves)
@@ -192,6 +223,7 @@ impl Maker<'_> {
     fn to(&self, segment: usize, point: usize, kind: MoveKind, target: &Target, at: &At) -> Move {
         Move {
             kind,
+            heading: None,
             segment: segment + 1,
             point: Some(point),
             workpiece_from_tool: self.problem.base_from_part(point, self.placement).inverse().then(&at.base_from_tool),
@@ -204,6 +236,41 @@ impl Maker<'_> {
         }
     }
 
+    /// The move of a free way that still belongs to the segment (from 0) that it leaves: out of the cut along the tool axis.
+    fn way_out(&self, segment: usize, way: &Way, target: &Target) -> Option<Move> {
+        let last = self.problem.task.segments()[segment].end - 1;
+        let joints = way.joints.get(1).filter(|_| way.along_axis[0])?;
+        Some(self.to(segment, last, MoveKind::Linear, target, &self.at(joints)).without_point())
+    }
+
+    /// The other moves of a free way, to the first point of the segment (from 0) that it leads to. External axes are where the last segment
+    /// ends, or where this one begins.
+    fn way_to(&self, segment: usize, way: &Way, targets: &[Target], start: &At) -> Vec<Move> {
+        let first = self.problem.task.segments()[segment].start;
+        let end = way.joints.len() - 1;
+        let places = (1 + usize::from(way.along_axis[0])..=end).map(|place| {
+            let point = if place < way.axes_from { first - 1 } else { first };
+            let kind = if way.is_along_axis(place) { MoveKind::Linear } else { MoveKind::Joint };
+            if place == end {
+                return self.to(segment, first, kind, &targets[first], start);
+            }
+            let joints = &way.joints[place];
+            let target = Target { posture: Posture::of(&self.problem.robot, joints), ..targets[point] };
+            self.to(segment, point, kind, &target, &self.at(joints)).without_point()
+        });
+        let mut moves: Vec<Move> = places.collect();
+        if let Some(step) = moves.first_mut() {
+            step.heading = Some(Heading::FreeWay);
+        }
+        moves
+    }
+
+    /// The arm with these joint angles.
+    fn at(&self, joints: &[f64; 6]) -> At {
+        let base_from_tool = self.problem.robot.forward(joints).then(&self.problem.spindle.flange_from_tool);
+        At { base_from_tool, joints: *joints }
+    }
+
     /// The joint angles of a target to the last digit: those of its posture, in the turns of the plan.
     fn exact(&self, point: usize, target: &Target) -> Result<At, ProgramError> {
         let unreached = |reason| ProgramError::Unreached { point, way: String::new(), reason, most: None };
@@ -211,11 +278,15 @@ impl Maker<'_> {
         Ok(At { base_from_tool: target.base_from_tool, joints })
     }
 
-    /// The farthest in whole mm, up to a distance in m, that the tool can be retracted before and after every segment. mm
-    fn farthest(&self, targets: &[Target], approach: f64) -> u32 {
-        let segments = self.problem.task.segments();
-        let ends = segments.iter().flat_map(|range| [(range.start, "before"), (range.end - 1, "after")]);
-        ends.fold((approach * 1e3).floor() as u32, |most, (point, when)| {
+    /// The farthest in whole mm, up to that asked for, that the tool can be retracted before and after every segment, but for those with a
+    /// free way. mm
+    fn farthest(&self, targets: &[Target], (ends, ways): (Ends, &Ways)) -> u32 {
+        let points = self.problem.task.segments().iter().enumerate().flat_map(|(segment, range)| {
+            let before = ways.free_to(segment).is_none().then_some((range.start, "before"));
+            let after = ways.free_from(segment).is_none().then_some((range.end - 1, "after"));
+            [before, after].into_iter().flatten()
+        });
+        points.fold((ends.approach * 1e3).floor() as u32, |most, (point, when)| {
             let target = &targets[point];
             let Ok(at) = self.exact(point, target) else { return 0 };
             let is_reached = |mm: &u32| self.retracted(point, target, &at, f64::from(*mm) / 1e3, when).is_ok();

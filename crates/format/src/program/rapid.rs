@@ -110,9 +110,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let moves = layout.moves_of(index);
     let mut last = [0.0; 4];
     for (number_in_part, step) in moves.iter().enumerate() {
-        if let Some(text) = layout.heading(index, number_in_part) {
-            lines.line(format_args!("    ! {text}"));
-        }
+        layout.heading(index, number_in_part).iter().for_each(|text| lines.line(format_args!("    ! {text}")));
         let pose = &step.workpiece_from_tool;
         let target = format!("{},{}", position(&pose.translation), orientation_after(&mut last, &pose.rotation));
         match step.kind {

@@ -1,13 +1,14 @@
 //! Programs as a table for other posts: one row for each move.
 
 use super::layout::{Lines, ProgramFile};
-use super::motion::{Move, MoveKind};
+use super::motion::{Heading, Move, MoveKind};
 use super::names::number;
+use stead_cell::Scene;
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 
 /// The columns: poses of the tool in the workpiece frame, as `Rz(A) Ry(B) Rx(C)` and as a quaternion; angles of the controller, empty
 /// where it is not known how it counts; `point` is empty where the tool is retracted. Behind them `e1_mm` or `e1_deg` and so on, where there are
-/// external axes.
+/// external axes, and `hits` where shapes stand around: the pair that a move is known to hit.
 pub(super) const COLUMNS: &str = "\
     segment,point,move,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,q_w,q_x,q_y,q_z,a1_deg,a2_deg,a3_deg,a4_deg,a5_deg,a6_deg,feed_mm_per_s";
 
@@ -16,17 +17,18 @@ const DEG_DECIMALS: usize = 5;
 const QUATERNION_DECIMALS: usize = 9;
 
 /// The one file.
-pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6]) -> Vec<ProgramFile> {
+pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6], scene: Option<&Scene>) -> Vec<ProgramFile> {
     let mut lines = Lines::default();
     let external = moves.first().map_or([None; 6], |step| step.external);
     let there = external.iter().zip(units).zip(1..).filter(|((axis, _), _)| axis.is_some());
     let names: String = there.map(|((_, unit), axis)| format!(",e{axis}_{unit}")).collect();
-    lines.line(format_args!("{COLUMNS}{names}"));
-    moves.iter().for_each(|step| lines.line(row(step)));
+    let hits = if scene.is_some() { ",hits" } else { "" };
+    lines.line(format_args!("{COLUMNS}{names}{hits}"));
+    moves.iter().for_each(|step| lines.line(row(step, scene)));
     vec![ProgramFile { name: format!("{name}.csv"), text: lines.0 }]
 }
 
-fn row(step: &Move) -> String {
+fn row(step: &Move, scene: Option<&Scene>) -> String {
     let pose = &step.workpiece_from_tool;
     let kind = match step.kind {
         MoveKind::Joint => "joint",
@@ -44,5 +46,10 @@ fn row(step: &Move) -> String {
     // A joint move has no speed of the tool.
     cells.push(if step.kind == MoveKind::Linear { number(step.feed * 1e3, 4) } else { String::new() });
     cells.extend(step.external.into_iter().flatten().map(|position| number(position, DEG_DECIMALS)));
+    cells.extend(scene.map(|scene| match step.heading {
+        // Names of shapes have no quotes in them.
+        Some(Heading::Hits(pair)) => scene.pair(pair).map_or_else(String::new, |pair| format!("\"{pair}\"")),
+        _ => String::new(),
+    }));
     cells.join(",")
 }

@@ -16,8 +16,10 @@ use stead_model::robot::{Pose, Posture};
 /// How a move between two segments goes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way {
-    /// Joint angles one after the other, from the end of one segment to the start of the next. rad
+    /// Joint angles one after the other, from the end of one segment to the start of the next, at least these two. rad
     pub joints: Vec<[f64; 6]>,
+    /// From which of them on the external axes stand where the next segment has them; before it, where the last one has.
+    pub axes_from: usize,
     /// Whether the first and the last move follow the tool axis; all others are straight in joint space.
     pub along_axis: [bool; 2],
     /// Number of the pair of the scene that hits on the straight move, where no free way was found: `joints` is then that move.
@@ -28,6 +30,8 @@ pub struct Way {
 const LIFTS: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
 const STRAIGHT_STEP: f64 = 0.01;
+/// A joint that turns farther in one such step swings round a singularity, which no controller follows at a useful speed. rad
+const MAX_SWING: f64 = 0.5;
 /// Positions of external axes between which all is taken to turn about one axis. m or rad
 const AXIS_STEP: f64 = 0.1;
 /// States that both trees together have at the most.
@@ -37,8 +41,22 @@ const EDGE: f64 = 0.35;
 /// Tries to shorten a way by going straight between two places of it.
 const SHORTCUTS: usize = 60;
 
-/// What a move is found in.
-struct Space<'a> {
+/// The arm at a path point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtPoint {
+    /// The path point, from 0.
+    pub point: usize,
+    /// The free angle about the tool axis. rad
+    pub beta: f64,
+    /// The posture of the arm.
+    pub posture: Posture,
+    /// Its joint angles. rad
+    pub joints: [f64; 6],
+}
+
+/// What moves are found in: an arm among shapes, at a placement.
+#[derive(Debug, Clone, Copy)]
+pub struct Space<'a> {
     problem: &'a Problem,
     scene: &'a Scene,
     placement: &'a Placement,
@@ -52,23 +70,31 @@ pub fn way(
     plans: [&SegmentPlan; 2],
     number: usize,
 ) -> Option<Way> {
-    let scene = problem.scene.as_deref()?;
-    let space = Space { problem, scene, placement };
+    let space = Space::new(problem, placement)?;
     let [from, to] = plans;
-    let end = (from.points.end.checked_sub(1)?, *from.betas.last()?, from.posture, *from.joints.last()?);
-    let start = (to.points.start, *to.betas.first()?, to.posture, *to.joints.first()?);
+    let end = AtPoint {
+        point: from.points.end.checked_sub(1)?,
+        beta: *from.betas.last()?,
+        posture: from.posture,
+        joints: *from.joints.last()?,
+    };
+    let (point, posture) = (to.points.start, to.posture);
+    let start = AtPoint { point, beta: *to.betas.first()?, posture, joints: *to.joints.first()? };
+    let are_axes_moved = problem.axis_positions(end.point) != problem.axis_positions(start.point);
     let out = space.retracted(end, settings.retract);
     let into = space.retracted(start, settings.retract);
     let (a, b) = (*out.last()?, *into.last()?);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
-    let points = (end.0, start.0);
-    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else { return Some(joined(&out, &[], &into)) };
+    let points = (end.point, start.point);
+    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else {
+        return Some(joined(&out, &[], &into, are_axes_moved));
+    };
     for lift in LIFTS {
         let [up, down] = [end, start].map(|end| space.retracted(end, settings.retract + lift));
         if let (Some(high), Some(low)) = (up.last(), down.last())
             && space.hit((high, points.0), (low, points.1)).is_none()
         {
-            return Some(joined(&up, &[], &down));
+            return Some(joined(&up, &[], &down, are_axes_moved));
         }
     }
     let mut random = ChaCha8Rng::seed_from_u64(number as u64);
@@ -77,28 +103,56 @@ pub fn way(
         None => space.around((a, b), points.1, &mut random),
     };
     Some(match over {
-        Some(over) => joined(&out, &over, &into),
-        None => Way { joints: vec![end.3, start.3], along_axis: [false; 2], blocked_by: Some(blocked) },
+        Some(over) => joined(&out, &over, &into, are_axes_moved),
+        None => Way {
+            joints: vec![end.joints, start.joints],
+            axes_from: 1,
+            along_axis: [false; 2],
+            blocked_by: Some(blocked),
+        },
     })
 }
 
-/// A retraction, joint moves, and an approach (given backwards).
-fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]]) -> Way {
+/// A retraction, joint moves, and an approach (given backwards). Joint moves begin where the external axes, which they then leave alone,
+/// have moved already.
+fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]], are_axes_moved: bool) -> Way {
     let ends = |followed: &[[f64; 6]]| match followed {
         [first, .., last] => vec![*first, *last],
         all => all.to_vec(),
     };
     let mut joints = ends(out);
-    joints.extend(over);
-    joints.extend(ends(into).into_iter().rev());
-    joints.dedup();
-    Way { joints, along_axis: [out.len() > 1, into.len() > 1], blocked_by: None }
+    let axes_from = joints.len();
+    let mut rest = over.to_vec();
+    rest.extend(ends(into).into_iter().rev());
+    rest.dedup();
+    // The same place again is a move where the external axes move there, or where there is no other move.
+    let stays = !are_axes_moved && joints.len() + rest.len() > 2 && rest.first() == joints.last();
+    joints.extend(rest.into_iter().skip(usize::from(stays)));
+    Way { joints, axes_from, along_axis: [out.len() > 1, into.len() > 1], blocked_by: None }
 }
 
-impl Space<'_> {
-    /// The pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path point to
-    /// where they stand at another.
-    fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
+impl Way {
+    /// Whether the move to one of its places (from 1) follows the tool axis.
+    pub fn is_along_axis(&self, place: usize) -> bool {
+        let [out, into] = self.along_axis;
+        (out && place == 1) || (into && place + 1 == self.joints.len())
+    }
+}
+
+impl<'a> Space<'a> {
+    /// Among the shapes of a problem; `None` where there are none.
+    pub fn new(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
+        Some(Self { problem, scene: problem.scene.as_deref()?, placement })
+    }
+
+    /// The number of the pair that hits where the tool is drawn back along its axis from a path point, or goes in there again.
+    pub fn retraction_hit(&self, at: AtPoint, by: f64) -> Option<usize> {
+        self.retraction(at, by).1
+    }
+
+    /// The number of the pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path
+    /// point to where they stand at another.
+    pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
         let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
         let between = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
             a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect()
@@ -120,7 +174,13 @@ impl Space<'_> {
 
     /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits: joint angles
     /// from the point on. rad
-    fn retracted(&self, (point, beta, posture, joints): (usize, f64, Posture, [f64; 6]), by: f64) -> Vec<[f64; 6]> {
+    fn retracted(&self, at: AtPoint, by: f64) -> Vec<[f64; 6]> {
+        self.retraction(at, by).0
+    }
+
+    /// The same with the pair that ends it.
+    fn retraction(&self, at: AtPoint, by: f64) -> (Vec<[f64; 6]>, Option<usize>) {
+        let AtPoint { point, beta, posture, joints } = at;
         let flange = self.problem.base_from_flange(point, self.placement, beta);
         let axis: Vector3<f64> = self.problem.placed(point, self.placement).axes.column(2).into_owned();
         let steps = (by / STRAIGHT_STEP).ceil().max(0.0) as usize;
@@ -133,15 +193,18 @@ impl Space<'_> {
             let next: [f64; 6] = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
             let is_inside = (0..6).all(|j| {
                 let joint = &self.problem.robot.joints()[j];
-                (joint.min..=joint.max).contains(&next[j])
+                (joint.min..=joint.max).contains(&next[j]) && (next[j] - last[j]).abs() <= MAX_SWING
             });
-            if !is_inside || self.hit((&last, point), (&next, point)).is_some() {
+            if !is_inside {
                 break;
+            }
+            if let Some(pair) = self.hit((&last, point), (&next, point)) {
+                return (all, Some(pair));
             }
             last = next;
             all.push(next);
         }
-        all
+        (all, None)
     }
 
     /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path point: the
@@ -267,6 +330,24 @@ mod tests {
         }
         assert_eq!(found.blocked_by, None);
         assert_eq!(way(&problem, &settings, &placement, [&free[0], &free[2]], 1), Some(found));
+    }
+
+    #[test]
+    fn external_axes_move_before_the_joints_on_a_way_and_with_them_on_the_direct_move() {
+        let [end, a, via, b, start] = [0.0, 1.0, 2.0, 3.0, 4.0].map(|angle| [angle; 6]);
+        let (out, into, over) = ([end, a], [start, b], [a, via, b]);
+        let found = |over: &[[f64; 6]], are_moved| {
+            let way = joined(&out, over, &into, are_moved);
+            (way.joints.clone(), way.axes_from, [1, 2, way.joints.len() - 1].map(|place| way.is_along_axis(place)))
+        };
+        let along = [true, false, true];
+        assert_eq!(found(&[], true), (vec![end, a, b, start], 2, along));
+        assert_eq!(found(&[], false), (vec![end, a, b, start], 2, along));
+        assert_eq!(found(&over, true), (vec![end, a, a, via, b, start], 2, along));
+        assert_eq!(found(&over, false), (vec![end, a, via, b, start], 2, along));
+        // Nothing moves but the axes, or nothing at all.
+        assert_eq!(joined(&[end], &[], &[end], true).joints, [end, end]);
+        assert_eq!(joined(&[end], &[], &[end], false).joints, [end, end]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Where the tool has to be after every move of a program: from the task, the placement and beta, or from the corrected path.
 
+use super::super::ways::Ways;
 use super::super::{corrected, motion};
 use super::geometry::{Frame, Matrix, about_z, cross, flange, length, seen};
 use crate::input::InputError;
@@ -8,12 +9,13 @@ use std::path::Path;
 use stead_model::robot::Pose;
 use stead_model::task::PathPoint;
 use stead_placement::problem::{Placement, Problem};
+use stead_placement::transfer::Way;
 
 /// One move as it has to be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Expected {
     pub segment: usize,
-    /// The path point, from 0, at which or behind which the tool is.
+    /// The path point, from 0, at which or behind which the tool is, or on a way between segments where the external axes are those of.
     pub point: usize,
     /// Whether all joints move at once.
     pub is_joint: bool,
@@ -39,13 +41,14 @@ pub(super) fn workpiece(placement: &Placement) -> Frame {
     Frame { turn: about_z(yaw), origin: [x, y, z].map(|m| m * 1e3) }
 }
 
-/// All moves of a program with this retraction (mm).
+/// All moves of a program with these ways between segments, and this retraction where there is none (mm).
 ///
 /// # Errors
 /// [`InputError`] for a corrected path that cannot be read.
 pub(super) fn moves(
     problem: &Problem,
     plan: &PlacedPlan,
+    ways: &Ways,
     corrected: Option<&Path>,
     approach: f64,
 ) -> Result<Vec<Expected>, InputError> {
@@ -63,8 +66,8 @@ pub(super) fn moves(
             (seen(&problem.external_axes, external).of(&placed).of(&tool_at(point, *beta)), row.joints)
         })
         .collect();
+    let (mounted, stand) = (frame(&problem.spindle.flange_from_tool), frame(&problem.robot.cell_from_base()));
     if let Some(file) = corrected {
-        let (mounted, stand) = (frame(&problem.spindle.flange_from_tool), frame(&problem.robot.cell_from_base()));
         for (tool, command) in tools.iter_mut().zip(corrected::printed_commands(file)?) {
             if command.is_corrected {
                 let joints = command.joints.map(f64::to_radians);
@@ -82,10 +85,28 @@ pub(super) fn moves(
             let external = external[point];
             Expected { segment: number + 1, point, is_joint, is_retracted: by > 0.0, tool, near, external }
         };
-        moves.push(at(range.start, true, approach));
         let has_approach = approach > 0.0;
-        moves.extend(range.clone().skip(usize::from(!has_approach)).map(|point| at(point, false, 0.0)));
-        if has_approach {
+        let via = |way: &Way, place: usize, point: usize| {
+            let near = way.joints[place];
+            let tool = stand.of(&flange(problem.robot.joints(), &near)).of(&mounted);
+            Expected { near, tool, is_retracted: true, ..at(point, !way.is_along_axis(place), 0.0) }
+        };
+        let is_at_first = if let Some(way) = ways.free_to(number) {
+            let end = way.joints.len() - 1;
+            for place in 1 + usize::from(way.along_axis[0])..end {
+                let point = if place < way.axes_from { range.start - 1 } else { range.start };
+                moves.push(via(way, place, point));
+            }
+            moves.push(at(range.start, !way.is_along_axis(end), 0.0));
+            true
+        } else {
+            moves.push(at(range.start, true, approach));
+            !has_approach
+        };
+        moves.extend(range.clone().skip(usize::from(is_at_first)).map(|point| at(point, false, 0.0)));
+        if let Some(way) = ways.free_from(number) {
+            moves.extend(way.along_axis[0].then(|| via(way, 1, range.end - 1)));
+        } else if has_approach {
             moves.push(at(range.end - 1, false, approach));
         }
     }

@@ -7,13 +7,14 @@
 
 mod expected;
 mod fanuc;
+mod free;
 mod geometry;
 mod krl;
 mod rapid;
 mod table;
 mod written;
 
-use super::{CorrectedPath, ProgramFormat, corrected::corrected_targets, motion::Target};
+use super::{CorrectedPath, ProgramFormat, corrected::corrected_targets, motion::Target, ways::Ways};
 use crate::input::{InputError, InputFile, input_file};
 use crate::plan::read_plan;
 use crate::run::Run;
@@ -45,6 +46,22 @@ pub struct MovePlace {
     pub is_retracted: bool,
 }
 
+impl MovePlace {
+    fn of(one: &Written, wanted: &Expected) -> Self {
+        let Expected { segment, point, is_retracted, .. } = *wanted;
+        Self { file: one.file.clone(), line: one.line, segment, point, is_retracted }
+    }
+}
+
+/// A move that hits what stands around.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MoveHit {
+    /// The move.
+    pub at: MovePlace,
+    /// The names of the two that come too near to each other.
+    pub pair: String,
+}
+
 /// A deviation and where it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Largest {
@@ -71,6 +88,8 @@ pub struct ProgramCheck {
     pub angle: Option<Largest>,
     /// The first way in which the moves are others than the plan's, but for their places.
     pub mismatch: Option<String>,
+    /// The moves between segments that hit what stands around.
+    pub hits: Vec<MoveHit>,
     /// The files that it was compared with.
     pub inputs: Vec<InputFile>,
 }
@@ -117,7 +136,8 @@ pub fn check(
         ProgramFormat::Csv => table::moves(&source)?,
     };
     inputs.push(input_file("program", program.to_string_lossy().replace('\\', "/"), source.text.as_bytes()));
-    let expected = expected::moves(&problem, &plan, corrected.map(|path| path.file), approach * 1e3)?;
+    let ways = Ways::new(&problem, &run.transfer, &plan, approach);
+    let expected = expected::moves(&problem, &plan, &ways, corrected.map(|path| path.file), approach * 1e3)?;
     let robot = &problem.robot;
     let lying = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
     let lying = Pose { rotation: lying, translation: Vector3::zeros() };
@@ -130,6 +150,7 @@ pub fn check(
         axes: &problem.external_axes,
     };
     let mut result = arm.compared(&source, &written.all, &expected)?;
+    result.hits = free::hits(&problem, &plan.placement, &ways, &written.all, &expected);
     result.inputs = inputs;
     Ok(result)
 }
@@ -172,6 +193,7 @@ impl Arm<'_> {
             position: None,
             angle: None,
             mismatch: None,
+            hits: Vec::new(),
             inputs: Vec::new(),
         };
         for (one, wanted) in written.iter().zip(expected) {
@@ -258,10 +280,6 @@ fn is_off(found: Option<f64>, wanted: Option<f64>) -> bool {
 fn keep_largest(largest: &mut Option<Largest>, value: f64, one: &Written, wanted: &Expected) {
     // What is no number is larger than any.
     if largest.as_ref().is_none_or(|found| value > found.value || value.is_nan()) {
-        let Expected { segment, point, is_retracted, .. } = *wanted;
-        *largest = Some(Largest {
-            value,
-            at: MovePlace { file: one.file.clone(), line: one.line, segment, point, is_retracted },
-        });
+        *largest = Some(Largest { value, at: MovePlace::of(one, wanted) });
     }
 }

@@ -3,7 +3,7 @@
 use super::bench::{ARMS, Bench};
 use crate::program::{ExportOptions, ProgramFormat};
 
-const TABLES: &str = "[mount]
+pub const TABLES: &str = "[mount]
 xyz_mm = [100, -50, 200]
 rpy_deg = [8, -5, 20]
 [[external_axis]]

@@ -4,4 +4,5 @@ pub(crate) mod bench;
 mod external_axes;
 mod reading;
 mod status;
+mod ways;
 mod writers;

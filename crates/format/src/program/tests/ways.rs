@@ -1,0 +1,58 @@
+//! Programs of runs with surroundings: ways between segments in every form, with external axes too, read back.
+
+use super::bench::{ARMS, Bench};
+use super::external_axes::TABLES;
+use crate::program::{ExportOptions, ProgramFormat};
+
+const SPINDLE: &str = "[[shape]]
+name = 'spindle, long'
+attached = 'flange'
+capsule_mm = { radius = 40, length = 100 }
+xyz_mm = [0, 0, 150]
+";
+
+/// With zones that the tool has to go round, or cannot leave.
+fn zones() -> Vec<String> {
+    let hood = |x: i32, height: i32| {
+        format!(
+            "[[keep_out]]\nname = 'hood'\npoints = ['tool']\nbox_mm = [500, 500, {height}]\nxyz_mm = [{x}, 250, {}]\n",
+            1000 + height
+        )
+    };
+    vec![String::new(), hood(1500, 300), hood(1350, 600), hood(1200, 100)]
+}
+
+#[test]
+fn programs_among_surroundings_are_read_back_with_what_hits() {
+    for (name, _, format) in ARMS {
+        for (zone, axes) in zones().iter().flat_map(|zone| [(zone, ""), (zone, TABLES)]) {
+            let positions = |point: usize| vec![0.01 * point as f64 - 0.04, 0.1 - 0.02 * point as f64];
+            let positions = |point: usize| if axes.is_empty() { Vec::new() } else { positions(point) };
+            let bench = Bench::with(name, &format!("{SPINDLE}{zone}{axes}"), positions);
+            for (format, folder) in [(format, "maker"), (ProgramFormat::Csv, "table")] {
+                let program = bench.export(&ExportOptions { format, ..bench.options() }).unwrap();
+                let found = bench.check(&bench.written(&program, folder)).unwrap();
+                assert!(found.is_sound(), "{name} {format:?} {zone}: {found:?}");
+                assert_eq!(found.hits.len(), program.warnings.len(), "{name} {format:?} {zone}: {found:?}");
+                assert!(found.hits.iter().all(|hit| !zone.is_empty() && hit.pair == "tool and hood"));
+                let marked = program.files.iter().any(|file| {
+                    file.text.contains("NOT FREE: this move hits") || file.text.contains(",\"tool and hood\"")
+                });
+                assert_eq!(marked, !found.hits.is_empty());
+            }
+        }
+    }
+}
+
+#[test]
+fn external_axes_stay_on_the_way_out_and_stand_right_on_the_way_in() {
+    let positions = |point: usize| vec![0.01 * point as f64 - 0.04, 0.1 - 0.02 * point as f64];
+    let bench = Bench::with("kuka", &format!("{SPINDLE}{TABLES}"), positions);
+    let program = bench.export(&bench.options()).unwrap();
+    let lines: Vec<&str> = program.files[1].text.lines().collect();
+    let at = lines.iter().position(|line| *line == "; segment 2, by a free way").unwrap();
+    // Point 3 ends segment 1, point 4 begins segment 2.
+    assert!(lines[at - 1].starts_with("LIN ") && lines[at - 1].contains(",E1 -10.00000,"), "{}", lines[at - 1]);
+    assert!(lines[at + 2].starts_with("PTP ") && lines[at + 2].contains(",E1 0.00000,"), "{}", lines[at + 2]);
+    assert!(lines[at + 3].starts_with("LIN ") && lines[at + 3].contains(",E1 0.00000,"), "{}", lines[at + 3]);
+}
