@@ -1,6 +1,6 @@
 //! The ways in which the part may lie: `[cell] orientations` and `orientation`.
 
-use super::tables::{CellTable, OrientationTable};
+use super::tables::CellTable;
 use crate::input::InputError;
 use crate::orientation::orientation_keys;
 use crate::place::Place;

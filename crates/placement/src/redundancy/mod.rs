@@ -46,7 +46,6 @@ use super::sense::Sense;
 use grid::finer;
 use off_grid::Spacing;
 use rayon::prelude::*;
-use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::simd::Instructions;

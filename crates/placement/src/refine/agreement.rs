@@ -13,8 +13,8 @@ use stead_numerics::monitor::Monitor;
 
 /// Objectives that agree to this are the same to whoever reads a result file. m
 const PRINTED: f64 = 1e-10;
-/// Steps of the compass search, the first and the last, in scaled variables: from 2 mm to less than a quarter.
-const STEPS: (f64, f64) = (0.02, 2e-3);
+/// Steps of the compass search, the first and the last, in scaled variables.
+const STEPS: (f64, f64) = (0.02, 2e-4);
 /// Rounds of it at the most.
 const MAX_ROUNDS: usize = 24;
 /// What a neighbour has to gain, relative.
