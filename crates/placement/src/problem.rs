@@ -1,5 +1,7 @@
 //! The placement problem: what may vary, what must hold, and what a placement is.
 
+mod in_setup;
+
 use super::criterion::Criterion;
 use super::postures::PostureRules;
 use super::setup::{Orientation, Setup};

@@ -1,16 +1,11 @@
 //! How the cell is set up for a placement: which way up the part lies, and where the external axes stand along the path.
 //!
-//! A [`Problem`] is always in one setup; [`Problem::in_setup`] is the same problem in another. Everything that knows where the workpiece
-//! is goes through [`Problem::base_from_workpiece`], so that no computation has to know of orientations and axes.
+//! A [`Problem`](crate::problem::Problem) is always in one setup.
 
-use super::problem::{Placement, Problem};
 use nalgebra::Matrix3;
-use std::borrow::Cow;
 use std::sync::Arc;
-use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried, robot_from_workpiece};
-use stead_model::robot::Pose;
+use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::task::Task;
-use stead_numerics::scalar::Scalar;
 
 /// A way in which the part may lie: turned before it is placed.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,111 +70,6 @@ impl Setup {
     pub fn at_rest(axes: &[ExternalAxis]) -> Self {
         let positions = axes.iter().map(ExternalAxis::nearest_to_zero).collect();
         Self { orientation: 0, positions: AxisPositions::Same(positions) }
-    }
-}
-
-impl Problem {
-    /// The same problem with the part and the axes set up otherwise.
-    pub fn in_setup(&self, setup: &Setup) -> Cow<'_, Self> {
-        if *setup == self.setup {
-            return Cow::Borrowed(self);
-        }
-        let mut problem = self.clone();
-        if setup.orientation != self.setup.orientation
-            && let Some(orientation) = self.orientations.get(setup.orientation)
-        {
-            problem.task = (*orientation.task).clone();
-        }
-        problem.setup = setup.clone();
-        Cow::Owned(problem)
-    }
-
-    /// Positions of the external axes at a path point. m or rad
-    pub fn axis_positions(&self, point: usize) -> &[f64] {
-        match &self.setup.positions {
-            AxisPositions::Same(positions) => positions,
-            AxisPositions::PerSegment(all) => all.get(self.task.path().segment_of(point)).map_or(&[], Vec::as_slice),
-            AxisPositions::PerPoint(all) => all.get(point).map_or(&[], Vec::as_slice),
-        }
-    }
-
-    /// The external axes with their positions along the path.
-    pub fn axis_paths(&self) -> Vec<AxisPath> {
-        let path = |(number, axis): (usize, &ExternalAxis)| AxisPath {
-            name: axis.name.clone(),
-            kind: axis.kind,
-            positions: (0..self.task.points().len()).map(|point| self.axis_positions(point)[number]).collect(),
-        };
-        self.external_axes.iter().enumerate().map(path).collect()
-    }
-
-    /// The frame that is placed, in the base frame, while path point `point` is machined: the workpiece frame of [`Problem::task`]. Axes
-    /// that carry the robot move it the other way. With a mounted robot the base frame is the cell frame
-    /// ([`Robot::mounted`](stead_model::robot::Robot::mounted)).
-    pub fn base_from_workpiece<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> Pose<T> {
-        if self.external_axes.is_empty() {
-            return placement.base_from_workpiece();
-        }
-        self.base_from_workpiece_at(self.axis_positions(point), placement)
-    }
-
-    /// The same with the external axes at given positions. m or rad
-    pub fn base_from_workpiece_at<T: Scalar>(&self, positions: &[f64], placement: &Placement<T>) -> Pose<T> {
-        robot_from_workpiece(&self.external_axes, positions).cast().then(&placement.base_from_workpiece())
-    }
-
-    /// The part itself, as the task file and its meshes have it, in the base frame while path point `point` is machined.
-    pub fn base_from_part(&self, point: usize, placement: &Placement) -> Pose<f64> {
-        self.turned(self.base_from_workpiece(point, placement))
-    }
-
-    /// The part itself, where the frame that is placed is given: turned by its orientation.
-    pub(crate) fn turned(&self, mut base_from_workpiece: Pose<f64>) -> Pose<f64> {
-        if let Some(orientation) = self.orientation() {
-            base_from_workpiece.rotation *= orientation.rotation;
-        }
-        base_from_workpiece
-    }
-
-    /// Where the external axes have brought the robot at a path point: the frame that rides with it, in which everything is stated, in the cell.
-    /// The identity where no axis carries the robot.
-    pub fn cell_from_carriage(&self, point: usize) -> Pose<f64> {
-        carried(&self.external_axes, self.axis_positions(point), Carried::Robot)
-    }
-
-    /// Which way up the part lies, where the run says several.
-    pub fn orientation(&self) -> Option<&Orientation> {
-        self.orientations.get(self.setup.orientation)
-    }
-
-    /// Whether any external axis moves between two neighbouring points of a segment.
-    pub fn moves_axes_along_segments(&self) -> bool {
-        match &self.setup.positions {
-            AxisPositions::PerPoint(all) => self
-                .task
-                .segments()
-                .iter()
-                .any(|span| span.clone().skip(1).any(|point| all.get(point) != all.get(point - 1))),
-            _ => false,
-        }
-    }
-
-    /// Where the axes stand at the same place all along the path, and only shift the workpiece: the same problem without axes, in a cell that is
-    /// shifted as far, and the shift. m
-    pub(crate) fn without_shifting_axes(&self) -> Option<(Self, [f64; 3])> {
-        let AxisPositions::Same(positions) = &self.setup.positions else { return None };
-        if self.external_axes.is_empty() || self.external_axes.iter().any(|axis| axis.kind != AxisKind::Rail) {
-            return None;
-        }
-        let shift: [f64; 3] = robot_from_workpiece(&self.external_axes, positions).translation.into();
-        let mut problem = self.clone();
-        problem.external_axes.clear();
-        problem.setup.positions = AxisPositions::default();
-        for (bounds, by) in problem.cell.position.iter_mut().zip(shift) {
-            bounds.min += by;
-            bounds.max += by;
-        }
-        Some((problem, shift))
     }
 }
 

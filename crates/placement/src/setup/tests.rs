@@ -4,12 +4,15 @@ use super::*;
 use crate::cell::Cell;
 use crate::outcome::Case;
 use crate::place::{Score, place, score, setup_at};
+use crate::problem::{Placement, Problem};
 use crate::settings::{LookupUse, SearchSettings, TransferSettings};
 use crate::symmetry::{Unsupported, Upright};
 use crate::testing::{five_segments, slanted};
 use nalgebra::{Vector3, vector};
-use stead_model::external_axis::AxisUse;
-use stead_model::robot::{Joint, Robot};
+use stead_cell::Attachment;
+use stead_cell::testing::{kr270_shapes, scene_of};
+use stead_model::external_axis::{AxisUse, Carried};
+use stead_model::robot::{Joint, Pose, Robot};
 use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
 
@@ -228,4 +231,23 @@ fn axes_and_orientations_are_refused_by_table_and_certificate() {
     problem.external_axes[0].max = 0.0;
     let outcome = place(&problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap();
     assert!(matches!(outcome.lookup_summary, Some(Ok(_))));
+}
+
+#[test]
+fn what_stands_in_the_cell_stays_there_when_a_rail_moves_the_robot() {
+    let with_rail = |at: f64| {
+        let mut problem = five_segments();
+        problem.scene = Some(Arc::new(scene_of(kr270_shapes(), 0.02)));
+        problem.external_axes = vec![rail(Carried::Robot, Vector3::x(), [at, at], AxisUse::Fixed)];
+        problem.setup = Setup::at_rest(&problem.external_axes);
+        problem
+    };
+    let problem = with_rail(0.5);
+    let scene = problem.scene.as_deref().unwrap();
+    let poses = problem.poses(scene, 0, &AT, &[0.0; 6]);
+    assert_eq!(poses.of(Attachment::Base).translation, vector![-0.5, 0.0, 0.0]);
+    // So the cell may not be shifted to where the robot sees it, which would leave the shapes behind.
+    assert!(problem.without_shifting_axes().is_none());
+    assert!(with_rail(0.0).without_shifting_axes().is_some());
+    assert!(Problem { scene: None, ..problem.clone() }.without_shifting_axes().is_some());
 }

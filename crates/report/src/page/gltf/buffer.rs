@@ -1,6 +1,5 @@
-//! The binary part of a glTF file, and the container of both parts.
+//! The binary part of a glTF file.
 
-use super::document::Document;
 use serde::Serialize;
 
 /// Component types of glTF.
@@ -136,32 +135,16 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    /// The container: header, the JSON part, the binary part.
-    pub fn finish(self, mut document: Document) -> Vec<u8> {
+    /// The bytes, padded, with accessors and views, and the buffer as the JSON part knows it, where there are any.
+    pub fn into_parts(self) -> (Vec<u8>, Vec<Accessor>, Vec<BufferView>, Vec<BufferLength>) {
         let Self { bytes, accessors, views } = self;
-        if !bytes.is_empty() {
-            document.buffers = vec![BufferLength { byte_length: bytes.len() }];
-        }
-        (document.accessors, document.buffer_views) = (accessors, views);
-        let mut json = crate::document::compact(&document);
-        pad(&mut json, b' ');
-        let length = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
-        let mut file = Vec::with_capacity(28 + json.len() + bytes.len());
-        file.extend(b"glTF");
-        file.extend(2_u32.to_le_bytes());
-        file.extend((28 + json.len() as u32 + bytes.len() as u32).to_le_bytes());
-        file.extend(length(&json));
-        file.extend(b"JSON");
-        file.extend(json);
-        file.extend(length(&bytes));
-        file.extend(b"BIN\0");
-        file.extend(bytes);
-        file
+        let length = (!bytes.is_empty()).then(|| BufferLength { byte_length: bytes.len() });
+        (bytes, accessors, views, length.into_iter().collect())
     }
 }
 
 /// Fills up to a multiple of four bytes.
-fn pad(bytes: &mut Vec<u8>, filler: u8) {
+pub(super) fn pad(bytes: &mut Vec<u8>, filler: u8) {
     bytes.resize(bytes.len().next_multiple_of(4), filler);
 }
 

@@ -1,7 +1,7 @@
-//! The JSON part of a glTF file: what of the format this crate writes.
+//! The JSON part of a glTF file: what of the format this crate writes; and the container of both parts.
 
 use super::super::shapes::Shaded;
-use super::buffer::{Accessor, Buffer, BufferLength, BufferView};
+use super::buffer::{Accessor, Buffer, BufferLength, BufferView, pad};
 use serde::Serialize;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
@@ -23,6 +23,28 @@ pub(super) struct Document {
     pub buffer_views: Vec<BufferView>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub buffers: Vec<BufferLength>,
+}
+
+impl Document {
+    /// The container: header, the JSON part, the binary part.
+    pub fn in_container(mut self, buffer: Buffer) -> Vec<u8> {
+        let bytes;
+        (bytes, self.accessors, self.buffer_views, self.buffers) = buffer.into_parts();
+        let mut json = crate::document::compact(&self);
+        pad(&mut json, b' ');
+        let length = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
+        let mut file = Vec::with_capacity(28 + json.len() + bytes.len());
+        file.extend(b"glTF");
+        file.extend(2_u32.to_le_bytes());
+        file.extend((28 + json.len() as u32 + bytes.len() as u32).to_le_bytes());
+        file.extend(length(&json));
+        file.extend(b"JSON");
+        file.extend(json);
+        file.extend(length(&bytes));
+        file.extend(b"BIN\0");
+        file.extend(bytes);
+        file
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]

@@ -185,7 +185,7 @@ impl Writer {
     fn finish(self) -> Vec<u8> {
         let Self { mut document, buffer } = self;
         document.asset = Asset { version: "2.0", generator: concat!("stead ", env!("CARGO_PKG_VERSION")) };
-        buffer.finish(document)
+        document.in_container(buffer)
     }
 }
 
