@@ -33,7 +33,7 @@ struct Rooms {
 }
 
 /// Distances are told apart up to this beyond what is required: finding one that is larger costs more than it saves. m
-const AHEAD: f64 = 0.05;
+const AHEAD: f64 = 0.02;
 /// What rounding may make of sums of travelled distances. m
 const ROUNDING: f64 = 1e-9;
 

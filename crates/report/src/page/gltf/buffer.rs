@@ -138,7 +138,7 @@ impl Buffer {
     /// The bytes, padded, with accessors and views, and the buffer as the JSON part knows it, where there are any.
     pub fn into_parts(self) -> (Vec<u8>, Vec<Accessor>, Vec<BufferView>, Vec<BufferLength>) {
         let Self { bytes, accessors, views } = self;
-        let length = (!bytes.is_empty()).then(|| BufferLength { byte_length: bytes.len() });
+        let length = (!bytes.is_empty()).then_some(BufferLength { byte_length: bytes.len() });
         (bytes, accessors, views, length.into_iter().collect())
     }
 }
