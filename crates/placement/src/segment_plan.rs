@@ -14,6 +14,6 @@ pub struct SegmentPlan {
     pub betas: Vec<f64>,
     /// Real joint angles at each point. rad
     pub joints: Vec<[f64; 6]>,
-    /// What its points add to the objective ([`Problem::objective`]): by default the sum of the scores. m
+    /// What its points add to the objective ([`Problem::objective`](crate::problem::Problem::objective)): by default the sum of the scores. m
     pub cost: f64,
 }

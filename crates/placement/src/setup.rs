@@ -61,7 +61,7 @@ pub struct AxisPath {
 pub struct TriedSetup {
     /// The setup.
     pub setup: Setup,
-    /// The objectives of the best and of the worst placement in it ([`Problem::objective`]); `None` where none is feasible. m
+    /// The objectives of the best and of the worst placement in it ([`Problem::objective`](crate::problem::Problem::objective)); `None` where none is feasible. m
     pub objectives: Option<[f64; 2]>,
 }
 
