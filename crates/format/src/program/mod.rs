@@ -31,13 +31,13 @@ use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
 use corrected::corrected_targets;
 use layout::Layout;
-use motion::{Ends, Frames, Move, MoveKind, Target};
+use motion::{Frames, Move, MoveKind, Target};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
 use stead_placement::problem::{Placement, Problem};
-use ways::Ways;
+use ways::{Ends, Ways};
 
 /// The form of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 //! then linear moves through its points, and back; among surroundings the free way to the next segment in place of these.
 
 use super::ProgramError;
-use super::ways::Ways;
+use super::ways::{Ends, Ways};
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
 use stead_model::robot::{Pose, Posture};
@@ -105,15 +105,6 @@ pub(super) struct Frames {
     pub root_from_workpiece: Pose<f64>,
     /// The tool on the flange.
     pub flange_from_tool: Pose<f64>,
-}
-
-/// How close to its points a program goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ends {
-    /// How far the tool is retracted along its axis before and after a segment. m
-    pub approach: f64,
-    /// Whether corners are blended.
-    pub has_blending: bool,
 }
 
 /// A retracted point is gone to in this many steps, each of which the arm must reach.

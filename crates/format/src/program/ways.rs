@@ -1,7 +1,6 @@
 //! How a program gets from segment to segment among the surroundings of its run: the ways that `stead place` looks for, found again from
 //! the plan, and what its other moves hit.
 
-use super::motion::Ends;
 use crate::plan::PlacedPlan;
 use stead_cell::Scene;
 use stead_numerics::message::Warning;
@@ -9,6 +8,15 @@ use stead_placement::problem::Problem;
 use stead_placement::redundancy::SegmentPlan;
 use stead_placement::settings::TransferSettings;
 use stead_placement::transfer::{AtPoint, Space, Way, way};
+
+/// How close to its points a program goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ends {
+    /// How far the tool is retracted along its axis before and after a segment. m
+    pub approach: f64,
+    /// Whether corners are blended.
+    pub has_blending: bool,
+}
 
 /// The ways between segments and the moves that are not free; empty where nothing stands around.
 #[derive(Debug, Clone, Default)]
