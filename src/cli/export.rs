@@ -62,12 +62,12 @@ Files written, none of which may be there yet:
   NAME.ls, NAME_01.ls, ..            fanuc, likewise
   NAME.csv                           csv: one row for each move
 The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
-Where the run has surroundings, moves between segments are the free ways of `stead place`; a move without one is a warning and a comment in
-the program. Without surroundings collisions are not checked. Run a program slowly and without a cut first. --check writes nothing.
+With surroundings, moves between segments are the free ways of `stead place`; a move without one is a warning, and a comment in
+the program. Without, collisions are not checked. Run a program slowly and without a cut first. --check writes nothing.
 
 Exit codes:
-  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, and no move between segments hits the surroundings
-  1  the arm does not reach a retracted point, a file could not be written, or with --check the program is not that of the plan or hits
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, and no move between segments hits
+  1  the arm does not reach a retracted point, a file could not be written; with --check: not the program of the plan, or it hits
   2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
