@@ -75,16 +75,17 @@ impl Problem {
         scene.first_hit(&self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
     }
 
-    /// The same by what is known from states looked at before: any such pair.
+    /// Any such pair of some kinds, by what is known from states looked at before.
     pub(crate) fn hit_after(
         &self,
         known: &mut Proximity,
         point: usize,
         placement: &Placement,
         joints: &[f64; 6],
+        kinds: &[PairKind],
     ) -> Option<usize> {
         let scene = self.scene.as_deref()?;
-        scene.next_hit(known, &self.poses(scene, point, placement, joints), &PairKind::OF_STATES)
+        scene.next_hit(known, &self.poses(scene, point, placement, joints), kinds)
     }
 
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
@@ -93,7 +94,7 @@ impl Problem {
         self.next_hit((point, beta), placement, posture, of_states, &mut Proximity::default())
     }
 
-    /// Any such pair of some kinds, by what is known from states looked at before.
+    /// [`Problem::hit_after`] for a path point at a free angle (rad) in a posture.
     pub(crate) fn next_hit(
         &self,
         (point, beta): (usize, f64),
@@ -102,9 +103,8 @@ impl Problem {
         kinds: &[PairKind],
         known: &mut Proximity,
     ) -> Option<usize> {
-        let scene = self.scene.as_deref()?;
         let joints = self.robot.inverse(&self.base_from_flange(point, placement, beta), posture).ok()?;
-        scene.next_hit(known, &self.poses(scene, point, placement, &joints), kinds)
+        self.hit_after(known, point, placement, &joints, kinds)
     }
 
     /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.

@@ -6,7 +6,7 @@ use super::problem::{Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
-use stead_cell::Proximity;
+use stead_cell::{PairKind, Proximity};
 use stead_model::robot::{Posture, turns::Range};
 use stead_numerics::monitor::Monitor;
 
@@ -110,7 +110,7 @@ pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monito
         allowed.sort_by(|a, b| a.0.score.total_cmp(&b.0.score));
         let mut hit = placement_hit;
         for (cell, joints) in &allowed {
-            match placement_hit.or_else(|| problem.hit_after(known, point, placement, joints)) {
+            match placement_hit.or_else(|| problem.hit_after(known, point, placement, joints, &PairKind::OF_STATES)) {
                 None => return Ok(*cell),
                 found => hit = hit.or(found),
             }

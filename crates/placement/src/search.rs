@@ -17,13 +17,14 @@ mod tests;
 
 use super::candidate::{Candidate, Objective, rank};
 use super::evaluator::Evaluator;
+use super::lookup::Look;
 use super::outcome::Generation;
 use super::problem::{Cell, Placement, Problem};
 use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use super::symmetry::{apart_about_axis_1, is_axis_1_vertical};
-use evaluation::{EVERYTHING, better_half, evaluate};
+use evaluation::{better_half, evaluate};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
@@ -111,7 +112,7 @@ pub fn generations(
     monitor: &Monitor,
 ) -> SearchResult {
     let problem = evaluator.planner().problem();
-    evaluate(evaluator, &mut population, (0, EVERYTHING), monitor);
+    evaluate(evaluator, &mut population, (0, Look::ALL.within), monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();

@@ -61,8 +61,8 @@ const HULL_TOLERANCE: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 
 impl Convex {
-    /// A solid that is not a mesh, and the pose of the library's form of it, whose cylinders stand along y; `None` where the hull of
-    /// a mesh cannot be formed.
+    /// A solid that is not a mesh, and the pose of the library's form of it, whose cylinders stand along y; `None` where a mesh
+    /// has no vertex.
     pub fn new(solid: &Solid) -> Option<(Self, ParryPose)> {
         let plain = |core: Core| Some((Self { core, radius: 0.0 }, ParryPose::IDENTITY));
         match solid {

@@ -31,7 +31,7 @@ impl Problem {
             } else {
                 let share = step as f64 / steps as f64;
                 self.on_the_way(scene, placement, (point, posture), [start, end], (share, &last.0))
-                    .unwrap_or_else(|| self.by_joints(scene, placement, point, [from, to], share))
+                    .unwrap_or_else(|| self.by_joints(scene, placement, [(from, point - 1), (to, point)], share))
             };
             let hit = scene.next_hit(known, &next.1, &PairKind::OF_STATES);
             if let Some(pair) = hit {
@@ -64,7 +64,7 @@ impl Problem {
             rotation: rotation_from_vector(&turn) * a.rotation,
             translation: a.translation + (b.translation - a.translation) * share,
         };
-        let positions = self.positions_between(point, share);
+        let positions = self.positions_between([point - 1, point], share);
         let part = self.turned(self.base_from_workpiece_at(&positions, placement));
         let flange = part.then(&workpiece_from_tool).then(&flange_from_tool.inverse());
         let found = self.robot.inverse(&flange, posture).ok()?;
@@ -72,22 +72,23 @@ impl Problem {
         Some((joints, self.poses_at(scene, &positions, placement, &joints)))
     }
 
-    /// The same on the straight way of the joints.
-    fn by_joints(
+    /// Where the arm and all else is a share of the straight way of the joints (rad), the external axes moving evenly from where they stand at
+    /// one path point to where they stand at another.
+    pub(crate) fn by_joints(
         &self,
         scene: &Scene,
         placement: &Placement,
-        point: usize,
-        [from, to]: [&[f64; 6]; 2],
+        [from, to]: [(&[f64; 6], usize); 2],
         share: f64,
     ) -> ([f64; 6], Poses) {
-        let joints: [f64; 6] = std::array::from_fn(|j| from[j] + (to[j] - from[j]) * share);
-        (joints, self.poses_at(scene, &self.positions_between(point, share), placement, &joints))
+        let joints: [f64; 6] = std::array::from_fn(|j| from.0[j] + (to.0[j] - from.0[j]) * share);
+        let positions = self.positions_between([from.1, to.1], share);
+        (joints, self.poses_at(scene, &positions, placement, &joints))
     }
 
-    /// Positions of the external axes a share of the way to a path point from the one before. m or rad
-    fn positions_between(&self, point: usize, share: f64) -> Vec<f64> {
-        let [start, end] = [point - 1, point].map(|point| self.axis_positions(point));
+    /// Positions of the external axes a share of the way from one path point to another. m or rad
+    fn positions_between(&self, points: [usize; 2], share: f64) -> Vec<f64> {
+        let [start, end] = points.map(|point| self.axis_positions(point));
         start.iter().zip(end).map(|(start, end)| start + (end - start) * share).collect()
     }
 }

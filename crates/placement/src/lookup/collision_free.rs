@@ -6,9 +6,9 @@
 use super::objective::Workspace;
 use super::{BetaGrid, LookupTable};
 use crate::problem::Placement;
-use crate::redundancy::{StateSet, forbid};
+use crate::redundancy::{StateSet, forbid, kinds_left};
 use std::ops::Range as Span;
-use stead_cell::{PairKind, Proximity};
+use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
 
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
@@ -74,8 +74,7 @@ impl LookupTable<'_> {
         known: &mut Proximity,
     ) -> bool {
         let [plain, flipped] = PostureClass::ALL[class].postures();
-        // What spindle and holder hit is out of the table already.
-        let kinds: &[PairKind] = if grid.tool_hits.is_some() { &PairKind::OF_JOINTS } else { &PairKind::OF_STATES };
+        let kinds = kinds_left(grid.tool_hits.as_deref());
         let mut hit = |posture| self.problem.next_hit((point, grid.beta(beta)), placement, posture, kinds, known);
         let Some(pair) = hit(plain) else { return false };
         let knows_flips =

@@ -5,7 +5,7 @@
 //! its grid. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
 
 use super::joint_turns::SegmentChoice;
-use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, off_grid};
+use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, kinds_left, off_grid};
 use crate::candidate::Objective;
 use crate::collision::PlanHit;
 use crate::problem::Placement;
@@ -208,11 +208,6 @@ impl Planner<'_> {
         self.problem.plan_hits(placement, plan, with_motions)
     }
 
-    /// The kinds of pairs that states of the grid are looked at for: not for spindle and holder where those were looked at before.
-    fn kinds(&self) -> &'static [PairKind] {
-        if self.tool_hits.is_some() { &PairKind::OF_JOINTS } else { &PairKind::OF_STATES }
-    }
-
     /// Forbids the states of the grid next to one of a plan that hits.
     fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut StateSet) {
         let count = self.grid.beta_count;
@@ -226,10 +221,10 @@ impl Planner<'_> {
             let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
             for beta in [nearest, other] {
                 if !forbidden.contains(point, class, beta) {
-                    let mut known = Proximity::default();
+                    let (kinds, mut known) = (kinds_left(self.tool_hits.as_deref()), Proximity::default());
                     let mut hits = |k| {
                         let state = (point, self.grid.beta(k));
-                        self.problem.next_hit(state, placement, plan.posture, self.kinds(), &mut known).is_some()
+                        self.problem.next_hit(state, placement, plan.posture, kinds, &mut known).is_some()
                     };
                     forbid((point, class), (beta, count, 1), &mut hits, forbidden);
                     return;

@@ -37,6 +37,7 @@ pub(crate) use collision_free::forbid;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
 pub use state_set::StateSet;
+pub(crate) use state_set::kinds_left;
 
 use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};

@@ -4,7 +4,7 @@ use super::super::evaluate::batch::StateGrid;
 use crate::problem::{Problem, Redundancy};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use stead_cell::Proximity;
+use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
 
 /// A set of states: path point, posture class, number of beta.
@@ -97,6 +97,11 @@ impl StateSet {
         let with_any = rows.into_iter().enumerate().filter(|(_, bits)| !bits.is_empty());
         Some(Self { points: with_any.map(|(point, bits)| (point, std::array::from_fn(|_| bits.clone()))).collect() })
     }
+}
+
+/// The kinds of pairs that states of a grid are looked at for: not for spindle and holder where those were looked at before.
+pub(crate) fn kinds_left(tool_hits: Option<&StateSet>) -> &'static [PairKind] {
+    if tool_hits.is_some() { &PairKind::OF_JOINTS } else { &PairKind::OF_STATES }
 }
 
 /// States of tool and workpiece that are looked at ahead of all plans, at the most.

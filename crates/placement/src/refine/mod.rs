@@ -29,6 +29,7 @@ pub mod subproblem;
 pub use agreement::found_again;
 
 use super::evaluator::{self, Evaluator};
+use super::lookup::Look;
 use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
@@ -171,7 +172,7 @@ fn poll(
         Sense::Max => -1.0,
     };
     let mut look = |placement: &Placement, within: [f64; 2]| evaluator.approximate(placement, scheme, within, space);
-    let here = look(&centre.placement, [f64::NEG_INFINITY, f64::INFINITY]);
+    let here = look(&centre.placement, Look::ALL.within);
     // Collisions only make a mean larger.
     let most = here.filter(|_| sense == Sense::Min).unwrap_or(f64::INFINITY);
     let mut best: Option<Solution> = None;

@@ -3,13 +3,11 @@
 use super::{LAST_LOOK, UNEVALUATED};
 use crate::candidate::{Candidate, Objective};
 use crate::evaluator::{self, Evaluator};
+use crate::lookup::Look;
 use crate::sense::Sense;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_numerics::monitor::Monitor;
-
-/// Any objective. m
-pub(super) const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The bounds of the objectives of the better half of a sorted population: what is not within them even without collisions hardly ever
 /// becomes a parent, and is looked at more closely before it is refined. Where the worst placement is sought there are none: collisions
@@ -17,7 +15,7 @@ pub(super) const EVERYTHING: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 pub(super) fn better_half(population: &[Candidate], sense: Sense) -> [f64; 2] {
     match (population[population.len() / 2].objective.mean(), sense) {
         (Some(middle), Sense::Min) => [f64::NEG_INFINITY, middle],
-        _ => EVERYTHING,
+        _ => Look::ALL.within,
     }
 }
 

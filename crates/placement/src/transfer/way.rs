@@ -154,18 +154,10 @@ impl<'a> Space<'a> {
     /// point to where they stand at another.
     pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
         let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
-        let between = |a: &[f64], b: &[f64], share: f64| -> Vec<f64> {
-            a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect()
-        };
         // Several axes that turn together move nothing about one axis: over such a step it is as good as that.
         let most = start.iter().zip(end).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
         let steps = (most / AXIS_STEP).ceil().max(1.0);
-        let at = |step: usize| {
-            let share = step as f64 / steps;
-            let joints: [f64; 6] = std::array::from_fn(|j| from.0[j] + (to.0[j] - from.0[j]) * share);
-            let poses = self.problem.poses_at(self.scene, &between(start, end, share), self.placement, &joints);
-            (joints, poses)
-        };
+        let at = |step: usize| self.problem.by_joints(self.scene, self.placement, [from, to], step as f64 / steps);
         (0..steps as usize).find_map(|step| {
             let [(a, start), (b, end)] = [at(step), at(step + 1)];
             self.scene.motion((&a, &start), (&b, &end)).map(|hit| hit.pair)
