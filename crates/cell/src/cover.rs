@@ -84,17 +84,15 @@ impl Cover {
 /// A lower bound of the distance between a solid with spheres and one with a box, where it is below `enough`; else any value not
 /// below that. Both attachments stand at poses in one frame. m
 pub fn lower_bound(a: &Cover, a_at: &Pose<f64>, b: &Cover, b_at: &Pose<f64>, enough: f64) -> f64 {
-    // From the frame of a's attachment to that of b's box.
-    let box_from_a = b_at.then(&b.box_pose).inverse().then(a_at);
-    let of = |sphere: &Sphere| {
-        let outside = box_from_a.point(&sphere.centre).abs() - b.half;
-        let outside = outside.sup(&Vector3::zeros());
-        outside.norm() - sphere.radius
-    };
-    let coarse = of(&a.bound);
+    let outside = |in_box: Vector3<f64>| (in_box.abs() - b.half).sup(&Vector3::zeros()).norm();
+    let centre = b.box_pose.inverse_point(&b_at.inverse_point(&a_at.point(&a.bound.centre)));
+    let coarse = outside(centre) - a.bound.radius;
     if coarse >= enough {
         return coarse;
     }
+    // From the frame of a's attachment to that of b's box.
+    let box_from_a = b_at.then(&b.box_pose).inverse().then(a_at);
+    let of = |sphere: &Sphere| outside(box_from_a.point(&sphere.centre)) - sphere.radius;
     let fine = a.spheres.iter().map(of).fold(f64::INFINITY, f64::min);
     fine.max(coarse)
 }

@@ -17,7 +17,7 @@ pub mod surroundings;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 
-pub use scene::{Clearance, MotionHit, Pair, PairKind, Poses, Proximity, Scene, SceneError};
+pub use scene::{Clearance, MotionHit, Near, Pair, PairKind, Poses, Proximity, Scene, SceneError};
 pub use shape::{Attachment, KeepOut, Shape, TrackedPoint, Zone};
 pub use solid::{MeshError, Solid, TriangleMesh};
 pub use surroundings::{Surroundings, SurroundingsError};

@@ -62,11 +62,21 @@ impl Problem {
     pub fn placement_hit(&self, placement: &Placement) -> Option<usize> {
         let scene = self.scene.as_deref()?;
         let joints = self.robot.mid_range();
-        // Points with the external axes at the same positions are alike.
-        let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
-        let is_new = |point: &usize| *point == 0 || self.axis_positions(*point) != self.axis_positions(*point - 1);
         let hit = |point| scene.first_hit(&self.poses(scene, point, placement, &joints), &[PairKind::WorkpieceCell]);
-        (0..points).filter(is_new).find_map(hit)
+        self.still_points().find_map(hit)
+    }
+
+    /// The path points at which the external axes stand otherwise than at the point before: at others the part stands as it did. The
+    /// first alone where there are no axes.
+    pub(crate) fn still_points(&self) -> impl Iterator<Item = usize> {
+        let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
+        (0..points).filter(|point| self.starts_still(*point))
+    }
+
+    /// Whether a path point is one of [`Problem::still_points`].
+    pub(crate) fn starts_still(&self, point: usize) -> bool {
+        let has_axes = !self.external_axes.is_empty();
+        point == 0 || (has_axes && self.axis_positions(point) != self.axis_positions(point - 1))
     }
 
     /// The first pair that is nearer than it may be at a path point with the arm at joint angles (rad); `None` also where there is no scene.

@@ -28,6 +28,8 @@ pub enum Limit {
     MaxDeflection,
     /// The smallest distance of the path from axis 1.
     BaseDistance,
+    /// The distance that two shapes have to keep: the number of their pair in the scene.
+    Clearance(usize),
 }
 
 impl Limit {
@@ -45,10 +47,12 @@ pub struct Side {
 }
 
 /// A bound that holds an optimum.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ActiveBound {
     /// Which.
     pub side: Side,
+    /// Of a distance that two shapes have to keep: their names.
+    pub names: Option<[String; 2]>,
     /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
     /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),
     /// m per unit of 1/kappa_F.

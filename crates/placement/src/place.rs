@@ -94,7 +94,7 @@ fn place_as_set_up(
     let sets = Sets::of(&untied, (&found, long), &basins[0], monitor);
     let [best, worst] = choose(&basins, sets.regrets().as_deref()).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
-    let cases = |refined, sense| stated_cases(problem, transfer, sense, refined, monitor);
+    let cases = |refined, sense| stated_cases((problem, &planner), transfer, sense, refined, monitor);
     let (of_best, of_worst) = rayon::join(|| cases(&best, Sense::Min), || cases(&worst, Sense::Max));
     let ([best_case, best_worst_plan], [worst_case, worst_worst_plan]) = (of_best, of_worst);
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
@@ -128,17 +128,18 @@ fn place_as_set_up(
     })
 }
 
-/// The best and the worst plan at a refined placement, with everything that there is to say of them.
+/// The best and the worst plan at a refined placement, with everything that there is to say of them; `untied` plans the problem in which
+/// the best plan is taken whatever the moves.
 fn stated_cases(
-    problem: &Problem,
+    (problem, untied): (&Problem, &Planner<'_>),
     transfer: &TransferSettings,
     placement_sense: Sense,
     refined: &Refined,
     monitor: &Monitor,
 ) -> [Case; 2] {
-    let untied = problem.untied();
+    let tied = (problem.postures.tie > 0.0).then(|| Planner::finer(problem));
     let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
-    let stated = StatedPlans::of(&Planner::finer(problem), refined, monitor);
+    let stated = StatedPlans::of(tied.as_ref().unwrap_or(untied), refined, monitor);
     Sense::BOTH.map(|plan_sense| {
         let plans = match plan_sense {
             Sense::Min => &stated.best,
@@ -146,8 +147,8 @@ fn stated_cases(
         };
         let active_bounds = match plan_sense {
             Sense::Min if monitor.should_stop() => None,
-            Sense::Min if placement_sense == Sense::Min => active_bounds(&untied, solution),
-            Sense::Min => Some(active_walls(&Planner::finer(&untied), solution, scheme)),
+            Sense::Min if placement_sense == Sense::Min => active_bounds(untied.problem(), solution),
+            Sense::Min => Some(active_walls(untied, solution, scheme)),
             Sense::Max => Some(Vec::new()),
         };
         Case {

@@ -222,16 +222,23 @@ impl Problem {
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement
     /// and free angle `beta` in rad (Caro 2013, eq. 7 with eq. 8 to 10).
     pub fn base_from_flange<T: Scalar>(&self, point: usize, placement: &Placement<T>, beta: T) -> Pose<T> {
+        self.flange_at(&self.base_from_point(point, placement), beta)
+    }
+
+    /// The same for a point whose frame stands in the base frame as given.
+    pub fn flange_at<T: Scalar>(&self, base_from_point: &Pose<T>, beta: T) -> Pose<T> {
+        let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
+        base_from_point.then(&point_from_tool).then(&self.spindle.flange_from_tool.inverse().cast())
+    }
+
+    /// The frame of path point `point` in the base frame: its axes are the feed, the left of the feed and the tool axis.
+    pub fn base_from_point<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> Pose<T> {
         let path_point = &self.task.points()[point];
         let workpiece_from_point = Pose {
             rotation: path_point.workpiece_from_point().map(T::constant),
             translation: cast(&path_point.position),
         };
-        let point_from_tool = Pose { rotation: point_from_tool(beta), translation: Vector3::zeros() };
-        self.base_from_workpiece(point, placement)
-            .then(&workpiece_from_point)
-            .then(&point_from_tool)
-            .then(&self.spindle.flange_from_tool.inverse().cast())
+        self.base_from_workpiece(point, placement).then(&workpiece_from_point)
     }
 
     /// Path point `point` and its wrench in the robot base frame, the workpiece at a placement.

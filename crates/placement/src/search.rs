@@ -24,7 +24,7 @@ use super::redundancy::{self, Planner};
 use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
 use super::symmetry::{apart_about_axis_1, is_axis_1_vertical};
-use evaluation::{better_half, evaluate};
+use evaluation::{better_third, evaluate};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
@@ -128,7 +128,7 @@ pub fn generations(
                     breed(problem, settings, &population, sense, generation, &mut random)
                 })
                 .collect::<Vec<_>>();
-            let within = better_half(&population, sense);
+            let within = better_third(&population, sense);
             population.truncate(elite);
             population.extend(children);
             evaluate(evaluator, &mut population, (elite, within), monitor);

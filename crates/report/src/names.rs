@@ -48,7 +48,7 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
 }
 
 /// A limit that can hold an optimum, by its key of the files where it has one.
-pub fn limit(limit: Limit) -> String {
+fn limit(limit: Limit) -> String {
     match limit {
         Limit::CellX => "cell.x_mm".to_owned(),
         Limit::CellY => "cell.y_mm".to_owned(),
@@ -61,15 +61,28 @@ pub fn limit(limit: Limit) -> String {
         Limit::SpindleTurn => "turn of the spindle".to_owned(),
         Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
         Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
+        Limit::Clearance(_) => "collision.clearance_mm".to_owned(),
+    }
+}
+
+/// A bound that holds an optimum: its limit, and of a distance that shapes have to keep which two.
+pub fn bound(bound: &ActiveBound) -> String {
+    let limit = limit(bound.side.limit);
+    match &bound.names {
+        Some([a, b]) => format!("{limit} of {a} and {b}"),
+        None => limit,
     }
 }
 
 /// What moving a bound gains, with its unit.
 pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
     match bound.side.limit {
-        Limit::CellX | Limit::CellY | Limit::CellZ | Limit::MaxDeflection | Limit::BaseDistance => {
-            (bound.gain, "mm per mm")
-        }
+        Limit::CellX
+        | Limit::CellY
+        | Limit::CellZ
+        | Limit::MaxDeflection
+        | Limit::BaseDistance
+        | Limit::Clearance(_) => (bound.gain, "mm per mm"),
         Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate | Limit::SpindleTurn => {
             (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
         }

@@ -77,10 +77,16 @@ impl Convex {
                 Some((Self { core: Core::Segment(Segment::new(-end, end)), radius: *radius }, ParryPose::IDENTITY))
             }
             Solid::Hull(mesh) | Solid::Mesh(mesh) => {
-                let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
-                if points.is_empty() { None } else { plain(Core::Hull(Arc::new(Hull { points: corners(points) }))) }
+                let hull = Self::hull(mesh.vertices().iter().map(vector).collect())?;
+                Some((hull, ParryPose::IDENTITY))
             }
         }
+    }
+
+    /// The hull of points; `None` where there is none.
+    pub fn hull(points: Vec<Vector>) -> Option<Self> {
+        let formed = |points| Self { core: Core::Hull(Arc::new(Hull { points: corners(points) })), radius: 0.0 };
+        (!points.is_empty()).then(|| formed(points))
     }
 
     /// What its points are not farther from than its radius.
@@ -131,9 +137,33 @@ impl Convex {
         ((distance - around).max(0.0), axis)
     }
 
+    /// How far away another convex solid at a pose is, and the nearest points of the two cores in this one's frame; `None` where it is
+    /// not below `limit`, or they touch.
+    pub fn nearest(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(f64, [Vector; 2])> {
+        let around = self.radius + other.radius;
+        let points = nearest_core_points(self.core(), pose, other.core(), limit + around)?;
+        let distance = (points[1] - points[0]).length() - around;
+        (distance > 0.0 && distance < limit).then_some((distance, points))
+    }
+
     /// How far its points are from the core at the most. m
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+}
+
+/// The nearest points of two cores, the second at a pose in the frame of the first, in that frame; `None` where they are not nearer than
+/// `limit`, or touch.
+pub fn nearest_core_points(
+    a: &dyn SupportMap,
+    pose: &ParryPose,
+    b: &dyn SupportMap,
+    limit: f64,
+) -> Option<[Vector; 2]> {
+    let simplex = &mut VoronoiSimplex::new();
+    match closest_points_support_map_support_map_with_params(pose, a, b, limit, simplex, None) {
+        GJKResult::ClosestPoints(on_a, on_b, _) => Some([on_a, on_b]),
+        GJKResult::NoIntersection(_) | GJKResult::Intersection | GJKResult::Proximity(_) => None,
     }
 }
 

@@ -3,14 +3,14 @@
 //! A mesh is descended through its tree of boxes with the distance of each triangle from the other solid, so that a distance costs
 //! hardly more than an intersection: the library's own distance of meshes does not prune both sides.
 
-use super::convex::{Convex, core_distance};
+use super::convex::{Convex, core_distance, nearest_core_points};
 use super::vector;
 use crate::solid::TriangleMesh;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::{Shape as ParryShape, SupportMap, TriMesh, TriMeshFlags};
+use parry3d_f64::shape::{Shape as ParryShape, SupportMap, TriMesh, TriMeshFlags, Triangle};
 
 /// A mesh with its tree.
 #[derive(Clone)]
@@ -18,7 +18,12 @@ pub struct Mesh {
     triangles: TriMesh,
     /// Whether it is the surface of a solid.
     is_closed: bool,
+    /// The convex hull of its vertices.
+    hull: Convex,
 }
+
+/// A distance from the hull and one from the mesh that differ by no more are one: what GJK leaves open on round surfaces. m
+const SAME: f64 = 2e-6;
 
 /// What is held against a mesh, in the frame of the mesh.
 struct Other<'a> {
@@ -30,6 +35,18 @@ struct Other<'a> {
     bounds: Aabb,
 }
 
+impl<'a> Other<'a> {
+    fn convex(solid: &'a Convex, pose: &ParryPose) -> Self {
+        let (sphere, bounds) = solid.bounds(pose);
+        Self { core: solid.core(), radius: solid.radius(), from_mesh: pose.inverse(), sphere, bounds }
+    }
+
+    fn triangle(triangle: &'a Triangle, pose: &ParryPose) -> Self {
+        let (sphere, bounds) = (triangle.compute_bounding_sphere(pose), triangle.compute_aabb(pose));
+        Self { core: triangle, radius: 0.0, from_mesh: pose.inverse(), sphere, bounds }
+    }
+}
+
 impl Mesh {
     pub fn new(mesh: &TriangleMesh) -> Option<Self> {
         let vertices: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
@@ -37,46 +54,91 @@ impl Mesh {
         // What is inside of a closed mesh is told by the normals of its edges and vertices.
         let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
         let is_closed = solid.is_some();
-        Some(Self { triangles: solid.or_else(|| formed(TriMeshFlags::empty()))?, is_closed })
+        let triangles = solid.or_else(|| formed(TriMeshFlags::empty()))?;
+        Some(Self { triangles, is_closed, hull: Convex::hull(vertices)? })
     }
 
-    /// How far the box around it extends along a direction. m
+    /// How far it extends along a direction. m
     pub fn extent(&self, direction: Vector) -> f64 {
-        let bounds = self.triangles.local_aabb();
-        bounds.center().dot(direction) + bounds.half_extents().dot(direction.abs())
+        self.hull.extent(direction)
     }
 
-    /// The distance of a convex solid at a pose, where it is below `limit`; else a value not below that.
-    pub fn distance(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> f64 {
-        let (sphere, bounds) = solid.bounds(pose);
-        let other = Other { core: solid.core(), radius: solid.radius(), from_mesh: pose.inverse(), sphere, bounds };
+    /// The distance of a convex solid at a pose, where it is below `limit`; else a value not below that. The direction from one to the
+    /// other, where the hull of the mesh is as far away.
+    pub fn distance(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> (f64, Option<Vector>) {
+        unless_by_hulls(self.hull.distance(pose, solid, limit), limit, || self.distance_to_convex(pose, solid, limit))
+    }
+
+    fn distance_to_convex(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> f64 {
+        let other = Other::convex(solid, pose);
         let distance = self.surface_distance(&other, limit);
-        if distance > 0.0 && self.is_inside(sphere.center) { 0.0 } else { distance }
+        if distance > 0.0 && self.is_inside(other.sphere.center) { 0.0 } else { distance }
+    }
+
+    /// How far away a convex solid at a pose is, and the nearest points of the mesh and of its core in the frame of the mesh; `None` where
+    /// it is not below `limit`, or they touch.
+    pub fn nearest(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> Option<(f64, [Vector; 2])> {
+        let other = Other::convex(solid, pose);
+        let found = self.nearest_points(&other, limit)?;
+        (!self.is_inside(other.sphere.center)).then_some(found)
+    }
+
+    /// The same of another mesh: the triangles of that one, each against the tree of this one.
+    pub fn nearest_of_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(f64, [Vector; 2])> {
+        let mut nearest: Option<(f64, [Vector; 2])> = None;
+        for triangle in other.triangles.triangles() {
+            let limit = nearest.map_or(limit, |(distance, _)| distance);
+            nearest = self.nearest_points(&Other::triangle(&triangle, pose), limit).or(nearest);
+        }
+        nearest.filter(|_| !self.is_within_or_around(pose, other))
     }
 
     /// The same of another mesh.
-    pub fn distance_to_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> f64 {
-        // The triangles of the smaller one, each against the tree of the other.
-        if self.triangles.num_triangles() < other.triangles.num_triangles() {
-            return other.distance_to_mesh(&pose.inverse(), self, limit);
-        }
+    pub fn distance_to_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> (f64, Option<Vector>) {
+        let by_hulls = self.hull.distance(pose, &other.hull, limit);
+        unless_by_hulls(by_hulls, limit, || match self.triangles.num_triangles() < other.triangles.num_triangles() {
+            true => other.distance_to_triangles(&pose.inverse(), self, limit),
+            false => self.distance_to_triangles(pose, other, limit),
+        })
+    }
+
+    /// The triangles of the other mesh, each against the tree of this one.
+    fn distance_to_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> f64 {
         let mut nearest = limit.max(f64::MIN_POSITIVE);
         for triangle in other.triangles.triangles() {
-            let (sphere, bounds) = (triangle.compute_bounding_sphere(pose), triangle.compute_aabb(pose));
-            let one = Other { core: &triangle, radius: 0.0, from_mesh: pose.inverse(), sphere, bounds };
-            nearest = nearest.min(self.surface_distance(&one, nearest));
+            nearest = nearest.min(self.surface_distance(&Other::triangle(&triangle, pose), nearest));
             if nearest <= 0.0 {
                 return 0.0;
             }
         }
-        let inside = |outer: &Self, inner: &Self, pose: &ParryPose| {
-            inner.triangles.vertices().first().is_some_and(|v| outer.is_inside(pose.transform_point(*v)))
-        };
-        if inside(self, other, pose) || inside(other, self, &pose.inverse()) { 0.0 } else { nearest }
+        if self.is_within_or_around(pose, other) { 0.0 } else { nearest }
     }
 
-    /// The distance of the nearest triangle, where it is below `limit`.
+    /// Whether one of two meshes whose surfaces do not meet is inside of the other.
+    fn is_within_or_around(&self, pose: &ParryPose, other: &Self) -> bool {
+        let is_inside = |outer: &Self, inner: &Self, pose: &ParryPose| {
+            inner.triangles.vertices().first().is_some_and(|v| outer.is_inside(pose.transform_point(*v)))
+        };
+        is_inside(self, other, pose) || is_inside(other, self, &pose.inverse())
+    }
+
+    /// The distance of the nearest triangle, where it is below `limit`; else that.
     fn surface_distance(&self, other: &Other<'_>, limit: f64) -> f64 {
+        let limit = limit.max(f64::MIN_POSITIVE);
+        self.nearest_triangle(other, limit).map_or(limit, |(_, distance)| distance)
+    }
+
+    /// The distance of the nearest triangle, where it is below `limit` and above zero, and the nearest points.
+    fn nearest_points(&self, other: &Other<'_>, limit: f64) -> Option<(f64, [Vector; 2])> {
+        let (triangle, distance) = self.nearest_triangle(other, limit).filter(|(_, distance)| *distance > 0.0)?;
+        let triangle = self.triangles.triangle(triangle);
+        let points = nearest_core_points(other.core, &other.from_mesh, &triangle, f64::INFINITY)?;
+        let [on_other, on_mesh] = points.map(|point| other.from_mesh.inverse() * point);
+        Some((distance, [on_mesh, on_other]))
+    }
+
+    /// The nearest triangle and its distance, where that is below `limit`, a positive number.
+    fn nearest_triangle(&self, other: &Other<'_>, limit: f64) -> Option<(u32, f64)> {
         let node_cost = |node: &BvhNode, _: f64| {
             let apart = (node.mins() - other.bounds.maxs).max(other.bounds.mins - node.maxs()).max(Vector::ZERO);
             apart.length().max(box_distance(node, other.sphere.center, other.sphere.radius))
@@ -87,8 +149,7 @@ impl Mesh {
             Some((distance - other.radius).max(0.0))
         };
         // Only costs below the limit are found; the search stops at once where one is zero.
-        let limit = limit.max(f64::MIN_POSITIVE);
-        self.triangles.bvh().find_best(limit, node_cost, leaf_cost).map_or(limit, |(_, distance)| distance)
+        self.triangles.bvh().find_best(limit, node_cost, leaf_cost)
     }
 
     /// Whether a point is inside, where it is closed.
@@ -97,6 +158,20 @@ impl Mesh {
         let is_near = (0..3).all(|k| point[k] >= bounds.mins[k] && point[k] <= bounds.maxs[k]);
         self.is_closed && is_near && self.triangles.contains_local_point(point)
     }
+}
+
+/// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that direction where it is as
+/// large.
+fn unless_by_hulls(
+    (apart, axis): (f64, Option<Vector>),
+    limit: f64,
+    distance: impl FnOnce() -> f64,
+) -> (f64, Option<Vector>) {
+    if apart >= limit && apart > 0.0 {
+        return (apart, axis);
+    }
+    let distance = distance();
+    (distance, axis.filter(|_| apart > 0.0 && (distance - apart).abs() <= SAME))
 }
 
 /// The distance of a box of the tree from a point, less a radius.

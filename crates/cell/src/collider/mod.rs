@@ -54,6 +54,15 @@ pub struct Separation {
     pub axis: Option<Vector3<f64>>,
 }
 
+/// Where two solids are nearest to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Their distance. m
+    pub distance: f64,
+    /// The nearest points, of capsules those on their axes, in the common frame. m
+    pub points: [Vector3<f64>; 2],
+}
+
 impl Collider {
     /// Makes a solid ready, at a pose in the frame of its attachment. `None` where a mesh has no triangle.
     pub fn new(solid: &Solid, pose: &Pose<f64>) -> Option<Self> {
@@ -76,17 +85,36 @@ impl Collider {
     /// The same with the direction.
     pub fn separation(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> Separation {
         let [here, there] = [parry_pose(at) * self.pose, parry_pose(other_at) * other.pose];
-        let of_mesh = |distance: f64| Separation { distance, axis: None };
+        let found = |(distance, axis): (f64, Option<Vector>), from: &ParryPose| {
+            let axis = axis.map(|axis| from.rotation * axis);
+            Separation { distance, axis: axis.map(|axis| Vector3::new(axis.x, axis.y, axis.z)) }
+        };
         match (&self.form, &other.form) {
-            (Form::Convex(a), Form::Convex(b)) => {
-                let (distance, axis) = a.distance(&here.inv_mul(&there), b, limit);
-                let axis = axis.map(|axis| here.rotation * axis);
-                Separation { distance, axis: axis.map(|axis| Vector3::new(axis.x, axis.y, axis.z)) }
+            (Form::Convex(a), Form::Convex(b)) => found(a.distance(&here.inv_mul(&there), b, limit), &here),
+            (Form::Mesh(a), Form::Convex(b)) => found(a.distance(&here.inv_mul(&there), b, limit), &here),
+            (Form::Mesh(a), Form::Mesh(b)) => found(a.distance_to_mesh(&here.inv_mul(&there), b, limit), &here),
+            (Form::Convex(a), Form::Mesh(b)) => {
+                let Separation { distance, axis } = found(b.distance(&there.inv_mul(&here), a, limit), &there);
+                Separation { distance, axis: axis.map(|axis| -axis) }
             }
-            (Form::Mesh(mesh), Form::Convex(b)) => of_mesh(mesh.distance(&here.inv_mul(&there), b, limit)),
-            (Form::Convex(a), Form::Mesh(mesh)) => of_mesh(mesh.distance(&there.inv_mul(&here), a, limit)),
-            (Form::Mesh(a), Form::Mesh(b)) => of_mesh(a.distance_to_mesh(&here.inv_mul(&there), b, limit)),
         }
+    }
+
+    /// Where two solids are nearest to each other, where that is nearer than `limit` and they do not touch.
+    pub fn nearest(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> Option<Nearest> {
+        let [here, there] = [parry_pose(at) * self.pose, parry_pose(other_at) * other.pose];
+        let (found, from, is_swapped) = match (&self.form, &other.form) {
+            (Form::Convex(a), Form::Convex(b)) => (a.nearest(&here.inv_mul(&there), b, limit), here, false),
+            (Form::Mesh(a), Form::Convex(b)) => (a.nearest(&here.inv_mul(&there), b, limit), here, false),
+            (Form::Mesh(a), Form::Mesh(b)) => (a.nearest_of_mesh(&here.inv_mul(&there), b, limit), here, false),
+            (Form::Convex(a), Form::Mesh(b)) => (b.nearest(&there.inv_mul(&here), a, limit), there, true),
+        };
+        let (distance, points) = found?;
+        let mut points = points.map(|point| from * point).map(|point| Vector3::new(point.x, point.y, point.z));
+        if is_swapped {
+            points.reverse();
+        }
+        Some(Nearest { distance, points })
     }
 
     /// How far two solids are apart along a direction, a unit vector in the common frame from the first to the second: never more than
@@ -95,7 +123,7 @@ impl Collider {
         -self.extent(at, axis) - other.extent(other_at, &-axis)
     }
 
-    /// How far the solid, or a box around it, extends along a direction. m
+    /// How far the solid extends along a direction. m
     fn extent(&self, at: &Pose<f64>, axis: &Vector3<f64>) -> f64 {
         let in_attachment = vector(&at.rotation.tr_mul(axis));
         let direction = self.pose.rotation.inverse() * in_attachment;

@@ -2,7 +2,7 @@
 
 mod build;
 mod motion;
-
+mod near;
 mod proximity;
 mod quick;
 #[cfg(test)]
@@ -10,9 +10,10 @@ mod tests;
 
 pub use build::SceneError;
 pub use motion::MotionHit;
+pub use near::Near;
 pub use proximity::Proximity;
 
-use crate::collider::Collider;
+use crate::collider::{Collider, Separation};
 use crate::cover::{Cover, lower_bound};
 use crate::shape::{Attachment, TrackedPoint};
 use crate::surroundings::Surroundings;
@@ -280,12 +281,17 @@ impl Scene {
 
     /// The distance of a pair, where it is below `limit`; else a value not below that. m
     pub fn distance(&self, number: usize, poses: &Poses, limit: f64) -> f64 {
+        self.separation(number, poses, limit).distance
+    }
+
+    /// The same with the direction.
+    fn separation(&self, number: usize, poses: &Poses, limit: f64) -> Separation {
         match self.pairs[number].members {
             Members::Bodies(a, b) => {
                 let (a, b) = (&self.bodies[a], &self.bodies[b]);
-                a.collider.distance(&poses.frames[a.frame], &b.collider, &poses.frames[b.frame], limit)
+                a.collider.separation(&poses.frames[a.frame], &b.collider, &poses.frames[b.frame], limit)
             }
-            Members::Zone(zone, point) => self.zone_distance(zone, point, poses),
+            Members::Zone(zone, point) => Separation { distance: self.zone_distance(zone, point, poses), axis: None },
         }
     }
 

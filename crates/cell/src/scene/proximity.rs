@@ -54,6 +54,13 @@ impl Proximity {
         self.recent = None;
     }
 
+    /// Knows what another does, if it knows nothing itself.
+    pub fn begin_with(&mut self, other: &Self) {
+        if self.frames.is_none() {
+            self.clone_from(other);
+        }
+    }
+
     /// Goes on to a state.
     fn advance(&mut self, scene: &Scene, poses: &Poses) {
         let centres = scene.bodies.iter().map(|body| body.centre(poses));
@@ -70,11 +77,12 @@ impl Proximity {
         };
         self.before.travelled.clone_from(&self.now.travelled);
         self.before.apart_until.clone_from(&self.now.apart_until);
-        let turns: [f64; FRAMES] =
-            std::array::from_fn(|frame| largest_move(&before[frame].rotation, &poses.frames[frame].rotation));
+        let mut turns = [None; FRAMES];
         let known = self.centres.iter_mut().zip(&mut self.now.travelled);
         for ((body, now), (centre, travelled)) in scene.bodies.iter().zip(centres).zip(known) {
-            *travelled += (now - *centre).norm() + turns[body.frame] * body.cover.bound.radius;
+            let turned = || largest_move(&before[body.frame].rotation, &poses.frames[body.frame].rotation);
+            let turn: &mut f64 = turns[body.frame].get_or_insert_with(turned);
+            *travelled += (now - *centre).norm() + *turn * body.cover.bound.radius;
             *centre = now;
         }
     }

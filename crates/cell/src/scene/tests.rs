@@ -201,3 +201,29 @@ fn pairs_that_always_touch_are_named() {
     assert_eq!(scene(Vec::new()).unwrap_err(), SceneError::AlwaysTouching(vec![pair.clone()]));
     assert!(scene(vec![pair]).is_ok());
 }
+
+#[test]
+fn the_change_of_a_room_is_that_of_the_distance_to_first_order() {
+    let (scene, mut random) = (scene_of(kr270_shapes(), 0.01), ChaCha8Rng::seed_from_u64(7));
+    let (mut compared, mut changed) = (0, 0);
+    for _ in 0..3000 {
+        let (joints, workpiece) = (random_joints(&mut random), workpiece(&mut random));
+        let poses = scene.poses(&joints, &workpiece);
+        if scene.first_hit(&poses, &PairKind::ALL).is_some() {
+            continue;
+        }
+        let turned: [f64; 6] = std::array::from_fn(|j| joints[j] + 8e-4 * (random.random::<f64>() - 0.5));
+        let turned = scene.poses(&turned, &workpiece);
+        for near in scene.near(&poses, &PairKind::ALL, 0.1) {
+            let room = |poses: &Poses| scene.distance(near.pair, poses, FAR) - scene.pairs()[near.pair].required;
+            // GJK ends at some micrometres on round surfaces.
+            let rounding = 1e-5;
+            assert!((near.room - room(&poses)).abs() < rounding && near.room < 0.1);
+            let (change, real) = (scene.room_change(&near, &poses, &turned), room(&turned) - near.room);
+            assert!((change - real).abs() < 2.0 * rounding, "{near:?} {change} {real}");
+            compared += 1;
+            changed += usize::from(real.abs() > 5.0 * rounding);
+        }
+    }
+    assert!(compared > 300 && changed > 20, "{compared} {changed}");
+}

@@ -37,6 +37,11 @@ impl<T: Scalar> Pose<T> {
     pub fn point(&self, point: &Vector3<T>) -> Vector3<T> {
         self.rotation * point + self.translation
     }
+
+    /// Coordinates in b of a point given in a. m
+    pub fn inverse_point(&self, point: &Vector3<T>) -> Vector3<T> {
+        self.rotation.tr_mul(&(point - self.translation))
+    }
 }
 
 impl Pose<f64> {

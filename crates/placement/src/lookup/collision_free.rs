@@ -39,6 +39,7 @@ impl LookupTable<'_> {
                 }
                 let is_hit = self.hits(placement, (point, class), (grid, beta), along);
                 if is_hit {
+                    across.begin_with(along);
                     let hits = |k| self.hits(placement, (point, class), (grid, k), across);
                     forbid((point, PostureClass::ALL[class]), (beta, grid.count, stride), hits, forbidden);
                 } else {

@@ -62,7 +62,7 @@ pub struct LookupTable<'a> {
 }
 
 /// Points as near as this to each other along the path mostly hit together. m
-const SAME_STRETCH: f64 = 0.05;
+const SAME_STRETCH: f64 = 0.1;
 
 /// How many points of the path [`SAME_STRETCH`] has in the mean.
 fn stride(problem: &Problem) -> usize {

@@ -63,7 +63,8 @@ pub(super) fn best_alone(found: &[SearchResult; 2]) -> [SearchResult; 2] {
 }
 
 /// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first basin of
-/// each search goes ahead, to tell which of the others can still win.
+/// each search goes ahead, to tell which of the others can still win. What comes out is then held against the plans that are found
+/// anew ([`found_again`]), of all basins at once: that of one alone can take longer than the rest.
 pub(super) fn refine_basins(
     evaluator: &Evaluator<'_>,
     long: Option<&LongPath>,
@@ -73,55 +74,53 @@ pub(super) fn refine_basins(
     if let Some(path) = long {
         return long_refinement::refine_basins(path, evaluator.planner(), found, monitor);
     }
-    let jobs = SearchResult::jobs(found);
+    let jobs: usize = found.iter().map(|found| found.basins.len()).sum();
     let done = AtomicUsize::new(0);
-    let run = |jobs: &[(Sense, usize, &Candidate)],
-               of: usize,
-               known: &[Sense]|
-     -> Vec<(Sense, Refined, Option<Refinement>)> {
-        let refined = |(sense, rank, candidate): &(Sense, usize, &Candidate)| {
-            if *rank > 0 && monitor.should_stop() && known.contains(sense) {
-                return None;
-            }
-            let refined = refine_one(evaluator, *sense, candidate, monitor);
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            monitor.report(Progress::Steps { stage: "refining", done, total: of });
-            refined.map(|(refined, report)| (*sense, refined, report))
-        };
-        jobs.par_iter().filter_map(refined).collect()
+    // Each basin is one step to refine and one to be planned anew.
+    let report_done = || {
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        monitor.report(Progress::Steps { stage: "refining", done, total: 2 * jobs });
     };
-    let (ahead, others): (Vec<_>, Vec<_>) = jobs.iter().copied().partition(|(_, rank, _)| *rank == 0);
-    let mut results = run(&ahead, jobs.len(), &[]);
-    let known: Vec<Sense> = results.iter().map(|(sense, ..)| *sense).collect();
-    let can_win = |(sense, _, candidate): &(Sense, usize, &Candidate)| {
-        let first = results.iter().find(|(known, ..)| known == sense).map(|(_, refined, _)| refined.solution.objective);
-        match (evaluator.table(), first, candidate.objective.mean()) {
-            (Some(_), Some(first), Some(mean)) => match sense {
-                Sense::Min => mean * (1.0 - MAX_DEFICIT) < first,
-                Sense::Max => mean * (1.0 + MAX_DEFICIT) > first,
+    let refined = |sense: Sense, candidate: &Candidate| {
+        let refined = refine_one(evaluator, sense, candidate, monitor);
+        report_done();
+        refined
+    };
+    let refined_of = |sense: Sense, found: &SearchResult| -> Vec<(Refined, Option<Refinement>)> {
+        let Some((first, others)) = found.basins.split_first() else { return Vec::new() };
+        let first = refined(sense, first);
+        let ahead = first.as_ref().map(|(refined, _)| refined.solution.objective);
+        let can_win = |candidate: &Candidate| match (evaluator.table(), ahead, candidate.objective.mean()) {
+            (Some(_), Some(ahead), Some(mean)) => match sense {
+                Sense::Min => mean * (1.0 - MAX_DEFICIT) < ahead,
+                Sense::Max => mean * (1.0 + MAX_DEFICIT) > ahead,
             },
             _ => true,
-        }
+        };
+        // Once the caller asks to stop, other basins are only for a search whose first one has no plan.
+        let is_wanted = |candidate: &Candidate| can_win(candidate) && !(monitor.should_stop() && ahead.is_some());
+        let others: Vec<_> =
+            others.par_iter().filter(|other| is_wanted(other)).filter_map(|other| refined(sense, other)).collect();
+        first.into_iter().chain(others).collect()
     };
-    // Once the caller asks to stop, other basins are only for a search whose first one has no plan.
-    let is_wanted =
-        |job: &(Sense, usize, &Candidate)| can_win(job) && !(monitor.should_stop() && known.contains(&job.0));
-    let others: Vec<_> = others.into_iter().filter(is_wanted).collect();
-    let of = ahead.len() + others.len();
-    results.extend(run(&others, of, &known));
-    // In the order of the searches: a stable sort.
-    results.sort_by_key(|(sense, ..)| usize::from(*sense == Sense::Max));
-    let mut refinements = Vec::new();
-    let mut basins = [Vec::new(), Vec::new()];
-    for (sense, refined, report) in results {
-        refinements.extend(report);
-        basins[usize::from(sense == Sense::Max)].push(refined);
-    }
-    (basins, refinements)
+    let planned_again = |(refined, report): (Refined, Option<Refinement>)| {
+        let Refined { mut solution, scheme } = refined;
+        if report.is_some() {
+            solution = found_again(evaluator.planner(), solution, scheme.as_deref(), monitor);
+        }
+        report_done();
+        (Refined { solution, scheme }, report)
+    };
+    let (best, worst) = rayon::join(|| refined_of(Sense::Min, &found[0]), || refined_of(Sense::Max, &found[1]));
+    let all_again = |refined: Vec<(Refined, Option<Refinement>)>| -> (Vec<Refined>, Vec<Option<Refinement>>) {
+        refined.into_par_iter().map(planned_again).unzip()
+    };
+    let ((best, reports), (worst, others)) = rayon::join(|| all_again(best), || all_again(worst));
+    ([best, worst], reports.into_iter().chain(others).flatten().collect())
 }
 
 /// Refines one basin, or only plans it where the job is to stop.
-pub(super) fn refine_one(
+fn refine_one(
     evaluator: &Evaluator<'_>,
     sense: Sense,
     candidate: &Candidate,
@@ -133,7 +132,7 @@ pub(super) fn refine_one(
         (planned(planner, placement, scheme, &mut planner.workspace())?, None)
     } else {
         let (solution, report) = refine(evaluator, placement, sense, scheme, monitor)?;
-        (found_again(evaluator.planner(), solution, scheme, monitor), Some(report))
+        (solution, Some(report))
     };
     Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
 }

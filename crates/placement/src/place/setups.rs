@@ -150,7 +150,9 @@ impl Job<'_> {
         let Some(found) = improved(&untied, &start, self.monitor) else { return };
         let problem = self.problem.in_setup(&found.setup);
         let refined = Refined { solution: found.solution, scheme: None };
-        let [best, worst_plan] = stated_cases(&problem, self.transfer, Sense::Min, &refined, self.monitor);
+        let untied = problem.untied();
+        let planners = (&*problem, &Planner::finer(&untied));
+        let [best, worst_plan] = stated_cases(planners, self.transfer, Sense::Min, &refined, self.monitor);
         if best.plan.objective < outcome.cases.best.plan.objective {
             outcome.notes = notes::of(&problem, &best.plan, &best.cycle.feed);
             (outcome.cases.best, outcome.cases.best_worst_plan) = (best, worst_plan);

@@ -8,7 +8,7 @@ use super::joint_turns::SegmentChoice;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, kinds_left, off_grid};
 use crate::candidate::Objective;
 use crate::collision::PlanHit;
-use crate::problem::Placement;
+use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::{PairKind, Proximity};
@@ -45,6 +45,37 @@ pub(crate) fn forbid(
             }
         }
     }
+}
+
+/// A plan with beta taken off the grid ([`off_grid::refine`]). Where it would hit at some points, the states of these are looked at
+/// one by one.
+pub(crate) fn settled_among_free(
+    problem: &Problem,
+    placement: &Placement,
+    sense: Sense,
+    spacing: off_grid::Spacing,
+    plan: &SegmentPlan,
+) -> SegmentPlan {
+    let mut watched = vec![false; plan.points.len()];
+    for _ in 0..WATCHES {
+        let mut refined = plan.clone();
+        off_grid::refine_free(problem, placement, sense, spacing, &watched, &mut refined);
+        let hits = match refined.cost.is_finite() {
+            true => problem.plan_hits(placement, &refined, false),
+            false => Vec::new(),
+        };
+        if hits.is_empty() {
+            return refined;
+        }
+        // What hits at one point mostly hits at the next.
+        for place in hits.iter().map(|hit| hit.point - plan.points.start) {
+            let last = (place + 2).min(watched.len());
+            watched[place.saturating_sub(1)..last].fill(true);
+        }
+    }
+    let mut refined = plan.clone();
+    off_grid::refine_free(problem, placement, sense, spacing, &vec![true; watched.len()], &mut refined);
+    refined
 }
 
 impl Planner<'_> {
@@ -140,26 +171,9 @@ impl Planner<'_> {
             off_grid::refine(problem, placement, sense, spacing, plan);
             return;
         }
-        let hits = |plan: &SegmentPlan| problem.plan_hits(placement, plan, false);
-        if !hits(plan).is_empty() {
-            return;
+        if problem.plan_hits(placement, plan, false).is_empty() {
+            *plan = settled_among_free(problem, placement, sense, spacing, plan);
         }
-        let mut watched = vec![false; plan.points.len()];
-        for _ in 0..WATCHES {
-            let mut refined = plan.clone();
-            off_grid::refine_free(problem, placement, sense, spacing, &watched, &mut refined);
-            let hits = hits(&refined);
-            if hits.is_empty() {
-                *plan = refined;
-                return;
-            }
-            // What hits at one point mostly hits at the next.
-            for place in hits.iter().map(|hit| hit.point - plan.points.start) {
-                let last = (place + 2).min(watched.len());
-                watched[place.saturating_sub(1)..last].fill(true);
-            }
-        }
-        off_grid::refine_free(problem, placement, sense, spacing, &vec![true; watched.len()], plan);
     }
 
     /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others are left. Turns of

@@ -4,7 +4,7 @@
 //! same constraints as on the grid (real joint angles, exact limits on beta), and repeats until nothing moves; then the spacing is
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
-use super::super::evaluate::reference;
+use super::super::evaluate::at_point::AtPoint;
 use super::super::problem::{Placement, Problem, Redundancy};
 use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
@@ -76,7 +76,8 @@ struct Node {
 /// The plan given need not be one for this placement exactly: with an infinite cost, the betas of `plan` are only where the grid
 /// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
 pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
-    let allowed = |point, beta, plan: &SegmentPlan| allowed(problem, placement, point, beta, plan);
+    let at: Vec<AtPoint<'_>> = plan.points.clone().map(|point| AtPoint::new(problem, point, placement)).collect();
+    let allowed = |place: usize, beta, plan: &SegmentPlan| allowed(&at[place], beta, plan);
     refine_with(problem, &allowed, sense, range, plan)
 }
 
@@ -90,15 +91,16 @@ pub fn refine_free(
     plan: &mut SegmentPlan,
 ) -> bool {
     let first = plan.points.start;
-    let allowed = |point: usize, beta, plan: &SegmentPlan| {
-        let state = allowed(problem, placement, point, beta, plan)?;
-        let is_free = || problem.state_hit(point, placement, &state.joints).is_none();
-        (!watched[point - first] || is_free()).then_some(state)
+    let at: Vec<AtPoint<'_>> = plan.points.clone().map(|point| AtPoint::new(problem, point, placement)).collect();
+    let allowed = |place: usize, beta, plan: &SegmentPlan| {
+        let state = allowed(&at[place], beta, plan)?;
+        let is_free = || problem.state_hit(first + place, placement, &state.joints).is_none();
+        (!watched[place] || is_free()).then_some(state)
     };
     refine_with(problem, &allowed, sense, range, plan)
 }
 
-/// Refines among the states that `allowed` gives for a path point and beta (rad).
+/// Refines among the states that `allowed` gives for a point of the plan, from its first on, and beta (rad).
 fn refine_with(
     problem: &Problem,
     allowed: &(impl Fn(usize, f64, &SegmentPlan) -> Option<Allowed> + Sync),
@@ -138,7 +140,7 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
     let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
-        let state = allowed(problem, placement, point, plan.betas[place], plan)?;
+        let state = allowed(&AtPoint::new(problem, point, placement), plan.betas[place], plan)?;
         let node = turned(problem, &state, &plan.joints[place])?;
         replayed.joints[place] = node.joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
@@ -161,14 +163,14 @@ pub fn score(
     plan: &SegmentPlan,
     near: &[f64; 6],
 ) -> Option<f64> {
-    let state = allowed(problem, placement, point, beta, plan)?;
+    let state = allowed(&AtPoint::new(problem, point, placement), beta, plan)?;
     turned(problem, &state, near).map(|node| node.score)
 }
 
 /// The state of a path point in the posture of a plan, if it satisfies everything but the limits of the joints.
-fn allowed(problem: &Problem, placement: &Placement, point: usize, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
-    let state = reference::state(problem, point, placement, beta, plan.posture).ok()?;
-    is_allowed(problem, &state).then(|| Allowed { joints: state.joints, score: state.score() })
+fn allowed(at: &AtPoint<'_>, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
+    let state = at.state(beta, plan.posture).ok()?;
+    is_allowed(at.problem(), &state).then(|| Allowed { joints: state.joints, score: state.score() })
 }
 
 /// A state with the turns nearest to given joint angles (rad), if they are inside the limits.
@@ -186,7 +188,6 @@ fn lay(
     layers: &mut [Layer],
 ) {
     let middle = VALUES / 2;
-    let first = plan.points.start;
     layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
         if layer.is_fresh {
             return;
@@ -198,7 +199,7 @@ fn lay(
             // Every second value was met before, at the latest spacing.
             let met = known.iter().find(|value| value.beta == beta);
             let own = met.and_then(|value| value.node).filter(|node| k == middle && node.joints == plan.joints[place]);
-            let state = met.map_or_else(|| allowed(first + place, beta, plan), |value| value.state);
+            let state = met.map_or_else(|| allowed(place, beta, plan), |value| value.state);
             let turned = |state: &Allowed| turned(problem, state, &plan.joints[place]);
             Value { beta, state, node: own.or_else(|| state.as_ref().and_then(turned)) }
         });

@@ -4,7 +4,7 @@
 //! no grid meets it, and whoever asks for the placement alone is given another plan. So a refined solution is held against the
 //! plan found anew, and where they differ a compass search ends at a placement nearby that is as good by the planner's own plan.
 
-use super::{LENGTH_UNIT, Solution, planned};
+use super::{Solution, neighbours, planned};
 use crate::problem::Placement;
 use crate::redundancy::Planner;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ use stead_numerics::monitor::Monitor;
 /// Objectives that agree to this are the same to whoever reads a result file. m
 const PRINTED: f64 = 1e-10;
 /// Steps of the compass search, the first and the last, in scaled variables.
-const STEPS: (f64, f64) = (0.02, 2e-4);
+const STEPS: (f64, f64) = (0.0067, 7e-4);
 /// Rounds of it at the most.
 const MAX_ROUNDS: usize = 24;
 /// What a neighbour has to gain, relative.
@@ -39,20 +39,10 @@ pub fn found_again(
         Some(again) if again.objective <= refined.objective * (1.0 + GAIN) => return again,
         again => again,
     };
-    let cell = &planner.problem().cell;
     let mut step = STEPS.0;
     for _ in 0..MAX_ROUNDS {
         let centre = best.as_ref().map_or(refined.placement, |best| best.placement);
-        let neighbours: Vec<Placement> = (0..8)
-            .map(|k| {
-                let mut placement = centre;
-                let unit = if k / 2 < 3 { LENGTH_UNIT } else { 1.0 };
-                placement[k / 2] += if k % 2 == 0 { step } else { -step } * unit;
-                cell.clamp(&placement)
-            })
-            .filter(|placement| *placement != centre)
-            .collect();
-        let found: Vec<Option<Solution>> = neighbours.par_iter().map(plan).collect();
+        let found: Vec<Option<Solution>> = neighbours(planner.problem(), &centre, step).par_iter().map(plan).collect();
         let better = found.into_iter().flatten().min_by(|a, b| a.objective.total_cmp(&b.objective));
         let limit = best.as_ref().map_or(f64::INFINITY, |best| best.objective * (1.0 - GAIN));
         match better.filter(|better| better.objective < limit) {

@@ -9,10 +9,12 @@ use super::super::problem::{Placement, Problem};
 use super::super::redundancy::{Planner, Workspace};
 use super::linearise::{Curvature, UNITS, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
+use super::rooms::{NEAR_STAYING, Room, placement_rooms};
 use super::solver::Run;
 use super::subproblem::{Question, solve};
 use super::{Solution, planned};
 use nalgebra::{Matrix4, Vector4};
+use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 
@@ -92,10 +94,24 @@ fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64
 
 /// Gradient of the mean score of the best plan with respect to the placement, postures fixed. m per scaled unit
 pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
-    let locals = linearise(problem, solution, Curvature::Beta)?;
+    let locals = linearise(problem, solution, (Curvature::Beta, NEAR_STAYING))?;
     let question = Question { trust: 1e-3, curved: true, pose_stays: true };
     let answer = solve(problem, solution, &locals, question).ok()?;
     Some(Vector4::from(answer.pose_gradient))
+}
+
+/// The pairs of the part and what stands in the cell that a step of a scaled length can bring together: their slopes, and the
+/// direction in which they part.
+pub(super) fn touching(
+    problem: &Problem,
+    solution: &Solution,
+    within: f64,
+) -> impl Iterator<Item = (Room, Vector4<f64>)> {
+    placement_rooms(problem, &solution.placement).into_iter().filter_map(move |room| {
+        let slopes = room.pose_slopes();
+        let steepest = slopes.norm();
+        (steepest > 0.0 && room.room < within * steepest).then(|| (room, slopes / steepest))
+    })
 }
 
 /// Distance of the sampled neighbours, in scaled variables.
@@ -105,7 +121,8 @@ const SAMPLING: f64 = 2e-3;
 ///
 /// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the best
 /// plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector that a
-/// convex combination of them makes with the outward normals of the cell's active bounds. `None` once the caller asks to stop.
+/// convex combination of them makes with the outward normals of what holds the placement: walls of the cell, and shapes that
+/// the part or its fixture touches. `None` once the caller asks to stop.
 pub fn kkt_residual(
     planner: &Planner<'_>,
     solution: &Solution,
@@ -113,25 +130,29 @@ pub fn kkt_residual(
     monitor: &Monitor,
 ) -> Option<f64> {
     let problem = planner.problem();
-    let mut workspace = planner.workspace();
     let bounds = pose_bounds(problem, &solution.placement);
-    let mut gradients: Vec<Vector4<f64>> = pose_gradient(problem, solution).into_iter().collect();
-    let mut normals = Vec::new();
+    let mut normals: Vec<Vector4<f64>> = touching(problem, solution, SAMPLING).map(|(_, inward)| -inward).collect();
+    let mut sampled = Vec::new();
     for k in 0..4 {
-        for side in [-1.0, 1.0] {
-            let room = if side > 0.0 { bounds[k].max } else { -bounds[k].min };
+        for (side, room) in [(-1.0, -bounds[k].min), (1.0, bounds[k].max)] {
             if room < SAMPLING {
                 normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
                 continue;
             }
-            if monitor.should_stop() {
-                return None;
-            }
             let mut placement = solution.placement;
             placement[k] += side * SAMPLING * UNITS[k];
-            let near = planned(planner, &placement, scheme, &mut workspace);
-            gradients.extend(near.and_then(|near| pose_gradient(problem, &near)));
+            sampled.push(placement);
         }
     }
+    let gradient = |workspace: &mut Workspace, placement: &Placement| {
+        let near = || planned(planner, placement, scheme, workspace);
+        (!monitor.should_stop()).then(near).flatten().and_then(|near| pose_gradient(problem, &near))
+    };
+    let near: Vec<Option<Vector4<f64>>> = sampled.par_iter().map_init(|| planner.workspace(), gradient).collect();
+    if monitor.should_stop() {
+        return None;
+    }
+    let gradients: Vec<Vector4<f64>> =
+        pose_gradient(problem, solution).into_iter().chain(near.into_iter().flatten()).collect();
     Some(shortest(&gradients, &normals))
 }

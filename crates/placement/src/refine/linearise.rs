@@ -3,6 +3,7 @@
 use super::super::criterion::Criterion;
 use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
 use super::super::problem::{Placement, Problem};
+use super::rooms::{Room, rooms};
 use super::{LENGTH_UNIT, Solution};
 use crate::redundancy::SegmentPlan;
 use nalgebra::{Matrix5, SymmetricEigen};
@@ -24,6 +25,8 @@ pub struct Local {
     pub sets: Vec<LocalScore>,
     /// Real joint angles. rad
     pub joints: [f64; 6],
+    /// The shapes that are near each other.
+    pub rooms: Vec<Room>,
     /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
     /// left out; over several sets their mean, or that of the worst.
     /// m per square unit
@@ -62,8 +65,8 @@ pub enum Curvature {
 /// Points that one thread linearises at least.
 const MIN_SHARE: usize = 200;
 
-/// All path points of a solution, in order; `None` when one cannot be reached, which a solution rules out.
-pub fn linearise(problem: &Problem, solution: &Solution, asked: Curvature) -> Option<Vec<Local>> {
+/// All path points of a solution, in order, with as much curvature as asked for and the shapes that have less room than a limit (m); `None` when one cannot be reached, which a solution rules out.
+pub fn linearise(problem: &Problem, solution: &Solution, asked: (Curvature, f64)) -> Option<Vec<Local>> {
     let of_plan = |plan: &'_ SegmentPlan| {
         let points: Vec<usize> = plan.points.clone().collect();
         let local = |(place, point): (usize, usize)| local(problem, &solution.placement, plan, place, point, asked);
@@ -80,7 +83,7 @@ fn local(
     plan: &SegmentPlan,
     place: usize,
     point: usize,
-    asked: Curvature,
+    (asked, within): (Curvature, f64),
 ) -> Option<Local> {
     let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
     let mut centre = gradient(problem, point, at, plan.posture)?;
@@ -96,7 +99,8 @@ fn local(
         let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
         LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
     });
-    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], curvature })
+    let rooms = rooms(problem, (point, plan.betas[place]), placement, plan.posture, within);
+    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], rooms, curvature })
 }
 
 /// A norm that steps of this size could bring to zero has its kink near; in scaled variables.

@@ -3,7 +3,7 @@
 //! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
 //! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
 //! so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of beta and the
-//! cell are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
+//! cell and the distances of shapes are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
 //! Derivatives are exact ([`linearise`]). Then postures, turns and betas are planned anew, and so on until neither changes.
 //!
 //! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
@@ -22,6 +22,7 @@ mod agreement;
 pub mod ascent;
 pub mod linearise;
 pub mod programme;
+pub mod rooms;
 mod rows;
 pub mod solver;
 pub mod subproblem;
@@ -32,8 +33,9 @@ use super::evaluator::{self, Evaluator};
 use super::lookup::Look;
 use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
-use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid};
+use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid, settled_among_free};
 use super::sense::Sense;
+use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 
@@ -86,7 +88,6 @@ pub fn refine(
     let planner = evaluator.planner();
     let problem = planner.problem();
     let mut workspace = planner.workspace();
-    let mut space = evaluator.workspace();
     let mut best = planned(planner, start, scheme, &mut workspace)?;
     let mut report = Refinement {
         sense,
@@ -133,7 +134,7 @@ pub fn refine(
         let gained = (before - best.objective).abs();
         if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
-            match poll(evaluator, &best, sense, scheme, (&mut workspace, &mut space), monitor) {
+            match poll(evaluator, &best, sense, scheme, monitor) {
                 Some(better) => best = better,
                 None => break,
             }
@@ -156,60 +157,77 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
+/// Walls that leave a neighbour this near, as a share of the distance asked for, leave none.
+const NEAR: f64 = 0.01;
+
+/// The placements a distance (in scaled variables) before and behind another along x, y, z and yaw, as far as the cell allows.
+fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Placement> {
+    let along = (0..4).flat_map(|k| [(k, -1.0), (k, 1.0)]);
+    let moved = |(k, side): (usize, f64)| {
+        let mut placement = *centre;
+        placement[k] += side * distance * linearise::UNITS[k];
+        problem.cell.clamp(&placement)
+    };
+    along.map(moved).filter(|placement| !is_near(placement, centre, NEAR * distance)).collect()
+}
+
+/// Whether two placements differ by no more than this in any scaled variable.
+fn is_near(a: &Placement, b: &Placement, distance: f64) -> bool {
+    (0..4).all(|k| (a[k] - b[k]).abs() <= distance * linearise::UNITS[k])
+}
+
 /// The best neighbour along the placement axes, if it is better by more than [`GAIN`]; of those planned before a stop.
 fn poll(
     evaluator: &Evaluator<'_>,
     centre: &Solution,
     sense: Sense,
     scheme: Option<&[Posture]>,
-    (workspace, space): (&mut Workspace, &mut evaluator::Workspace),
     monitor: &Monitor,
 ) -> Option<Solution> {
     let planner = evaluator.planner();
     let problem = planner.problem();
-    let sign = match sense {
-        Sense::Min => 1.0,
-        Sense::Max => -1.0,
+    let sign = sense.sign();
+    let look = |placement: &Placement, within: [f64; 2], space: &mut evaluator::Workspace| {
+        evaluator.approximate(placement, scheme, within, space)
     };
-    let mut look = |placement: &Placement, within: [f64; 2]| evaluator.approximate(placement, scheme, within, space);
-    let here = look(&centre.placement, Look::ALL.within);
+    let here = look(&centre.placement, Look::ALL.within, &mut evaluator.workspace());
     // Collisions only make a mean larger.
     let most = here.filter(|_| sense == Sense::Min).unwrap_or(f64::INFINITY);
+    // A neighbour that an approximation, which errs far less from one neighbour to the next, sees to be no better is not planned.
+    let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
+    let planned_if_better = |(workspace, space): &mut (Workspace, evaluator::Workspace),
+                             placement: &Placement|
+     -> Option<Solution> {
+        let is_worse = |space| here.zip(look(placement, [f64::NEG_INFINITY, most], space)).is_some_and(is_no_better);
+        if monitor.should_stop() || is_worse(space) {
+            return None;
+        }
+        planned(planner, placement, scheme, workspace)
+    };
+    let limit = centre.objective * (1.0 - sign * GAIN) * sign;
     let mut best: Option<Solution> = None;
     for distance in POLLS {
-        for k in 0..4 {
-            for side in [-1.0, 1.0] {
-                let mut placement = centre.placement;
-                placement[k] += side * distance * linearise::UNITS[k];
-                let placement = problem.cell.clamp(&placement);
-                // A neighbour that the cell does not allow, or that an approximation, which errs far less from one neighbour to
-                // the next, sees to be no better.
-                let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
-                if monitor.should_stop() {
-                    return best;
-                }
-                if placement == centre.placement
-                    || here.zip(look(&placement, [f64::NEG_INFINITY, most])).is_some_and(is_no_better)
-                {
-                    continue;
-                }
-                let Some(near) = planned(planner, &placement, scheme, workspace) else { continue };
-                let known = best.as_ref().map_or(centre.objective * (1.0 - sign * GAIN), |best| best.objective);
-                if near.objective * sign < known * sign {
-                    best = Some(near);
-                }
-            }
-        }
+        let planned: Vec<Option<Solution>> = neighbours(problem, &centre.placement, distance)
+            .par_iter()
+            .map_init(|| (planner.workspace(), evaluator.workspace()), planned_if_better)
+            .collect();
+        let better = planned.into_iter().flatten().filter(|near| near.objective * sign < limit);
+        best = better.reduce(|known, next| if next.objective * sign < known.objective * sign { next } else { known });
         if best.is_some() {
             break;
         }
     }
+    let mut workspace = planner.workspace();
     // Along an edge of what is allowed, the same way leads on.
     while let Some(known) = best.as_ref().filter(|_| !monitor.should_stop()) {
         let ahead = Placement::from(std::array::from_fn(|k| {
             centre.placement[k] + 2.0 * (known.placement[k] - centre.placement[k])
         }));
-        let next = planned(planner, &problem.cell.clamp(&ahead), scheme, workspace);
+        let ahead = problem.cell.clamp(&ahead);
+        if is_near(&ahead, &known.placement, NEAR * POLLS[1]) {
+            break;
+        }
+        let next = planned(planner, &ahead, scheme, &mut workspace);
         match next.filter(|next| next.objective * sign < known.objective * sign) {
             Some(next) => best = Some(next),
             None => break,
@@ -232,8 +250,8 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
     let mut plans = Vec::with_capacity(solution.plans.len());
     for plan in &solution.plans {
         let betas = betas[plan.points.clone()].to_vec();
-        let mut shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
-        off_grid::refine(problem, &placement, Sense::Min, SETTLING, &mut shifted);
+        let shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
+        let shifted = settled_among_free(problem, &placement, Sense::Min, SETTLING, &shifted);
         if !shifted.cost.is_finite() {
             return None;
         }

@@ -1,6 +1,7 @@
 //! Convex programmes, solved by clarabel: the general form, and two small ones over the pose.
 
 use super::LENGTH_UNIT;
+use super::rooms::placement_rooms;
 use super::rows::Rows;
 use crate::problem::{Interval, Placement, Problem};
 use clarabel::algebra::CscMatrix;
@@ -33,8 +34,8 @@ pub(super) fn programme(
     }
 }
 
-/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled; `None` when
-/// clarabel found none.
+/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled, with the part clear of
+/// what stands in the cell; `None` when clarabel found none.
 pub fn pose_step(
     problem: &Problem,
     placement: &Placement,
@@ -55,8 +56,12 @@ pub fn pose_step(
         rows.add([(k, 1.0)], bound.max.min(trust));
         rows.add([(k, -1.0)], (-bound.min).min(trust));
     }
-    let matrix = CscMatrix::new_from_triplets(8, 4, rows.row, rows.column, rows.value);
-    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(8)]).ok()?;
+    for room in placement_rooms(problem, placement) {
+        rows.add((0..4).map(|k| (k, -room.slopes[k])), room.spare());
+    }
+    let count = rows.bound.len();
+    let matrix = CscMatrix::new_from_triplets(count, 4, rows.row, rows.column, rows.value);
+    let found = programme(&quadratic, &linear, &matrix, &rows.bound, &[NonnegativeConeT(count)]).ok()?;
     Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
 }
 

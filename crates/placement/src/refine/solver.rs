@@ -5,6 +5,7 @@
 
 use super::super::outcome::RefinementStatus;
 use super::linearise::{Curvature, Local, linearise};
+use super::rooms::NEAR_STEPS;
 use super::subproblem::{Question, solve};
 use super::{Solution, moved};
 use crate::problem::{Placement, Problem};
@@ -112,7 +113,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
             self.status = Some(RefinementStatus::Interrupted);
             return Ok((state.param(known).cost(mean), None));
         }
-        let Some(locals) = linearise(self.problem, &known, Curvature::Full) else {
+        let Some(locals) = linearise(self.problem, &known, (Curvature::Full, NEAR_STEPS)) else {
             self.status = Some(RefinementStatus::NotLinearised);
             return Ok((state.param(known).cost(mean), None));
         };

@@ -3,7 +3,7 @@
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
 //! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
 //! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
-//! adds to |c_i|); then joint limits, joint steps, conditioning and c_max, linearised, the limits on beta, the cell, the trust region.
+//! adds to |c_i|); then joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta, the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out. Where the margin of a
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
@@ -12,6 +12,7 @@
 use super::Solution;
 use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
+use super::rooms::NEAR_STEPS;
 use super::rows::{Rows, Triplets, curvature};
 use crate::criterion::Aggregate;
 use crate::limit::{Limit, Side};
@@ -158,6 +159,9 @@ impl Build<'_> {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
             let terms = Self::terms(i, &local.state.base_distance.gradient);
             self.add_between(Limit::BaseDistance, &terms, -spare, f64::INFINITY);
+        }
+        for room in &local.rooms {
+            self.add_between(Limit::Clearance(room.pair), &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
@@ -320,7 +324,7 @@ const KKT_TRUST: f64 = 1e-2;
 /// the subproblem could not be solved.
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let question = Question { trust: KKT_TRUST, curved: false, pose_stays: false };
-    linearise(problem, solution, Curvature::None)
+    linearise(problem, solution, (Curvature::None, NEAR_STEPS))
         .and_then(|locals| solve(problem, solution, &locals, question).ok())
         .map_or(f64::INFINITY, |answer| answer.promised / KKT_TRUST)
 }

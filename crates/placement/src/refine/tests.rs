@@ -1,5 +1,6 @@
 //! The refinement: exact gradients, never worse, never infeasible.
 
+use super::rooms::NEAR_STEPS;
 use super::*;
 use crate::problem::Interval;
 use crate::testing::{five_segments, five_segments_compensated};
@@ -67,7 +68,7 @@ fn margins_may_be_driven_to_their_kink() {
     let (solution, report) = refined(&planner, &published_optimum(), Sense::Min).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
-    let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full).unwrap();
+    let locals = linearise::linearise(&problem, &solution, (linearise::Curvature::Full, NEAR_STEPS)).unwrap();
     let margins = || locals.iter().map(|local| local.state.own.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
     for local in locals.iter().filter(|local| !local.sets[0].changes.is_empty()) {
@@ -154,7 +155,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
     for problem in [five_segments(), five_segments_compensated()] {
         let planner = Planner::finer(&problem);
         let here = planned(&planner, &published_optimum(), None, &mut planner.workspace()).unwrap();
-        let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full).unwrap();
+        let locals = linearise::linearise(&problem, &here, (linearise::Curvature::Full, NEAR_STEPS)).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
                 for k in 0..linearise::LOCAL {

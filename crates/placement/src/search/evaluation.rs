@@ -9,12 +9,12 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_numerics::monitor::Monitor;
 
-/// The bounds of the objectives of the better half of a sorted population: what is not within them even without collisions hardly ever
-/// becomes a parent, and is looked at more closely before it is refined. Where the worst placement is sought there are none: collisions
-/// make a mean larger. m
-pub(super) fn better_half(population: &[Candidate], sense: Sense) -> [f64; 2] {
-    match (population[population.len() / 2].objective.mean(), sense) {
-        (Some(middle), Sense::Min) => [f64::NEG_INFINITY, middle],
+/// The bounds of the objectives of the better third of a sorted population: what is not within them even without collisions can become a
+/// parent, but is looked at more closely before it is refined. Where the worst placement is sought there are none: collisions make a
+/// mean larger. m
+pub(super) fn better_third(population: &[Candidate], sense: Sense) -> [f64; 2] {
+    match (population[population.len() / 3].objective.mean(), sense) {
+        (Some(bound), Sense::Min) => [f64::NEG_INFINITY, bound],
         _ => Look::ALL.within,
     }
 }

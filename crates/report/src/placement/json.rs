@@ -181,7 +181,7 @@ fn mean_by_stiffness(plan: &Plan) -> Value {
 fn active_bound(bound: &ActiveBound) -> Value {
     let (gain, unit) = names::gain(bound);
     json!({
-        "bound": names::limit(bound.side.limit),
+        "bound": names::bound(bound),
         "side": if bound.side.is_upper { "upper" } else { "lower" },
         "gain": GAIN.number(gain),
         "unit": unit,

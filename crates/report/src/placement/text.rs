@@ -107,7 +107,7 @@ fn held_by(case: &Case) -> Vec<String> {
     lines.extend(bounds.iter().take(NAMED).map(|bound| {
         let (gain, unit) = names::gain(bound);
         let side = if bound.side.is_upper { "upper" } else { "lower" };
-        format!("  {} ({side}): {} {unit}", names::limit(bound.side.limit), figures(gain))
+        format!("  {} ({side}): {} {unit}", names::bound(bound), figures(gain))
     }));
     let others = bounds.len().saturating_sub(NAMED);
     lines.extend((others > 0).then(|| format!("  and {others} more")));

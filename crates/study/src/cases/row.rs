@@ -109,7 +109,9 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
     let Case { placement, plan, cycle, .. } = best;
     let postures: BTreeSet<Posture> = plan.postures.iter().copied().collect();
     let bounds = best.active_bounds.iter().flatten().map(|ActiveBound { side, .. }| name_of(*side));
-    let bounds = bounds.collect::<Vec<_>>().join(" ");
+    // Several pairs of shapes can hold it.
+    let mut seen = BTreeSet::new();
+    let bounds = bounds.filter(|name| seen.insert(name.clone())).collect::<Vec<_>>().join(" ");
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
     let inverse_condition = smallest(&mut plan.points.iter().map(|point| point.inverse_condition));
     let base_distance = smallest(&mut plan.points.iter().map(|point| match problem.robot.is_mounted() {
@@ -188,6 +190,7 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::SpindleTurn => "spindle_turn".to_owned(),
         Limit::MaxDeflection => "deflection".to_owned(),
         Limit::BaseDistance => "base_distance".to_owned(),
+        Limit::Clearance(_) => "clearance".to_owned(),
     };
     format!("{limit}_{}", if is_upper { "max" } else { "min" })
 }

@@ -1,0 +1,97 @@
+//! The room between shapes, linearised: what keeps a step of the refinement out of collisions.
+//!
+//! The distance of two shapes changes as that of the two points in which they are nearest, carried along by the shapes: to first order
+//! exactly, unless they are as near elsewhere too. Slopes are differences between the state and states moved a little.
+
+use super::linearise::{LOCAL, UNITS};
+use crate::problem::{Placement, Problem};
+use nalgebra::Vector4;
+use stead_cell::{Near, PairKind, Poses, Scene};
+use stead_model::robot::Posture;
+
+/// The room of one pair of shapes, linearised in scaled variables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Room {
+    /// Number of the pair in the scene.
+    pub pair: usize,
+    /// How much farther apart than they have to be the two are. m
+    pub room: f64,
+    /// Its slopes by x, y, z, yaw and beta. m per scaled unit
+    pub slopes: [f64; LOCAL],
+}
+
+impl Room {
+    /// How far the linear model may go: a little less than the room, so that rounding does not end in a hit. m
+    pub fn spare(&self) -> f64 {
+        (self.room - KEPT).max(0.0)
+    }
+
+    /// The slopes by the placement.
+    pub fn pose_slopes(&self) -> Vector4<f64> {
+        Vector4::from_fn(|k, _| self.slopes[k])
+    }
+}
+
+/// Pairs with more room do not hold a step: where a long one meets them it is found to hit, and a shorter one is taken. m
+pub const NEAR_STEPS: f64 = 0.05;
+/// The same where the placement stays. m
+pub const NEAR_STAYING: f64 = 0.005;
+/// From state to state for the slopes, in scaled variables.
+const STEP: f64 = 1e-4;
+/// See [`Room::spare`]. m
+const KEPT: f64 = 1e-6;
+
+/// The rooms up to a limit (m) of a state of the arm; those of the part against the cell at the first point at which they stand so.
+pub(super) fn rooms(
+    problem: &Problem,
+    (point, beta): (usize, f64),
+    placement: &Placement,
+    posture: Posture,
+    within: f64,
+) -> Vec<Room> {
+    let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
+    let kinds = if problem.starts_still(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
+    let poses = |placement: &Placement, beta: f64| {
+        let joints = problem.robot.inverse(&problem.base_from_flange(point, placement, beta), posture).ok()?;
+        Some(problem.poses(scene, point, placement, &joints))
+    };
+    linearised(scene, (kinds, within), placement, beta, poses)
+}
+
+/// The rooms of the part against what stands in the cell, which depend on the placement alone.
+pub(super) fn placement_rooms(problem: &Problem, placement: &Placement) -> Vec<Room> {
+    let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
+    let joints = problem.robot.mid_range();
+    let at = |point| {
+        let poses = |placement: &Placement, _: f64| Some(problem.poses(scene, point, placement, &joints));
+        linearised(scene, (&[PairKind::WorkpieceCell], NEAR_STEPS), placement, 0.0, poses)
+    };
+    problem.still_points().flat_map(at).collect()
+}
+
+/// The pairs with little room at a placement and beta, with the slopes of that room.
+fn linearised(
+    scene: &Scene,
+    (kinds, within): (&[PairKind], f64),
+    placement: &Placement,
+    beta: f64,
+    poses: impl Fn(&Placement, f64) -> Option<Poses>,
+) -> Vec<Room> {
+    let Some(here) = poses(placement, beta) else { return Vec::new() };
+    let near = scene.near(&here, kinds, within);
+    if near.is_empty() {
+        return Vec::new();
+    }
+    let moved: [Option<Poses>; LOCAL] = std::array::from_fn(|k| {
+        let mut moved = *placement;
+        let mut turned = beta;
+        *(if k < 4 { &mut moved[k] } else { &mut turned }) += STEP * UNITS[k];
+        poses(&moved, turned)
+    });
+    let slope = |near: &Near, there: &Poses| scene.room_change(near, &here, there) / STEP;
+    let slopes = |near: &Near| moved.map(|there| there.map_or(0.0, |there| slope(near, &there)));
+    near.iter().map(|near| Room { pair: near.pair, room: near.room, slopes: slopes(near) }).collect()
+}
+
+#[cfg(test)]
+mod tests;
