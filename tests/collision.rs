@@ -147,3 +147,22 @@ fn the_best_plan_of_the_shipped_cell_is_free_at_a_tenth_of_the_step() {
     }
     assert!(looked > 50_000, "{looked}");
 }
+
+#[test]
+fn the_fence_that_holds_the_worst_placement_is_named_with_what_less_clearance_gains() {
+    let bench = shipped();
+    let worst = |bench: &Bench| {
+        let ended = bench.stead(&["place", RUN, "--json", "--no-page", "--out", "r"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.json()["cases"][2].clone()
+    };
+    let here = worst(&bench);
+    let bounds = here["active_bounds"].as_array().unwrap();
+    let held = bounds.iter().find(|bound| bound["bound"] == "collision.clearance_mm of table and fence front");
+    let held = held.unwrap_or_else(|| panic!("{bounds:?}"));
+    assert_eq!((held["side"].as_str(), held["unit"].as_str()), (Some("lower"), Some("mm per mm")));
+    bench.replace(CELL, "clearance_mm = 10.0", "clearance_mm = 9.0");
+    let gained = worst(&bench)["mean_mm"].as_f64().unwrap() - here["mean_mm"].as_f64().unwrap();
+    let told = held["gain"].as_f64().unwrap();
+    assert!((gained / told - 1.0).abs() < 0.1, "{gained} {told}");
+}

@@ -30,6 +30,8 @@ pub enum Limit {
     BaseDistance,
     /// The distance that two shapes have to keep: the number of their pair in the scene.
     Clearance(usize),
+    /// A zone that a point of the arm stays out of: the number of their pair in the scene.
+    KeepOut(usize),
 }
 
 impl Limit {
@@ -51,7 +53,7 @@ pub struct Side {
 pub struct ActiveBound {
     /// Which.
     pub side: Side,
-    /// Of a distance that two shapes have to keep: their names.
+    /// Of two shapes that have to keep a distance, or a point of the arm and a zone: their names.
     pub names: Option<[String; 2]>,
     /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
     /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),

@@ -62,10 +62,11 @@ fn limit(limit: Limit) -> String {
         Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
         Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
         Limit::Clearance(_) => "collision.clearance_mm".to_owned(),
+        Limit::KeepOut(_) => "keep_out".to_owned(),
     }
 }
 
-/// A bound that holds an optimum: its limit, and of a distance that shapes have to keep which two.
+/// A bound that holds an optimum: its limit, and of a distance that two have to keep which these are.
 pub fn bound(bound: &ActiveBound) -> String {
     let limit = limit(bound.side.limit);
     match &bound.names {
@@ -82,7 +83,8 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         | Limit::CellZ
         | Limit::MaxDeflection
         | Limit::BaseDistance
-        | Limit::Clearance(_) => (bound.gain, "mm per mm"),
+        | Limit::Clearance(_)
+        | Limit::KeepOut(_) => (bound.gain, "mm per mm"),
         Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate | Limit::SpindleTurn => {
             (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
         }

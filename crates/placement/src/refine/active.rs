@@ -93,19 +93,18 @@ fn active_clearances(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[P
         let away = Placement::from(std::array::from_fn(|k| worst.placement[k] + STEP * inward[k] * UNITS[k]));
         let away = planned(planner, &problem.cell.clamp(&away), scheme, &mut workspace)?;
         let gain = (worst.objective - away.objective) / (STEP * room.pose_slopes().norm());
-        let limit = Limit::Clearance(room.pair);
         (gain > FLOOR * worst.objective).then(|| ActiveBound {
-            side: Side { limit, is_upper: false },
-            names: names(problem, limit),
+            side: Side { limit: room.limit, is_upper: false },
+            names: names(problem, room.limit),
             gain,
         })
     };
     touching(problem, worst, TOUCHED_SHAPES).filter_map(gained).collect()
 }
 
-/// The names of the two shapes that have to keep a distance.
+/// The names of the two that have to keep a distance.
 fn names(problem: &Problem, limit: Limit) -> Option<[String; 2]> {
-    let Limit::Clearance(pair) = limit else { return None };
+    let (Limit::Clearance(pair) | Limit::KeepOut(pair)) = limit else { return None };
     problem.scene.as_deref().and_then(|scene| scene.pair(pair)).map(|pair| (*pair.names).clone())
 }
 

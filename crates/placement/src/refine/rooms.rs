@@ -4,16 +4,17 @@
 //! exactly, unless they are as near elsewhere too. Slopes are differences between the state and states moved a little.
 
 use super::linearise::{LOCAL, UNITS};
+use crate::limit::Limit;
 use crate::problem::{Placement, Problem};
 use nalgebra::Vector4;
-use stead_cell::{Near, PairKind, Poses, Scene};
+use stead_cell::{Near, Pair, PairKind, Poses, Scene};
 use stead_model::robot::Posture;
 
 /// The room of one pair of shapes, linearised in scaled variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
-    /// Number of the pair in the scene.
-    pub pair: usize,
+    /// Which limit it is the room of.
+    pub limit: Limit,
     /// How much farther apart than they have to be the two are. m
     pub room: f64,
     /// Its slopes by x, y, z, yaw and beta. m per scaled unit
@@ -90,7 +91,9 @@ fn linearised(
     });
     let slope = |near: &Near, there: &Poses| scene.room_change(near, &here, there) / STEP;
     let slopes = |near: &Near| moved.map(|there| there.map_or(0.0, |there| slope(near, &there)));
-    near.iter().map(|near| Room { pair: near.pair, room: near.room, slopes: slopes(near) }).collect()
+    let is_of_zone = |near: &Near| scene.pair(near.pair).is_some_and(Pair::is_of_zone);
+    let limit = |near: &Near| if is_of_zone(near) { Limit::KeepOut(near.pair) } else { Limit::Clearance(near.pair) };
+    near.iter().map(|near| Room { limit: limit(near), room: near.room, slopes: slopes(near) }).collect()
 }
 
 #[cfg(test)]

@@ -161,7 +161,7 @@ impl Build<'_> {
             self.add_between(Limit::BaseDistance, &terms, -spare, f64::INFINITY);
         }
         for room in &local.rooms {
-            self.add_between(Limit::Clearance(room.pair), &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
+            self.add_between(room.limit, &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];

@@ -191,6 +191,7 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::MaxDeflection => "deflection".to_owned(),
         Limit::BaseDistance => "base_distance".to_owned(),
         Limit::Clearance(_) => "clearance".to_owned(),
+        Limit::KeepOut(_) => "keep_out".to_owned(),
     };
     format!("{limit}_{}", if is_upper { "max" } else { "min" })
 }

@@ -88,6 +88,8 @@ proptest! {
         let scene = problem.scene.as_deref().unwrap();
         let (placement, posture) = (Placement::from([x, -1.9, -0.4, yaw]), Posture::ALL[posture]);
         for room in rooms(&problem, (point, beta), &placement, posture, 0.3) {
+            let (Limit::Clearance(pair) | Limit::KeepOut(pair)) = room.limit else { panic!("{:?}", room.limit) };
+            let required = scene.pair(pair).unwrap().required;
             // Where shapes already hit there is no slope.
             prop_assume!(room.room > 0.02);
             for k in 0..LOCAL {
@@ -95,14 +97,14 @@ proptest! {
                     let (mut moved, mut turned) = (placement, beta);
                     *(if k < 4 { &mut moved[k] } else { &mut turned }) += by * UNITS[k];
                     let joints = problem.robot.inverse(&problem.base_from_flange(point, &moved, turned), posture).ok()?;
-                    Some(scene.distance(room.pair, &problem.poses(scene, point, &moved, &joints), 1.0))
+                    Some(scene.distance(pair, &problem.poses(scene, point, &moved, &joints), 1.0))
                 };
                 let step = 3e-4;
                 let (Some(up), Some(down)) = (at(step), at(-step)) else { continue };
                 let difference = (up - down) / (2.0 * step);
                 // GJK leaves some micrometres open on round surfaces; corners and edges have two slopes.
                 let slope = room.slopes[k];
-                let one_sided = [(up - room.room - 0.01) / step, (room.room + 0.01 - down) / step];
+                let one_sided = [(up - room.room - required) / step, (room.room + required - down) / step];
                 let is_near = |value: f64| (slope - value).abs() < 0.02 * (1.0 + slope.abs());
                 prop_assert!(is_near(difference) || one_sided.into_iter().any(is_near), "{k} {slope} {difference} {one_sided:?}");
             }
