@@ -63,18 +63,18 @@ impl Problem {
         let scene = self.scene.as_deref()?;
         let joints = self.robot.mid_range();
         let hit = |point| scene.first_hit(&self.poses(scene, point, placement, &joints), &[PairKind::WorkpieceCell]);
-        self.still_points().find_map(hit)
+        self.points_after_axes_moved().find_map(hit)
     }
 
     /// The path points at which the external axes stand otherwise than at the point before: at others the part stands as it did. The
     /// first alone where there are no axes.
-    pub(crate) fn still_points(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn points_after_axes_moved(&self) -> impl Iterator<Item = usize> {
         let points = if self.external_axes.is_empty() { 1 } else { self.task.points().len() };
-        (0..points).filter(|point| self.starts_still(*point))
+        (0..points).filter(|point| self.axes_moved_to(*point))
     }
 
-    /// Whether a path point is one of [`Problem::still_points`].
-    pub(crate) fn starts_still(&self, point: usize) -> bool {
+    /// Whether the external axes stand otherwise at a path point than at the one before; also at the first.
+    pub(crate) fn axes_moved_to(&self, point: usize) -> bool {
         let has_axes = !self.external_axes.is_empty();
         point == 0 || (has_axes && self.axis_positions(point) != self.axis_positions(point - 1))
     }

@@ -47,16 +47,22 @@ impl SupportMap for Hull {
 /// is looked at.
 fn corners(points: Vec<Vector>) -> Vec<Vector> {
     // A corrupt mesh must not end the program: the library asserts that its links are right.
-    let formed = std::panic::catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
-    let Some(hull) = formed.ok().flatten() else { return points };
-    // What the library makes of flat meshes does not contain them.
-    let size = hull.local_aabb().half_extents().length();
-    let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
-    if points.iter().all(is_inside) { hull.points().to_vec() } else { points }
+    let formed = || {
+        let hull = ConvexPolyhedron::from_convex_hull(&points)?;
+        // What the library makes of flat meshes does not contain them.
+        let size = hull.local_aabb().half_extents().length();
+        let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
+        points.iter().all(is_inside).then(|| hull.points().to_vec())
+    };
+    std::panic::catch_unwind(formed).ok().flatten().unwrap_or(points)
 }
 
 /// How far a vertex may be outside of the hull, relative to its size.
 const HULL_TOLERANCE: f64 = 1e-6;
+/// See [`Convex::around`].
+const MOST_POINTS: usize = 20_000;
+/// See [`Convex::around`].
+const MOST_CORNERS: usize = 200;
 /// What rounding makes of a separating distance, relative.
 const ROUNDING: f64 = 1e-9;
 
@@ -87,6 +93,25 @@ impl Convex {
     pub fn hull(points: Vec<Vector>) -> Option<Self> {
         let formed = |points| Self { core: Core::Hull(Arc::new(Hull { points: corners(points) })), radius: 0.0 };
         (!points.is_empty()).then(|| formed(points))
+    }
+
+    /// What contains all points for certain: their hull and a little more, since its corners may be off by rounding; of so many points
+    /// that their hull may take longer than what it saves, the box around them. `None` where there is none.
+    pub fn around(points: Vec<Vector>) -> Option<Self> {
+        if points.is_empty() {
+            return None;
+        }
+        let bounds = Aabb::from_points(points.iter().copied());
+        let radius = HULL_TOLERANCE * bounds.half_extents().length();
+        let in_box = || Self { core: Core::Hull(Arc::new(Hull { points: bounds.vertices().to_vec() })), radius };
+        if points.len() > MOST_POINTS {
+            return Some(in_box());
+        }
+        let hull = corners(points);
+        if hull.len() > MOST_CORNERS {
+            return Some(in_box());
+        }
+        Some(Self { core: Core::Hull(Arc::new(Hull { points: hull })), radius })
     }
 
     /// What its points are not farther from than its radius.

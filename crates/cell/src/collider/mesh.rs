@@ -18,12 +18,12 @@ pub struct Mesh {
     triangles: TriMesh,
     /// Whether it is the surface of a solid.
     is_closed: bool,
-    /// The convex hull of its vertices.
+    /// The convex hull of its vertices, and a little more for rounding.
     hull: Convex,
 }
 
-/// A distance from the hull and one from the mesh that differ by no more are one: what GJK leaves open on round surfaces. m
-const SAME: f64 = 2e-6;
+/// A distance from the hull and one from the mesh that differ by no more are one: what rounding and GJK on round surfaces make of them. m
+const SAME: f64 = 5e-6;
 
 /// What is held against a mesh, in the frame of the mesh.
 struct Other<'a> {
@@ -55,7 +55,7 @@ impl Mesh {
         let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
         let is_closed = solid.is_some();
         let triangles = solid.or_else(|| formed(TriMeshFlags::empty()))?;
-        Some(Self { triangles, is_closed, hull: Convex::hull(vertices)? })
+        Some(Self { triangles, is_closed, hull: Convex::around(vertices)? })
     }
 
     /// How far it extends along a direction. m
@@ -79,16 +79,23 @@ impl Mesh {
     /// it is not below `limit`, or they touch.
     pub fn nearest(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> Option<(f64, [Vector; 2])> {
         let other = Other::convex(solid, pose);
-        let found = self.nearest_points(&other, limit)?;
-        (!self.is_inside(other.sphere.center)).then_some(found)
+        let found = self.nearest_triangle(&other, limit)?;
+        let points = self.points_of(&other, found)?;
+        (!self.is_inside(other.sphere.center)).then_some((found.1, points))
     }
 
-    /// The same of another mesh: the triangles of that one, each against the tree of this one.
+    /// The same of another mesh: the triangles of the smaller one, each against the tree of the other.
     pub fn nearest_of_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(f64, [Vector; 2])> {
+        if self.triangles.num_triangles() < other.triangles.num_triangles() {
+            let (distance, [on_other, on_self]) = other.nearest_of_mesh(&pose.inverse(), self, limit)?;
+            return Some((distance, [pose * on_self, pose * on_other]));
+        }
         let mut nearest: Option<(f64, [Vector; 2])> = None;
         for triangle in other.triangles.triangles() {
+            let one = Other::triangle(&triangle, pose);
             let limit = nearest.map_or(limit, |(distance, _)| distance);
-            nearest = self.nearest_points(&Other::triangle(&triangle, pose), limit).or(nearest);
+            let Some((place, distance)) = self.nearest_triangle(&one, limit) else { continue };
+            nearest = Some((distance, self.points_of(&one, (place, distance))?));
         }
         nearest.filter(|_| !self.is_within_or_around(pose, other))
     }
@@ -128,13 +135,12 @@ impl Mesh {
         self.nearest_triangle(other, limit).map_or(limit, |(_, distance)| distance)
     }
 
-    /// The distance of the nearest triangle, where it is below `limit` and above zero, and the nearest points.
-    fn nearest_points(&self, other: &Other<'_>, limit: f64) -> Option<(f64, [Vector; 2])> {
-        let (triangle, distance) = self.nearest_triangle(other, limit).filter(|(_, distance)| *distance > 0.0)?;
+    /// The nearest points of a triangle at a distance and of the other; `None` where that is zero.
+    fn points_of(&self, other: &Other<'_>, (triangle, distance): (u32, f64)) -> Option<[Vector; 2]> {
         let triangle = self.triangles.triangle(triangle);
-        let points = nearest_core_points(other.core, &other.from_mesh, &triangle, f64::INFINITY)?;
-        let [on_other, on_mesh] = points.map(|point| other.from_mesh.inverse() * point);
-        Some((distance, [on_mesh, on_other]))
+        let points = nearest_core_points(other.core, &other.from_mesh, &triangle, f64::INFINITY);
+        let [on_other, on_mesh] = points.filter(|_| distance > 0.0)?.map(|point| other.from_mesh.inverse() * point);
+        Some([on_mesh, on_other])
     }
 
     /// The nearest triangle and its distance, where that is below `limit`, a positive number.

@@ -152,6 +152,21 @@ mod tests {
         Collider::new(solid, &Pose::identity()).unwrap()
     }
 
+    /// A prism over an L: two boxes, 2 m by 1 m and 1 m by 1 m, side by side.
+    fn l_mesh() -> TriangleMesh {
+        let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let corners = [0.0, 1.0].map(|z| outline.map(|[x, y]| Vector3::new(x, y, z))).concat();
+        let caps = [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]];
+        let bottom = caps.map(|[a, b, c]| [a, c, b]);
+        let top = caps.map(|corner| corner.map(|k| k + 6));
+        let sides = (0..6_u32).flat_map(|k| {
+            let next = (k + 1) % 6;
+            [[k, next, next + 6], [k, next + 6, k + 6]]
+        });
+        let triangles: Vec<[u32; 3]> = bottom.into_iter().chain(top).chain(sides).collect();
+        TriangleMesh::new(&corners, &triangles).unwrap()
+    }
+
     #[test]
     fn distances_by_hand() {
         let cube = collider(&Solid::Box(Vector3::new(1.0, 1.0, 1.0)));
@@ -247,6 +262,53 @@ mod tests {
                 // GJK ends at some micrometres on round surfaces.
                 prop_assert!((cut(plain) - cut(hull)).abs() < 1e-5, "{plain} {hull}");
                 prop_assert!((cut(plain) - cut(mesh)).abs() < 1e-5, "{plain} {mesh}");
+            }
+        }
+
+        /// A mesh that is not convex is as far from a solid as the nearer of the boxes that make it up, and its nearest points are that
+        /// far apart.
+        #[test]
+        fn a_mesh_with_a_notch_is_as_far_away_as_its_parts(
+            place in prop::array::uniform3(-0.5..2.5_f64), turn in prop::array::uniform3(-3.0..3.0_f64), limit in 0.05..2.0_f64
+        ) {
+            let mesh = l_mesh();
+            prop_assert!(mesh.is_closed());
+            let whole = collider(&Solid::Mesh(Arc::new(mesh)));
+            let parts = [
+                (Vector3::new(2.0, 1.0, 1.0), Vector3::new(1.0, 0.5, 0.5)),
+                (Vector3::new(1.0, 1.0, 1.0), Vector3::new(0.5, 1.5, 0.5)),
+            ];
+            let parts = parts.map(|(edges, middle)| {
+                Collider::new(&Solid::Box(edges), &Pose { translation: middle, ..Pose::identity() }).unwrap()
+            });
+            let pose = Pose { rotation: rotation_from_zyx(turn), translation: place.into() };
+            let here = Pose::identity();
+            let rounding = 1e-5;
+            let small = Vector3::new(0.3, 0.2, 0.1);
+            for (other, radius) in [
+                (Solid::Capsule { radius: 0.1, length: 0.4 }, 0.1),
+                (Solid::Box(small), 0.0),
+                (Solid::Mesh(Arc::new(box_mesh(small))), 0.0),
+                (Solid::Cylinder { radius: 0.1, length: 0.4 }, 0.0),
+            ] {
+                let other = collider(&other);
+                let of_parts = parts.iter().map(|part| part.distance(&here, &other, &pose, limit)).fold(limit, f64::min);
+                let found = whole.separation(&here, &other, &pose, limit);
+                prop_assert!((found.distance.min(limit) - of_parts).abs() < rounding, "{found:?} {of_parts}");
+                if let Some(axis) = found.axis.filter(|_| found.distance > 0.0) {
+                    prop_assert!(whole.gap(&here, &other, &pose, &axis) <= found.distance + rounding);
+                }
+                for (first, at, second, second_at) in [(&whole, &here, &other, &pose), (&other, &pose, &whole, &here)] {
+                    match first.nearest(at, second, second_at, limit) {
+                        Some(Nearest { distance, points: [a, b] }) => {
+                            prop_assert!((distance - of_parts).abs() < rounding && distance < limit);
+                            prop_assert!(((b - a).norm() - radius - distance).abs() < rounding);
+                            let on_first = first.distance(at, &collider(&Solid::Box(Vector3::repeat(1e-6))), &Pose { translation: a, ..here }, 1.0);
+                            prop_assert!(on_first < radius + rounding);
+                        }
+                        None => prop_assert!(of_parts <= rounding || of_parts >= limit - rounding, "{of_parts}"),
+                    }
+                }
             }
         }
     }

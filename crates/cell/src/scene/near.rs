@@ -16,7 +16,7 @@ pub struct Near {
 }
 
 impl Scene {
-    /// The pairs of some kinds with less room than `within` (m), but those that touch.
+    /// The pairs of some kinds with less room than `within` (m), except those that touch.
     pub fn near(&self, poses: &Poses, kinds: &[PairKind], within: f64) -> Vec<Near> {
         let near = |number: usize| {
             let pair = &self.pairs[number];

@@ -14,6 +14,9 @@ use stead_model::robot::PostureClass;
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 30;
 
+/// Where not all points are looked at, not all values of beta are either, but at least so many of a turn: every 15 deg.
+const LEAST_LOOKS: usize = 24;
+
 impl LookupTable<'_> {
     /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that sum (m): first the
     /// one that was `found`, then what is found `again` without the states that hit.
@@ -41,7 +44,8 @@ impl LookupTable<'_> {
                 if is_hit {
                     across.begin_with(along);
                     let hits = |k| self.hits(placement, (point, class), (grid, k), across);
-                    forbid((point, PostureClass::ALL[class]), (beta, grid.count, stride), hits, forbidden);
+                    let across = stride.min(grid.count / LEAST_LOOKS).max(1);
+                    forbid((point, PostureClass::ALL[class]), (beta, grid.count, across), hits, forbidden);
                 } else {
                     free.add(point, PostureClass::ALL[class], beta);
                 }

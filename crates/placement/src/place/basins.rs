@@ -63,8 +63,8 @@ pub(super) fn best_alone(found: &[SearchResult; 2]) -> [SearchResult; 2] {
 }
 
 /// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first basin of
-/// each search goes ahead, to tell which of the others can still win. What comes out is then held against the plans that are found
-/// anew ([`found_again`]), of all basins at once: that of one alone can take longer than the rest.
+/// each search goes ahead, to tell which of the others can still win. Best placements are then held against the plans that are found
+/// anew ([`found_again`]): last, since that can take longer than all else and is shared among the threads.
 pub(super) fn refine_basins(
     evaluator: &Evaluator<'_>,
     long: Option<&LongPath>,
@@ -77,18 +77,27 @@ pub(super) fn refine_basins(
     let jobs: usize = found.iter().map(|found| found.basins.len()).sum();
     let done = AtomicUsize::new(0);
     // Each basin is one step to refine and one to be planned anew.
-    let report_done = || {
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+    let report_done = |steps: usize| {
+        let done = done.fetch_add(steps, Ordering::Relaxed) + steps;
         monitor.report(Progress::Steps { stage: "refining", done, total: 2 * jobs });
     };
     let refined = |sense: Sense, candidate: &Candidate| {
         let refined = refine_one(evaluator, sense, candidate, monitor);
-        report_done();
+        report_done(if refined.is_some() { 1 } else { 2 });
         refined
+    };
+    let planned_again = |sense: Sense, (refined, report): (Refined, Option<Refinement>)| {
+        let Refined { mut solution, scheme } = refined;
+        // The worst placement has the plan that the planner finds.
+        if sense == Sense::Min && report.is_some() {
+            solution = found_again(evaluator.planner(), solution, scheme.as_deref(), monitor);
+        }
+        report_done(1);
+        (Refined { solution, scheme }, report)
     };
     let refined_of = |sense: Sense, found: &SearchResult| -> Vec<(Refined, Option<Refinement>)> {
         let Some((first, others)) = found.basins.split_first() else { return Vec::new() };
-        let first = refined(sense, first);
+        let first = refined(sense, first).map(|first| planned_again(sense, first));
         let ahead = first.as_ref().map(|(refined, _)| refined.solution.objective);
         let can_win = |candidate: &Candidate| match (evaluator.table(), ahead, candidate.objective.mean()) {
             (Some(_), Some(ahead), Some(mean)) => match sense {
@@ -99,23 +108,20 @@ pub(super) fn refine_basins(
         };
         // Once the caller asks to stop, other basins are only for a search whose first one has no plan.
         let is_wanted = |candidate: &Candidate| can_win(candidate) && !(monitor.should_stop() && ahead.is_some());
-        let others: Vec<_> =
-            others.par_iter().filter(|other| is_wanted(other)).filter_map(|other| refined(sense, other)).collect();
+        let refined = |other: &Candidate| {
+            if is_wanted(other) {
+                return refined(sense, other);
+            }
+            report_done(2);
+            None
+        };
+        let others: Vec<_> = others.par_iter().filter_map(refined).collect();
+        let others: Vec<_> = others.into_par_iter().map(|other| planned_again(sense, other)).collect();
         first.into_iter().chain(others).collect()
     };
-    let planned_again = |(refined, report): (Refined, Option<Refinement>)| {
-        let Refined { mut solution, scheme } = refined;
-        if report.is_some() {
-            solution = found_again(evaluator.planner(), solution, scheme.as_deref(), monitor);
-        }
-        report_done();
-        (Refined { solution, scheme }, report)
-    };
     let (best, worst) = rayon::join(|| refined_of(Sense::Min, &found[0]), || refined_of(Sense::Max, &found[1]));
-    let all_again = |refined: Vec<(Refined, Option<Refinement>)>| -> (Vec<Refined>, Vec<Option<Refinement>>) {
-        refined.into_par_iter().map(planned_again).unzip()
-    };
-    let ((best, reports), (worst, others)) = rayon::join(|| all_again(best), || all_again(worst));
+    let (best, reports): (Vec<_>, Vec<_>) = best.into_iter().unzip();
+    let (worst, others): (Vec<_>, Vec<_>) = worst.into_iter().unzip();
     ([best, worst], reports.into_iter().chain(others).flatten().collect())
 }
 

@@ -47,8 +47,8 @@ pub(crate) fn forbid(
     }
 }
 
-/// A plan with beta taken off the grid ([`off_grid::refine`]). Where it would hit at some points, the states of these are looked at
-/// one by one.
+/// A plan with beta taken off the grid ([`off_grid::refine`]; one of infinite cost only says where, and may stay so). Where it would hit
+/// at some points, the states of these are looked at one by one, at last those of all.
 pub(crate) fn settled_among_free(
     problem: &Problem,
     placement: &Placement,

@@ -13,7 +13,7 @@ use super::{LENGTH_UNIT, Solution, planned};
 use crate::limit::{ActiveBound, Limit, Side};
 use crate::problem::{Placement, Problem};
 use crate::redundancy::Planner;
-use nalgebra::Vector4;
+use nalgebra::{DMatrix, Vector4};
 use stead_model::robot::Posture;
 
 /// Half width of the neighbourhood in which bounds are seen, in scaled variables.
@@ -57,49 +57,68 @@ pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<Activ
 /// How far the difference reaches that measures the gain of a wall at a worst placement, in scaled variables.
 const STEP: f64 = 1e-3;
 
-/// The walls and shapes of the cell that hold a worst placement, the largest gains first.
+/// The walls and shapes of the cell that hold a worst placement, the largest gains first: for each that it touches everything is planned
+/// anew a little away from it, along the others.
 pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
-    let walls = touched_walls(planner, worst, scheme);
-    sorted(walls.into_iter().chain(active_clearances(planner, worst, scheme)).collect())
-}
-
-/// Everything is planned anew a little inside each wall that the placement touches.
-fn touched_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
-    let rooms = pose_bounds(planner.problem(), &worst.placement);
+    let problem = planner.problem();
+    let touched: Vec<Touched> = walls(problem, worst).into_iter().chain(shapes(problem, worst)).collect();
+    let inward = DMatrix::from_fn(touched.len(), 4, |row, k| touched[row].inward[k]);
+    // Along the column of each the room to it grows by one, and that to the others stays; equal ones share.
+    let Ok(away) = inward.pseudo_inverse(PARALLEL) else { return Vec::new() };
     let mut workspace = planner.workspace();
-    let mut bounds = Vec::new();
-    for (k, room) in rooms.into_iter().enumerate() {
-        for (is_upper, near, far) in [(true, room.max, -room.min), (false, -room.min, room.max)] {
-            if near > TOUCHED || far < STEP {
-                continue;
-            }
-            let mut inside = worst.placement;
-            inside[k] += if is_upper { -STEP } else { STEP } * UNITS[k];
-            let Some(inside) = planned(planner, &inside, scheme, &mut workspace) else { continue };
-            let gain = (worst.objective - inside.objective) / (STEP * UNITS[k]);
-            if gain > FLOOR * worst.objective {
-                bounds.push(ActiveBound { side: Side { limit: Limit::ALL_WALLS[k], is_upper }, names: None, gain });
-            }
+    let mut gain = |(place, touched): (usize, &Touched)| {
+        let step = away.column(place) * STEP;
+        let moved = Placement::from(std::array::from_fn(|k| worst.placement[k] + step[k] * UNITS[k]));
+        let moved = planned(planner, &problem.cell.clamp(&moved), scheme, &mut workspace)?;
+        Some((worst.objective - moved.objective) / (STEP * touched.unit))
+    };
+    let gains = touched.iter().enumerate().filter_map(|held| Some((held.1.limit, held.1.is_upper, gain(held)?)));
+    let mut bounds: Vec<ActiveBound> = Vec::new();
+    for (limit, is_upper, gain) in gains.filter(|(.., gain)| *gain > FLOOR * worst.objective) {
+        let side = Side { limit, is_upper };
+        match bounds.iter_mut().find(|known| known.side == side) {
+            Some(known) => known.gain += gain,
+            None => bounds.push(ActiveBound { side, names: names(problem, limit), gain }),
         }
     }
-    bounds
+    sorted(bounds)
 }
 
-/// The same of the shapes of the cell that the part or its fixture touches there: everything is planned anew a little away from them.
-fn active_clearances(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
-    let problem = planner.problem();
-    let mut workspace = planner.workspace();
-    let gained = |(room, inward): (Room, Vector4<f64>)| {
-        let away = Placement::from(std::array::from_fn(|k| worst.placement[k] + STEP * inward[k] * UNITS[k]));
-        let away = planned(planner, &problem.cell.clamp(&away), scheme, &mut workspace)?;
-        let gain = (worst.objective - away.objective) / (STEP * room.pose_slopes().norm());
-        (gain > FLOOR * worst.objective).then(|| ActiveBound {
-            side: Side { limit: room.limit, is_upper: false },
-            names: names(problem, room.limit),
-            gain,
-        })
+/// What a worst placement touches.
+struct Touched {
+    limit: Limit,
+    is_upper: bool,
+    /// The direction away from it, in scaled variables.
+    inward: Vector4<f64>,
+    /// By how much the room to it grows in a step of one along that. m or rad
+    unit: f64,
+}
+
+/// Directions are the same where their sines are below this.
+const PARALLEL: f64 = 1e-3;
+
+/// The walls of the cell that a placement touches.
+fn walls(problem: &Problem, worst: &Solution) -> Vec<Touched> {
+    let rooms = pose_bounds(problem, &worst.placement);
+    let sides = |k: usize| [(k, true, rooms[k].max, -rooms[k].min), (k, false, -rooms[k].min, rooms[k].max)];
+    let touched = |(k, is_upper, near, far): (usize, bool, f64, f64)| {
+        let sign = if is_upper { -1.0 } else { 1.0 };
+        let inward = Vector4::from_fn(|j, _| if j == k { sign } else { 0.0 });
+        let is_touched = near <= TOUCHED && far >= STEP;
+        is_touched.then_some(Touched { limit: Limit::ALL_WALLS[k], is_upper, inward, unit: UNITS[k] })
     };
-    touching(problem, worst, TOUCHED_SHAPES).filter_map(gained).collect()
+    (0..4).flat_map(sides).filter_map(touched).collect()
+}
+
+/// The shapes of the cell that the part or its fixture touches at a placement.
+fn shapes(problem: &Problem, worst: &Solution) -> Vec<Touched> {
+    let touched = |(room, inward): (Room, Vector4<f64>)| Touched {
+        limit: room.limit,
+        is_upper: false,
+        inward,
+        unit: room.pose_slopes().norm(),
+    };
+    touching(problem, worst, TOUCHED_SHAPES).map(touched).collect()
 }
 
 /// The names of the two that have to keep a distance.

@@ -1,4 +1,4 @@
-//! Exact first derivatives of everything that the subproblem needs, and the curvature of the scores.
+//! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the scores.
 
 use super::super::criterion::Criterion;
 use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
@@ -65,7 +65,8 @@ pub enum Curvature {
 /// Points that one thread linearises at least.
 const MIN_SHARE: usize = 200;
 
-/// All path points of a solution, in order, with as much curvature as asked for and the shapes that have less room than a limit (m); `None` when one cannot be reached, which a solution rules out.
+/// All path points of a solution, in order, with as much curvature as asked for and the shapes that have less room than a limit (m);
+/// `None` when one cannot be reached, which a solution rules out.
 pub fn linearise(problem: &Problem, solution: &Solution, asked: (Curvature, f64)) -> Option<Vec<Local>> {
     let of_plan = |plan: &'_ SegmentPlan| {
         let points: Vec<usize> = plan.points.clone().collect();

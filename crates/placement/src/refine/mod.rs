@@ -3,8 +3,9 @@
 //! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
 //! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
 //! so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of beta and the
-//! cell and the distances of shapes are linearised; a trust region keeps the step where the model is right ([`subproblem`], solved by clarabel).
-//! Derivatives are exact ([`linearise`]). Then postures, turns and betas are planned anew, and so on until neither changes.
+//! cell and the distances of shapes are linearised; a trust region keeps the step where the model is right ([`subproblem`],
+//! solved by clarabel). Derivatives are exact but those of distances ([`linearise`], [`rooms`]). Then postures, turns and betas
+//! are planned anew, and so on until neither changes.
 //!
 //! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
 //! constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
@@ -157,7 +158,7 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-/// Walls that leave a neighbour this near, as a share of the distance asked for, leave none.
+/// A neighbour that a wall of the cell leaves nearer than this share of the distance asked for is not tried.
 const NEAR: f64 = 0.01;
 
 /// The placements a distance (in scaled variables) before and behind another along x, y, z and yaw, as far as the cell allows.

@@ -7,7 +7,7 @@ use super::linearise::{LOCAL, UNITS};
 use crate::limit::Limit;
 use crate::problem::{Placement, Problem};
 use nalgebra::Vector4;
-use stead_cell::{Near, Pair, PairKind, Poses, Scene};
+use stead_cell::{Near, PairKind, Poses, Scene};
 use stead_model::robot::Posture;
 
 /// The room of one pair of shapes, linearised in scaled variables.
@@ -15,6 +15,8 @@ use stead_model::robot::Posture;
 pub struct Room {
     /// Which limit it is the room of.
     pub limit: Limit,
+    /// Whether the joints matter to it: not where it is of the part and what stands in the cell.
+    pub is_of_joints: bool,
     /// How much farther apart than they have to be the two are. m
     pub room: f64,
     /// Its slopes by x, y, z, yaw and beta. m per scaled unit
@@ -37,7 +39,7 @@ impl Room {
 pub const NEAR_STEPS: f64 = 0.05;
 /// The same where the placement stays. m
 pub const NEAR_STAYING: f64 = 0.005;
-/// From state to state for the slopes, in scaled variables.
+/// How far the states lie apart whose difference is the slope, in scaled variables.
 const STEP: f64 = 1e-4;
 /// See [`Room::spare`]. m
 const KEPT: f64 = 1e-6;
@@ -51,7 +53,7 @@ pub(super) fn rooms(
     within: f64,
 ) -> Vec<Room> {
     let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
-    let kinds = if problem.starts_still(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
+    let kinds = if problem.axes_moved_to(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
     let poses = |placement: &Placement, beta: f64| {
         let joints = problem.robot.inverse(&problem.base_from_flange(point, placement, beta), posture).ok()?;
         Some(problem.poses(scene, point, placement, &joints))
@@ -67,7 +69,7 @@ pub(super) fn placement_rooms(problem: &Problem, placement: &Placement) -> Vec<R
         let poses = |placement: &Placement, _: f64| Some(problem.poses(scene, point, placement, &joints));
         linearised(scene, (&[PairKind::WorkpieceCell], NEAR_STEPS), placement, 0.0, poses)
     };
-    problem.still_points().flat_map(at).collect()
+    problem.points_after_axes_moved().flat_map(at).collect()
 }
 
 /// The pairs with little room at a placement and beta, with the slopes of that room.
@@ -83,17 +85,27 @@ fn linearised(
     if near.is_empty() {
         return Vec::new();
     }
-    let moved: [Option<Poses>; LOCAL] = std::array::from_fn(|k| {
+    let moved = |k: usize, step: f64| {
         let mut moved = *placement;
         let mut turned = beta;
-        *(if k < 4 { &mut moved[k] } else { &mut turned }) += STEP * UNITS[k];
-        poses(&moved, turned)
-    });
-    let slope = |near: &Near, there: &Poses| scene.room_change(near, &here, there) / STEP;
-    let slopes = |near: &Near| moved.map(|there| there.map_or(0.0, |there| slope(near, &there)));
-    let is_of_zone = |near: &Near| scene.pair(near.pair).is_some_and(Pair::is_of_zone);
-    let limit = |near: &Near| if is_of_zone(near) { Limit::KeepOut(near.pair) } else { Limit::Clearance(near.pair) };
-    near.iter().map(|near| Room { limit: limit(near), room: near.room, slopes: slopes(near) }).collect()
+        *(if k < 4 { &mut moved[k] } else { &mut turned }) += step * UNITS[k];
+        poses(&moved, turned).map(|there| (there, step))
+    };
+    // At the end of the reach there is a state on one side alone.
+    let moved: [_; LOCAL] = std::array::from_fn(|k| moved(k, STEP).or_else(|| moved(k, -STEP)));
+    let room = |near: &Near| {
+        let pair = scene.pair(near.pair)?;
+        let slope = |there: &Option<(Poses, f64)>| {
+            there.as_ref().map_or(0.0, |(there, step)| scene.room_change(near, &here, there) / step)
+        };
+        Some(Room {
+            limit: if pair.is_of_zone() { Limit::KeepOut(near.pair) } else { Limit::Clearance(near.pair) },
+            is_of_joints: pair.kind != PairKind::WorkpieceCell,
+            room: near.room,
+            slopes: std::array::from_fn(|k| slope(&moved[k])),
+        })
+    };
+    near.iter().filter_map(room).collect()
 }
 
 #[cfg(test)]

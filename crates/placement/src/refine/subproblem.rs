@@ -3,7 +3,8 @@
 //! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
 //! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
 //! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
-//! adds to |c_i|); then joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta, the cell, the trust region.
+//! adds to |c_i|); then joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta,
+//! the cell, the trust region.
 //! Rows that cannot become active inside the trust region are left out. Where the margin of a
 //! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
@@ -160,7 +161,9 @@ impl Build<'_> {
             let terms = Self::terms(i, &local.state.base_distance.gradient);
             self.add_between(Limit::BaseDistance, &terms, -spare, f64::INFINITY);
         }
-        for room in &local.rooms {
+        // Where the placement stays, the part and what stands in the cell stay as far apart.
+        let pose_stays = self.question.pose_stays;
+        for room in local.rooms.iter().filter(|room| room.is_of_joints || !pose_stays) {
             self.add_between(room.limit, &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {

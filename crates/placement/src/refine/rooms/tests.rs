@@ -90,8 +90,10 @@ proptest! {
         for room in rooms(&problem, (point, beta), &placement, posture, 0.3) {
             let (Limit::Clearance(pair) | Limit::KeepOut(pair)) = room.limit else { panic!("{:?}", room.limit) };
             let required = scene.pair(pair).unwrap().required;
-            // Where shapes already hit there is no slope.
-            prop_assume!(room.room > 0.02);
+            // Where shapes hit there is no slope.
+            if room.room < 1e-3 {
+                continue;
+            }
             for k in 0..LOCAL {
                 let at = |by: f64| {
                     let (mut moved, mut turned) = (placement, beta);
