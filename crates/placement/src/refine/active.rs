@@ -62,6 +62,9 @@ const STEP: f64 = 1e-3;
 pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
     let problem = planner.problem();
     let touched: Vec<Touched> = walls(problem, worst).into_iter().chain(shapes(problem, worst)).collect();
+    if touched.is_empty() {
+        return Vec::new();
+    }
     let inward = DMatrix::from_fn(touched.len(), 4, |row, k| touched[row].inward[k]);
     // Along the column of each the room to it grows by one, and that to the others stays; equal ones share.
     let Ok(away) = inward.pseudo_inverse(PARALLEL) else { return Vec::new() };
