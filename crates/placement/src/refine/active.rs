@@ -5,11 +5,11 @@
 //! objective across it, since the objective is a minimum over plans.
 
 use super::ascent::touching;
-use super::linearise::{Curvature, UNITS, linearise};
+use super::linearise::{Curvature, linearise};
 use super::programme::pose_bounds;
 use super::rooms::{NEAR_STEPS, Room};
 use super::subproblem::{Answer, Question, solve};
-use super::{LENGTH_UNIT, Solution, planned};
+use super::{LENGTH_UNIT, Solution, UNITS, planned};
 use crate::limit::{ActiveBound, Limit, Side};
 use crate::problem::{Placement, Problem};
 use crate::redundancy::Planner;

@@ -7,12 +7,12 @@
 use super::super::outcome::RefinementStatus;
 use super::super::problem::{Placement, Problem};
 use super::super::redundancy::{Planner, Workspace};
-use super::linearise::{Curvature, UNITS, linearise};
+use super::linearise::{Curvature, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
 use super::rooms::{NEAR_STAYING, Room, placement_rooms};
 use super::solver::Run;
 use super::subproblem::{Question, solve};
-use super::{Solution, planned};
+use super::{Solution, UNITS, planned};
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 use stead_model::robot::Posture;

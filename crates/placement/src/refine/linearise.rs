@@ -4,17 +4,12 @@ use super::super::criterion::Criterion;
 use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
 use super::super::problem::{Placement, Problem};
 use super::rooms::{Room, rooms};
-use super::{LENGTH_UNIT, Solution};
+use super::{LOCAL, Solution, UNITS};
 use crate::redundancy::SegmentPlan;
 use nalgebra::{Matrix5, SymmetricEigen};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
-
-/// Number of variables of one path point: x, y, z (in [`LENGTH_UNIT`]), yaw and its beta (rad).
-pub const LOCAL: usize = 5;
-/// Units of the local variables.
-pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0];
 
 /// One path point of a solution, linearised in scaled variables.
 #[derive(Debug, Clone, PartialEq)]

@@ -42,6 +42,10 @@ use stead_numerics::monitor::Monitor;
 
 /// The unit of position in scaled variables. m
 pub const LENGTH_UNIT: f64 = 0.1;
+/// Number of variables of one path point: x, y, z (in [`LENGTH_UNIT`]), yaw and its beta (rad).
+pub const LOCAL: usize = 5;
+/// Their units.
+pub const UNITS: [f64; LOCAL] = [LENGTH_UNIT, LENGTH_UNIT, LENGTH_UNIT, 1.0, 1.0];
 /// Rounds of refining and planning anew, at the most.
 const ROUNDS: usize = 12;
 /// A round that gains less than this share of the mean ends the refinement.
@@ -166,7 +170,7 @@ fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Place
     let along = (0..4).flat_map(|k| [(k, -1.0), (k, 1.0)]);
     let moved = |(k, side): (usize, f64)| {
         let mut placement = *centre;
-        placement[k] += side * distance * linearise::UNITS[k];
+        placement[k] += side * distance * UNITS[k];
         problem.cell.clamp(&placement)
     };
     along.map(moved).filter(|placement| !is_near(placement, centre, NEAR * distance)).collect()
@@ -174,7 +178,7 @@ fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Place
 
 /// Whether two placements differ by no more than this in any scaled variable.
 fn is_near(a: &Placement, b: &Placement, distance: f64) -> bool {
-    (0..4).all(|k| (a[k] - b[k]).abs() <= distance * linearise::UNITS[k])
+    (0..4).all(|k| (a[k] - b[k]).abs() <= distance * UNITS[k])
 }
 
 /// The best neighbour along the placement axes, if it is better by more than [`GAIN`]; of those planned before a stop.

@@ -3,7 +3,7 @@
 //! The distance of two shapes changes as that of the two points in which they are nearest, carried along by the shapes: to first order
 //! exactly, unless they are as near elsewhere too. Slopes are differences between the state and states moved a little.
 
-use super::linearise::{LOCAL, UNITS};
+use super::{LOCAL, UNITS};
 use crate::limit::Limit;
 use crate::problem::{Placement, Problem};
 use nalgebra::Vector4;

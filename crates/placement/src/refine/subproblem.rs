@@ -10,11 +10,11 @@
 //! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
 //! likewise for the norm of the parts where several directions are scored.
 
-use super::Solution;
-use super::linearise::{Curvature, LOCAL, Local, UNITS, linearise};
+use super::linearise::{Curvature, Local, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
 use super::rooms::NEAR_STEPS;
 use super::rows::{Rows, Triplets, curvature};
+use super::{LOCAL, Solution, UNITS};
 use crate::criterion::Aggregate;
 use crate::limit::{Limit, Side};
 use crate::problem::Problem;

@@ -141,7 +141,7 @@ fn the_gradient_of_the_worst_case_agrees_with_planning_anew() {
             let h = 1e-4;
             let mut at = |side: f64| {
                 let mut moved = placement;
-                moved[k] += side * h * linearise::UNITS[k];
+                moved[k] += side * h * UNITS[k];
                 planned(&planner, &moved, None, &mut workspace).unwrap().objective
             };
             let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
@@ -158,13 +158,13 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
         let locals = linearise::linearise(&problem, &here, (linearise::Curvature::Full, NEAR_STEPS)).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
-                for k in 0..linearise::LOCAL {
+                for k in 0..LOCAL {
                     let h = 1e-6;
                     let at = |side: f64| {
                         let (mut placement, mut beta) = (here.placement, plan.betas[place]);
                         match k {
                             4 => beta += side * h,
-                            _ => placement[k] += side * h * linearise::UNITS[k],
+                            _ => placement[k] += side * h * UNITS[k],
                         }
                         crate::evaluate::reference::state(&problem, point, &placement, beta, plan.posture).unwrap()
                     };
