@@ -67,13 +67,18 @@ fn shipped() -> Bench {
 const RUN: &str = "configs/collision.toml";
 const CELL: &str = "configs/cells/kr270-cell.toml";
 
+/// The cases of a run of the shipped job.
+fn cases(bench: &Bench) -> serde_json::Value {
+    let ended = bench.stead(&["place", RUN, "--json", "--no-page", "--out", "r"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.json()["cases"].clone()
+}
+
 #[test]
 fn a_wall_through_the_best_placement_moves_it_and_is_named() {
     let bench = shipped();
     let best = |bench: &Bench| {
-        let ended = bench.stead(&["place", RUN, "--json", "--no-page", "--out", "r"]);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let best = ended.json()["cases"][0].clone();
+        let best = cases(bench)[0].clone();
         let at = ["x_mm", "y_mm", "z_mm", "yaw_deg"].map(|key| best["placement"][key].as_f64().unwrap());
         (at, best["mean_mm"].as_f64().unwrap())
     };
@@ -111,12 +116,10 @@ fn a_wall_through_the_best_placement_moves_it_and_is_named() {
 #[test]
 fn the_best_plan_of_the_shipped_cell_is_free_at_a_tenth_of_the_step() {
     let bench = shipped();
-    let ended = bench.stead(&["place", RUN, "--json", "--no-page", "--out", "r"]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let best = cases(&bench)[0].clone();
     let run = stead::Run::read(bench.path(RUN)).unwrap();
     let problem = run.problem();
     let scene = problem.scene.as_deref().unwrap();
-    let best = &ended.json()["cases"][0];
     let of = |key: &str| best["placement"][key].as_f64().unwrap();
     let placement =
         Placement { x: of("x_mm") / 1e3, y: of("y_mm") / 1e3, z: of("z_mm") / 1e3, yaw: of("yaw_deg").to_radians() };
@@ -151,11 +154,7 @@ fn the_best_plan_of_the_shipped_cell_is_free_at_a_tenth_of_the_step() {
 #[test]
 fn the_fence_that_holds_the_worst_placement_is_named_with_what_less_clearance_gains() {
     let bench = shipped();
-    let worst = |bench: &Bench| {
-        let ended = bench.stead(&["place", RUN, "--json", "--no-page", "--out", "r"]);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        ended.json()["cases"][2].clone()
-    };
+    let worst = |bench: &Bench| cases(bench)[2].clone();
     let here = worst(&bench);
     let bounds = here["active_bounds"].as_array().unwrap();
     let held = bounds.iter().find(|bound| bound["bound"] == "collision.clearance_mm of table and fence front");

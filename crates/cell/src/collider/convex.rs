@@ -83,16 +83,15 @@ impl Convex {
                 Some((Self { core: Core::Segment(Segment::new(-end, end)), radius: *radius }, ParryPose::IDENTITY))
             }
             Solid::Hull(mesh) | Solid::Mesh(mesh) => {
-                let hull = Self::hull(mesh.vertices().iter().map(vector).collect())?;
-                Some((hull, ParryPose::IDENTITY))
+                let points: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
+                (!points.is_empty()).then(|| (Self::hull(corners(points), 0.0), ParryPose::IDENTITY))
             }
         }
     }
 
-    /// The hull of points; `None` where there is none.
-    pub fn hull(points: Vec<Vector>) -> Option<Self> {
-        let formed = |points| Self { core: Core::Hull(Arc::new(Hull { points: corners(points) })), radius: 0.0 };
-        (!points.is_empty()).then(|| formed(points))
+    /// All that is not farther than a radius (m) from the hull of points.
+    fn hull(points: Vec<Vector>, radius: f64) -> Self {
+        Self { core: Core::Hull(Arc::new(Hull { points })), radius }
     }
 
     /// What contains all points for certain: their hull and a little more, since its corners may be off by rounding; of so many points
@@ -103,15 +102,8 @@ impl Convex {
         }
         let bounds = Aabb::from_points(points.iter().copied());
         let radius = HULL_TOLERANCE * bounds.half_extents().length();
-        let in_box = || Self { core: Core::Hull(Arc::new(Hull { points: bounds.vertices().to_vec() })), radius };
-        if points.len() > MOST_POINTS {
-            return Some(in_box());
-        }
-        let hull = corners(points);
-        if hull.len() > MOST_CORNERS {
-            return Some(in_box());
-        }
-        Some(Self { core: Core::Hull(Arc::new(Hull { points: hull })), radius })
+        let hull = (points.len() <= MOST_POINTS).then(|| corners(points)).filter(|hull| hull.len() <= MOST_CORNERS);
+        Some(Self::hull(hull.unwrap_or_else(|| bounds.vertices().to_vec()), radius))
     }
 
     /// What its points are not farther from than its radius.

@@ -90,14 +90,9 @@ impl Mesh {
             let (distance, [on_other, on_self]) = other.nearest_of_mesh(&pose.inverse(), self, limit)?;
             return Some((distance, [pose * on_self, pose * on_other]));
         }
-        let mut nearest: Option<(f64, [Vector; 2])> = None;
-        for triangle in other.triangles.triangles() {
-            let one = Other::triangle(&triangle, pose);
-            let limit = nearest.map_or(limit, |(distance, _)| distance);
-            let Some((place, distance)) = self.nearest_triangle(&one, limit) else { continue };
-            nearest = Some((distance, self.points_of(&one, (place, distance))?));
-        }
-        nearest.filter(|_| !self.is_within_or_around(pose, other))
+        let (triangle, found) = self.nearest_triangles(pose, other, limit)?;
+        let points = self.points_of(&Other::triangle(&triangle, pose), found)?;
+        (!self.is_within_or_around(pose, other)).then_some((found.1, points))
     }
 
     /// The same of another mesh.
@@ -111,14 +106,25 @@ impl Mesh {
 
     /// The triangles of the other mesh, each against the tree of this one.
     fn distance_to_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> f64 {
-        let mut nearest = limit.max(f64::MIN_POSITIVE);
+        let limit = limit.max(f64::MIN_POSITIVE);
+        let nearest = self.nearest_triangles(pose, other, limit).map_or(limit, |(_, (_, distance))| distance);
+        if nearest > 0.0 && self.is_within_or_around(pose, other) { 0.0 } else { nearest }
+    }
+
+    /// The triangle of the other mesh that is nearest, the number of the one that it is nearest to, and their distance, where that is
+    /// below `limit`, a positive number; the first that touch, where any do.
+    fn nearest_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(Triangle, (u32, f64))> {
+        let mut nearest = None;
+        let mut limit = limit;
         for triangle in other.triangles.triangles() {
-            nearest = nearest.min(self.surface_distance(&Other::triangle(&triangle, pose), nearest));
-            if nearest <= 0.0 {
-                return 0.0;
+            if let Some(found) = self.nearest_triangle(&Other::triangle(&triangle, pose), limit) {
+                (nearest, limit) = (Some((triangle, found)), found.1);
+                if limit <= 0.0 {
+                    break;
+                }
             }
         }
-        if self.is_within_or_around(pose, other) { 0.0 } else { nearest }
+        nearest
     }
 
     /// Whether one of two meshes whose surfaces do not meet is inside of the other.

@@ -3,7 +3,7 @@
 //! This is the reference evaluator: whatever is printed, and every derivative, comes from here. The search goes through the
 //! batch evaluator of [`super::batch`], which is tested against this one.
 
-use super::at_point::AtPoint;
+use super::point_evaluator::PointEvaluator;
 use crate::criterion::{Over, ScoredDirections, worst_force_error};
 use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
@@ -76,10 +76,10 @@ pub fn state<T: Scalar>(
     beta: T,
     posture: Posture,
 ) -> Result<State<T>, Unreachable> {
-    AtPoint::new(problem, point, placement).state(beta, posture)
+    PointEvaluator::new(problem, point, placement).state(beta, posture)
 }
 
-impl<T: Scalar> AtPoint<'_, T> {
+impl<T: Scalar> PointEvaluator<'_, T> {
     /// [`state`] at this point.
     ///
     /// # Errors
@@ -123,14 +123,14 @@ impl<T: Scalar> AtPoint<'_, T> {
 
 /// The arm at a path point, the workpiece placed: what does not depend on the compliances.
 struct PlacedArm<'a, T: Scalar> {
-    at: &'a AtPoint<'a, T>,
+    at: &'a PointEvaluator<'a, T>,
     joints: &'a [T; 6],
     frames: Frames<T>,
 }
 
 impl<'a, T: Scalar> PlacedArm<'a, T> {
     /// At joint angles that [`state`] found.
-    fn new(at: &'a AtPoint<'a, T>, joints: &'a [T; 6]) -> Self {
+    fn new(at: &'a PointEvaluator<'a, T>, joints: &'a [T; 6]) -> Self {
         Self { at, joints, frames: Frames::new(&at.problem.robot, joints) }
     }
 
@@ -180,7 +180,7 @@ impl<T: Scalar> DeflectedArm<'_, T> {
     /// What force errors can add to the scored part. m
     fn force_margin(&self, scored_part: T) -> T {
         let PlacedArm { at, frames, .. } = self.arm;
-        let AtPoint { problem, point, placed, directions, .. } = at;
+        let PointEvaluator { problem, point, placed, directions, .. } = at;
         if problem.criterion.force_uncertainty == 0.0 {
             return T::zero();
         }
@@ -223,7 +223,7 @@ pub fn set_scores<T: Scalar>(
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<(SetScore<T>, Vec<T>)> {
-    let at = AtPoint::new(problem, point, placement);
+    let at = PointEvaluator::new(problem, point, placement);
     let arm = PlacedArm::new(&at, joints);
     let of = |robot| {
         let deflected = arm.under(robot);
@@ -240,7 +240,7 @@ pub fn scored_parts<T: Scalar>(
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<Vec<T>> {
-    let at = AtPoint::new(problem, point, placement);
+    let at = PointEvaluator::new(problem, point, placement);
     let arm = PlacedArm::new(&at, joints);
     let of = |robot| {
         let moved = arm.under(robot).deflection;
@@ -260,7 +260,7 @@ pub fn scored_part_by_parameters<T: Scalar>(
     placement: &Placement<T>,
     joints: &[T; 6],
 ) -> Vec<T> {
-    PlacedArm::new(&AtPoint::new(problem, point, placement), joints).under(&problem.robot).scored_slopes()
+    PlacedArm::new(&PointEvaluator::new(problem, point, placement), joints).under(&problem.robot).scored_slopes()
 }
 
 /// The scored part of a deflection, and the direction along which it grows fastest, as long as it grows.

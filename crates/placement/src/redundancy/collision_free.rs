@@ -59,7 +59,7 @@ pub(crate) fn settled_among_free(
     let mut watched = vec![false; plan.points.len()];
     for _ in 0..WATCHES {
         let mut refined = plan.clone();
-        off_grid::refine_free(problem, placement, sense, spacing, &watched, &mut refined);
+        off_grid::refine(problem, placement, sense, spacing, &watched, &mut refined);
         let hits = match refined.cost.is_finite() {
             true => problem.plan_hits(placement, &refined, false),
             false => Vec::new(),
@@ -74,7 +74,7 @@ pub(crate) fn settled_among_free(
         }
     }
     let mut refined = plan.clone();
-    off_grid::refine_free(problem, placement, sense, spacing, &vec![true; watched.len()], &mut refined);
+    off_grid::refine(problem, placement, sense, spacing, &vec![true; watched.len()], &mut refined);
     refined
 }
 
@@ -167,10 +167,6 @@ impl Planner<'_> {
     /// does are looked at one by one.
     pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
         let (problem, spacing) = (self.problem, self.spacing);
-        if problem.scene.is_none() {
-            off_grid::refine(problem, placement, sense, spacing, plan);
-            return;
-        }
         if problem.plan_hits(placement, plan, false).is_empty() {
             *plan = settled_among_free(problem, placement, sense, spacing, plan);
         }

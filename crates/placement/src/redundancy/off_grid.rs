@@ -4,7 +4,7 @@
 //! same constraints as on the grid (real joint angles, exact limits on beta), and repeats until nothing moves; then the spacing is
 //! halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is ever left.
 
-use super::super::evaluate::at_point::AtPoint;
+use super::super::evaluate::point_evaluator::PointEvaluator;
 use super::super::problem::{Placement, Problem, Redundancy};
 use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
@@ -75,14 +75,8 @@ struct Node {
 ///
 /// The plan given need not be one for this placement exactly: with an infinite cost, the betas of `plan` are only where the grid
 /// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
-pub fn refine(problem: &Problem, placement: &Placement, sense: Sense, range: Spacing, plan: &mut SegmentPlan) -> bool {
-    let at: Vec<AtPoint<'_>> = plan.points.clone().map(|point| AtPoint::new(problem, point, placement)).collect();
-    let allowed = |place: usize, beta, plan: &SegmentPlan| allowed(&at[place], beta, plan);
-    refine_with(problem, &allowed, sense, range, plan)
-}
-
-/// The same among states in which nothing hits at the points that are `watched` (one entry for each point of the plan).
-pub fn refine_free(
+/// Nothing hits in the states at the points that are `watched` (one entry for each point of the plan).
+pub fn refine(
     problem: &Problem,
     placement: &Placement,
     sense: Sense,
@@ -91,23 +85,13 @@ pub fn refine_free(
     plan: &mut SegmentPlan,
 ) -> bool {
     let first = plan.points.start;
-    let at: Vec<AtPoint<'_>> = plan.points.clone().map(|point| AtPoint::new(problem, point, placement)).collect();
+    let at: Vec<PointEvaluator<'_>> =
+        plan.points.clone().map(|point| PointEvaluator::new(problem, point, placement)).collect();
     let allowed = |place: usize, beta, plan: &SegmentPlan| {
         let state = allowed(&at[place], beta, plan)?;
         let is_free = || problem.state_hit(first + place, placement, &state.joints).is_none();
         (!watched[place] || is_free()).then_some(state)
     };
-    refine_with(problem, &allowed, sense, range, plan)
-}
-
-/// Refines among the states that `allowed` gives for a point of the plan, from its first on, and beta (rad).
-fn refine_with(
-    problem: &Problem,
-    allowed: &(impl Fn(usize, f64, &SegmentPlan) -> Option<Allowed> + Sync),
-    sense: Sense,
-    range: Spacing,
-    plan: &mut SegmentPlan,
-) -> bool {
     let mut better = false;
     let mut spacing = range.first;
     let unknown = Value { beta: f64::NAN, state: None, node: None };
@@ -115,7 +99,7 @@ fn refine_with(
     while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
-            lay(problem, allowed, spacing, plan, &mut layers);
+            lay(problem, &allowed, spacing, plan, &mut layers);
             if !level(problem, sense, plan, &mut layers) {
                 break;
             }
@@ -140,7 +124,7 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
     let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
-        let state = allowed(&AtPoint::new(problem, point, placement), plan.betas[place], plan)?;
+        let state = allowed(&PointEvaluator::new(problem, point, placement), plan.betas[place], plan)?;
         let node = turned(problem, &state, &plan.joints[place])?;
         replayed.joints[place] = node.joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
@@ -163,12 +147,12 @@ pub fn score(
     plan: &SegmentPlan,
     near: &[f64; 6],
 ) -> Option<f64> {
-    let state = allowed(&AtPoint::new(problem, point, placement), beta, plan)?;
+    let state = allowed(&PointEvaluator::new(problem, point, placement), beta, plan)?;
     turned(problem, &state, near).map(|node| node.score)
 }
 
 /// The state of a path point in the posture of a plan, if it satisfies everything but the limits of the joints.
-fn allowed(at: &AtPoint<'_>, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
+fn allowed(at: &PointEvaluator<'_>, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
     let state = at.state(beta, plan.posture).ok()?;
     is_allowed(at.problem(), &state).then(|| Allowed { joints: state.joints, score: state.score() })
 }

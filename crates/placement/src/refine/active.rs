@@ -75,13 +75,12 @@ pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Po
         let moved = planned(planner, &problem.cell.clamp(&moved), scheme, &mut workspace)?;
         Some((worst.objective - moved.objective) / (STEP * touched.unit))
     };
-    let gains = touched.iter().enumerate().filter_map(|held| Some((held.1.limit, held.1.is_upper, gain(held)?)));
+    let gains = touched.iter().enumerate().filter_map(|held| Some((held.1.side, gain(held)?)));
     let mut bounds: Vec<ActiveBound> = Vec::new();
-    for (limit, is_upper, gain) in gains.filter(|(.., gain)| *gain > FLOOR * worst.objective) {
-        let side = Side { limit, is_upper };
+    for (side, gain) in gains.filter(|(_, gain)| *gain > FLOOR * worst.objective) {
         match bounds.iter_mut().find(|known| known.side == side) {
             Some(known) => known.gain += gain,
-            None => bounds.push(ActiveBound { side, names: names(problem, limit), gain }),
+            None => bounds.push(ActiveBound { side, names: names(problem, side.limit), gain }),
         }
     }
     sorted(bounds)
@@ -89,8 +88,7 @@ pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Po
 
 /// What a worst placement touches.
 struct Touched {
-    limit: Limit,
-    is_upper: bool,
+    side: Side,
     /// The direction away from it, in scaled variables.
     inward: Vector4<f64>,
     /// By how much the room to it grows in a step of one along that. m or rad
@@ -108,7 +106,7 @@ fn walls(problem: &Problem, worst: &Solution) -> Vec<Touched> {
         let sign = if is_upper { -1.0 } else { 1.0 };
         let inward = Vector4::from_fn(|j, _| if j == k { sign } else { 0.0 });
         let is_touched = near <= TOUCHED && far >= STEP;
-        is_touched.then_some(Touched { limit: Limit::ALL_WALLS[k], is_upper, inward, unit: UNITS[k] })
+        is_touched.then_some(Touched { side: Side { limit: Limit::ALL_WALLS[k], is_upper }, inward, unit: UNITS[k] })
     };
     (0..4).flat_map(sides).filter_map(touched).collect()
 }
@@ -116,8 +114,7 @@ fn walls(problem: &Problem, worst: &Solution) -> Vec<Touched> {
 /// The shapes of the cell that the part or its fixture touches at a placement.
 fn shapes(problem: &Problem, worst: &Solution) -> Vec<Touched> {
     let touched = |(room, inward): (Room, Vector4<f64>)| Touched {
-        limit: room.limit,
-        is_upper: false,
+        side: Side { limit: room.limit, is_upper: false },
         inward,
         unit: room.pose_slopes().norm(),
     };

@@ -8,25 +8,22 @@ use stead_numerics::scalar::Scalar;
 
 /// A path point with the workpiece at a placement. Its states are those of the [reference evaluator](super::reference).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AtPoint<'a, T: Scalar = f64> {
+pub struct PointEvaluator<'a, T: Scalar = f64> {
     pub(super) problem: &'a Problem,
     pub(super) point: usize,
-    /// The frame of the point in the base frame.
-    base_from_point: Pose<T>,
     pub(super) placed: PlacedPoint<T>,
     pub(super) directions: ScoredDirections<T>,
     /// In the base frame.
     pub(super) surface_normal: Option<Vector3<T>>,
 }
 
-impl<'a, T: Scalar> AtPoint<'a, T> {
+impl<'a, T: Scalar> PointEvaluator<'a, T> {
     /// For path point `point` (from 0).
     pub fn new(problem: &'a Problem, point: usize, placement: &Placement<T>) -> Self {
         let placed = problem.placed(point, placement);
         Self {
             problem,
             point,
-            base_from_point: problem.base_from_point(point, placement),
             placed,
             directions: problem.scored_directions(point, &placed.axes),
             surface_normal: problem.surface_normal(point, placement),
@@ -40,6 +37,7 @@ impl<'a, T: Scalar> AtPoint<'a, T> {
 
     /// The flange frame in the base frame at a free angle (rad): [`Problem::base_from_flange`].
     pub fn base_from_flange(&self, beta: T) -> Pose<T> {
-        self.problem.flange_at(&self.base_from_point, beta)
+        let PlacedPoint { tip, axes, .. } = self.placed;
+        self.problem.flange_at(&Pose { rotation: axes, translation: tip }, beta)
     }
 }
