@@ -4,9 +4,13 @@ use crate::lookup::LookupTable;
 use crate::redundancy::{Planner, StateSet, forbid};
 use crate::sense::Sense;
 use crate::testing::five_segments;
+use nalgebra::{Vector3, vector};
 use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
-use stead_cell::{Attachment, Solid};
+use stead_cell::{Attachment, KeepOut, Shape, Solid, Surroundings, TrackedPoint, Zone};
+use stead_model::external_axis::{AxisKind, AxisUse, ExternalAxis};
+use stead_model::robot::Pose;
+use stead_numerics::rotation::rotation_from_zyx;
 
 /// The five segments with the shapes of the KR 270, and more shapes in the cell.
 fn among(more: Vec<stead_cell::Shape>, clearance: f64) -> Problem {
@@ -136,4 +140,88 @@ fn neighbours_that_hit_are_forbidden_as_far_as_they_hit() {
     forbid((4, class), (1, 10, 1), |k| [9, 0, 1, 2, 5].contains(&k), &mut forbidden);
     let found: Vec<usize> = (0..10).filter(|k| forbidden.contains(4, class, *k)).collect();
     assert_eq!(found, [0, 1, 2, 9]);
+}
+
+/// Shapes, zone and workpiece as an arm sees them that is not mounted: moved by a pose into its base frame.
+fn seen_from(base: &Pose<f64>, shapes: &[Shape], floor: (Vector3<f64>, Vector3<f64>)) -> Surroundings {
+    let moved = |shape: &Shape| match shape.attached {
+        Attachment::Base => Shape { pose: base.then(&shape.pose), ..shape.clone() },
+        _ => shape.clone(),
+    };
+    let zone = Zone::HalfSpace { point: base.point(&floor.0), normal: base.rotation * floor.1 };
+    let zones = vec![KeepOut { name: "floor".to_owned(), zone, points: TrackedPoint::ALL.to_vec() }];
+    Surroundings::new(shapes.iter().map(moved).collect(), zones, 0.01, Vec::new()).unwrap()
+}
+
+#[test]
+fn a_mounted_arm_keeps_the_distances_of_its_base_frame_in_states_and_moves() {
+    use rand::{RngExt, SeedableRng};
+    let turned = |angles: [f64; 3]| rotation_from_zyx(angles.map(f64::to_radians));
+    let mounts = [
+        ("floor", Pose::identity()),
+        ("pedestal", Pose { translation: vector![0.0, 0.0, 0.35], ..Pose::identity() }),
+        ("wall", Pose { rotation: turned([20.0, 90.0, 0.0]), translation: vector![-0.4, 0.1, 1.2] }),
+        ("ceiling", Pose { rotation: turned([30.0, 0.0, 180.0]), translation: vector![0.2, -0.3, 2.6] }),
+    ];
+    let rail = |at: f64| ExternalAxis {
+        name: "rail".to_owned(),
+        kind: AxisKind::Rail,
+        carries: Carried::Robot,
+        direction: Vector3::x(),
+        point: Vector3::zeros(),
+        min: at,
+        max: at,
+        max_speed: Some(0.5),
+        axis_use: AxisUse::Fixed,
+    };
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(29);
+    for (name, mount) in &mounts {
+        for position in [0.0, 0.7] {
+            let mut problem = five_segments();
+            let unmounted = problem.robot.clone();
+            problem.robot = problem.robot.mounted(mount);
+            if position != 0.0 {
+                problem.external_axes = vec![rail(position)];
+                problem.setup = crate::setup::Setup::at_rest(&problem.external_axes);
+            }
+            let floor = (vector![0.0, 0.0, -2.5], vector![0.0, 0.0, -1.0]);
+            let flange_from_tool = problem.spindle.flange_from_tool;
+            let around = seen_from(&Pose::identity(), &kr270_shapes(), floor);
+            let scene = Scene::new(&problem.robot, &flange_from_tool, around).unwrap();
+            // The arm stands at its mount, moved along the rail.
+            let stand = Pose { translation: mount.translation + Vector3::x() * position, ..*mount };
+            let around = seen_from(&stand.inverse(), &kr270_shapes(), floor);
+            let plain = Scene::new(&unmounted, &flange_from_tool, around).unwrap();
+            let (mut near, mut hits) = (0, 0);
+            let mut last: Option<([f64; 6], Poses, Poses)> = None;
+            for _ in 0..60 {
+                let joints: [f64; 6] = std::array::from_fn(|j| {
+                    let joint = &unmounted.joints()[j];
+                    joint.min + (joint.max - joint.min) * random.random::<f64>()
+                });
+                let placement = Placement::from(std::array::from_fn(|_| 4.0 * random.random::<f64>() - 2.0));
+                let poses = problem.poses(&scene, 0, &placement, &joints);
+                let workpiece = stand.inverse().then(&placement.base_from_workpiece());
+                let twin = plain.poses(&joints, &workpiece);
+                for (number, pair) in plain.pairs().iter().enumerate() {
+                    assert_eq!(scene.pair(number).unwrap().names, pair.names);
+                    let [found, expected] =
+                        [scene.distance(number, &poses, 5.0), plain.distance(number, &twin, 5.0)].map(|d| d.min(5.0));
+                    assert!((found - expected).abs() < 1e-6, "{name}, {pair}: {found} and not {expected}");
+                    near += usize::from(expected < 0.2);
+                }
+                if let Some((from, before, twin_before)) = last {
+                    let to = std::array::from_fn(|j| from[j] + 0.1 * (joints[j] - from[j]));
+                    let moved = problem.poses(&scene, 0, &placement, &to);
+                    let twin_moved = plain.poses(&to, &workpiece);
+                    let found = scene.motion((&from, &before), (&to, &moved));
+                    let expected = plain.motion((&from, &twin_before), (&to, &twin_moved));
+                    assert_eq!(found.map(|hit| hit.pair), expected.map(|hit| hit.pair), "{name}");
+                    hits += usize::from(expected.is_some());
+                }
+                last = Some((joints, poses, twin));
+            }
+            assert!(near > 50 && (5..55).contains(&hits), "{name}: {near} {hits}");
+        }
+    }
 }
