@@ -4,14 +4,16 @@
 //! 2000) with random numbers of its own, so that the same plan always gets the same moves.
 
 use crate::problem::{Placement, Problem};
-use crate::redundancy::SegmentPlan;
-use crate::settings::TransferSettings;
-use nalgebra::Vector3;
+use crate::segment_plan::SegmentPlan;
+use crate::tool_scene::ToolScene;
+use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stead_cell::Scene;
-use stead_model::robot::angles::wrap;
+use std::sync::Arc;
+use stead_cell::{PairKind, Scene};
+use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
 use stead_model::robot::{Pose, Posture};
+use stead_model::task::PathPoint;
 
 /// How a move between two segments goes.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,12 +24,49 @@ pub struct Way {
     pub axes_from: usize,
     /// Whether the first and the last move follow the tool axis; all others are straight in joint space.
     pub along_axis: [bool; 2],
-    /// Number of the pair of the scene that hits on the straight move, where no free way was found: `joints` is then that move.
-    pub blocked_by: Option<usize>,
+    /// What ends the line out of the cut, and that into it, before its length.
+    pub short_lines: [Option<ShortLine>; 2],
+    /// The pair that hits, where no free way was found: `joints` is then the straight move.
+    pub blocked_by: Option<Arc<[String; 2]>>,
+}
+
+/// A line along the tool axis that is not as long as it should be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShortLine {
+    /// How long it is. m
+    pub length: f64,
+    /// How long it should be. m
+    pub wanted: f64,
+    /// What ends it.
+    pub end: LineEnd,
+}
+
+/// What ends a line along the tool axis.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LineEnd {
+    /// The arm does not reach farther in its posture.
+    OutOfReach,
+    /// A joint (from 1) is at its limit.
+    JointLimit(usize),
+    /// A joint (from 1) would swing round a singularity.
+    Swing(usize),
+    /// Two shapes are too near.
+    Hit(Arc<[String; 2]>),
+}
+
+impl std::fmt::Display for LineEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::OutOfReach => write!(f, "the arm does not reach farther in its posture"),
+            Self::JointLimit(joint) => write!(f, "joint {joint} is at its limit"),
+            Self::Swing(joint) => write!(f, "joint {joint} would swing round a singularity"),
+            Self::Hit(names) => write!(f, "{} and {} come too near", names[0], names[1]),
+        }
+    }
 }
 
 /// Lifts beyond the retraction that are tried. m
-const LIFTS: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
+const LIFTS: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
 const STRAIGHT_STEP: f64 = 0.01;
 /// A joint that turns farther in one such step swings round a singularity, which no controller follows at a useful speed. rad
@@ -58,59 +97,107 @@ pub struct AtPoint {
 #[derive(Debug, Clone, Copy)]
 pub struct Space<'a> {
     problem: &'a Problem,
+    /// The shapes of the cell, for lines along the tool axis.
     scene: &'a Scene,
+    /// The same with cutter, holder and part, for joint moves.
+    with_tool: &'a Scene,
     placement: &'a Placement,
 }
 
+/// A line along the tool axis away from a path point.
+#[derive(Debug, Clone, PartialEq)]
+struct Line {
+    /// Joint angles in steps, from the point on. rad
+    joints: Vec<[f64; 6]>,
+    short: Option<ShortLine>,
+}
+
 /// The move from the end of one segment's plan to the start of the next; `None` where there is no scene.
-pub fn way(
-    problem: &Problem,
-    settings: &TransferSettings,
-    placement: &Placement,
-    plans: [&SegmentPlan; 2],
-    number: usize,
-) -> Option<Way> {
+pub fn way(problem: &Problem, placement: &Placement, plans: [&SegmentPlan; 2], number: usize) -> Option<Way> {
     let space = Space::new(problem, placement)?;
     let [from, to] = plans;
-    let end = AtPoint {
-        point: from.points.end.checked_sub(1)?,
-        beta: *from.betas.last()?,
-        posture: from.posture,
-        joints: *from.joints.last()?,
-    };
-    let (point, posture) = (to.points.start, to.posture);
-    let start = AtPoint { point, beta: *to.betas.first()?, posture, joints: *to.joints.first()? };
+    let (end, start) = (AtPoint::last(from)?, AtPoint::first(to)?);
+    let retract = problem.segment_moves.retract;
     let are_axes_moved = problem.axis_positions(end.point) != problem.axis_positions(start.point);
-    let out = space.retracted(end, settings.retract);
-    let into = space.retracted(start, settings.retract);
-    let (a, b) = (*out.last()?, *into.last()?);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
     let points = (end.point, start.point);
-    let Some(blocked) = space.hit((&a, points.0), (&b, points.1)) else {
-        return Some(joined(&out, &[], &into, are_axes_moved));
-    };
+    let short_lines = [end, start].map(|at| space.line(at, retract).short);
+    let is_too_short = |line: &Line| line.joints.len() < 2;
+    let mut blocked = None;
+    let mut lines: Vec<[Line; 2]> = Vec::new();
     for lift in LIFTS {
-        let [up, down] = [end, start].map(|end| space.retracted(end, settings.retract + lift));
-        if let (Some(high), Some(low)) = (up.last(), down.last())
-            && space.hit((high, points.0), (low, points.1)).is_none()
-        {
-            return Some(joined(&up, &[], &down, are_axes_moved));
+        let pair = [end, start].map(|at| space.line(at, retract + lift));
+        // A line that a shorter one has ended already leads no farther.
+        if lines.last().is_some_and(|known| *known == pair || (lift > 0.0 && pair.iter().all(is_too_short))) {
+            break;
         }
+        if let Some(names) = [end, start].iter().find_map(|at| space.tool_hit(at.point, retract + lift)) {
+            blocked = blocked.or(Some(names));
+            break;
+        }
+        let [out, into] = &pair;
+        let (Some(high), Some(low)) = (out.joints.last(), into.joints.last()) else { break };
+        match space.hit((high, points.0), (low, points.1)) {
+            None => return Some(Way { short_lines, ..joined(&out.joints, &[], &into.joints, are_axes_moved) }),
+            Some(names) => blocked = blocked.or(Some(names)),
+        }
+        lines.push(pair);
     }
     let mut random = ChaCha8Rng::seed_from_u64(number as u64);
-    let over = match space.hit((&a, points.0), (&a, points.1)) {
-        Some(_) => None,
-        None => space.around((a, b), points.1, &mut random),
-    };
-    Some(match over {
-        Some(over) => joined(&out, &over, &into, are_axes_moved),
+    // Trees grow from the lowest lift at which nothing hits at either end.
+    let free_ends = lines.iter().find(|[out, into]| {
+        let (Some(high), Some(low)) = (out.joints.last(), into.joints.last()) else { return false };
+        space.hit((high, points.0), (high, points.1)).is_none() && space.hit((low, points.1), (low, points.1)).is_none()
+    });
+    let around = free_ends.and_then(|[out, into]| {
+        let over = space.around((*out.joints.last()?, *into.joints.last()?), points.1, &mut random)?;
+        Some(joined(&out.joints, &over, &into.joints, are_axes_moved))
+    });
+    Some(match around {
+        Some(way) => Way { short_lines, ..way },
         None => Way {
             joints: vec![end.joints, start.joints],
             axes_from: 1,
             along_axis: [false; 2],
-            blocked_by: Some(blocked),
+            short_lines,
+            blocked_by: blocked,
         },
     })
+}
+
+/// Whether the lines into and out of a segment have their whole length, in this order; also where no segment comes before or after it,
+/// and where there is no scene.
+pub fn whole_lines(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> [bool; 2] {
+    let ends = line_ends(problem, plan);
+    let Some(space) = Space::new(problem, placement) else { return [true; 2] };
+    let is_whole = |at: AtPoint| space.line_end(at, problem.segment_moves.retract).is_none();
+    ends.map(|end| end.is_none_or(is_whole))
+}
+
+/// The ends of a segment's plan at which a line leads into the cut and out of it: neither before the first segment nor after the last, nor
+/// on a path of which only some points are left.
+pub fn line_ends(problem: &Problem, plan: &SegmentPlan) -> [Option<AtPoint>; 2] {
+    if problem.scene.is_none() || problem.task.path().is_thinned() {
+        return [None, None];
+    }
+    let count = problem.task.points().len();
+    let into = (plan.points.start > 0).then(|| AtPoint::first(plan)).flatten();
+    let out = (plan.points.end < count).then(|| AtPoint::last(plan)).flatten();
+    [into, out]
+}
+
+impl AtPoint {
+    /// The end of a segment's plan.
+    fn last(plan: &SegmentPlan) -> Option<Self> {
+        let point = plan.points.end.checked_sub(1)?;
+        Some(Self { point, beta: *plan.betas.last()?, posture: plan.posture, joints: *plan.joints.last()? })
+    }
+
+    /// Its start.
+    fn first(plan: &SegmentPlan) -> Option<Self> {
+        let point = plan.points.start;
+        Some(Self { point, beta: *plan.betas.first()?, posture: plan.posture, joints: *plan.joints.first()? })
+    }
 }
 
 /// A retraction, joint moves, and an approach (given backwards). Joint moves begin where the external axes, which they then leave alone,
@@ -128,7 +215,8 @@ fn joined(out: &[[f64; 6]], over: &[[f64; 6]], into: &[[f64; 6]], are_axes_moved
     // The same place again is a move where the external axes move there, or where there is no other move.
     let stays = !are_axes_moved && joints.len() + rest.len() > 2 && rest.first() == joints.last();
     joints.extend(rest.into_iter().skip(usize::from(stays)));
-    Way { joints, axes_from, along_axis: [out.len() > 1, into.len() > 1], blocked_by: None }
+    let along_axis = [out.len() > 1, into.len() > 1];
+    Way { joints, axes_from, along_axis, short_lines: [None, None], blocked_by: None }
 }
 
 impl Way {
@@ -142,61 +230,89 @@ impl Way {
 impl<'a> Space<'a> {
     /// Among the shapes of a problem; `None` where there are none.
     pub fn new(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
-        Some(Self { problem, scene: problem.scene.as_deref()?, placement })
+        let scene = problem.scene.as_deref()?;
+        let with_tool = problem.segment_moves.tool.as_deref().map_or(scene, ToolScene::scene);
+        Some(Self { problem, scene, with_tool, placement })
     }
 
-    /// The number of the pair that hits where the tool is drawn back along its axis from a path point, or goes in there again.
-    pub fn retraction_hit(&self, at: AtPoint, by: f64) -> Option<usize> {
-        self.retraction(at, by).1
+    /// What ends the line of a length (m) along the tool axis out of the cut at a path point, or into it, before its length.
+    pub fn line_end(&self, at: AtPoint, length: f64) -> Option<ShortLine> {
+        self.line(at, length).short
     }
 
-    /// The number of the pair that hits on a straight joint move (rad), the external axes moving evenly from where they stand at one path
-    /// point to where they stand at another.
-    pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<usize> {
+    /// What cutter or holder hit on such a line, deeper than they are in the part at the path point.
+    pub fn tool_hit(&self, point: usize, length: f64) -> Option<Arc<[String; 2]>> {
+        let problem = self.problem;
+        let point = &problem.task.points()[point];
+        let lies = problem.orientation().map_or_else(Matrix3::identity, |orientation| orientation.rotation);
+        let [position, feed, axis] = [point.position, point.feed, point.axis].map(|v| lies.tr_mul(&v));
+        problem.segment_moves.tool.as_deref()?.line_hit(&PathPoint { position, feed, axis }, length)
+    }
+
+    /// The pair that hits on a straight joint move (rad) with the tool out of the cut, the external axes moving evenly from where they
+    /// stand at one path point to where they stand at another.
+    pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<Arc<[String; 2]>> {
+        self.hit_in(self.with_tool, from, to)
+    }
+
+    fn hit_in(&self, scene: &Scene, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<Arc<[String; 2]>> {
         let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
         // Several axes that turn together move nothing about one axis: over such a step it is as good as that.
         let most = start.iter().zip(end).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
         let steps = (most / AXIS_STEP).ceil().max(1.0);
-        let at = |step: usize| self.problem.by_joints(self.scene, self.placement, [from, to], step as f64 / steps);
-        (0..steps as usize).find_map(|step| {
+        let at = |step: usize| self.problem.by_joints(scene, self.placement, [from, to], step as f64 / steps);
+        let pair = (0..steps as usize).find_map(|step| {
             let [(a, start), (b, end)] = [at(step), at(step + 1)];
-            self.scene.motion((&a, &start), (&b, &end)).map(|hit| hit.pair)
-        })
+            match a == b && start == end {
+                true => scene.first_hit(&start, &PairKind::ALL),
+                false => scene.motion((&a, &start), (&b, &end)).map(|hit| hit.pair),
+            }
+        })?;
+        scene.pair(pair).map(|pair| pair.names.clone())
     }
 
-    /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits: joint angles
-    /// from the point on. rad
-    fn retracted(&self, at: AtPoint, by: f64) -> Vec<[f64; 6]> {
-        self.retraction(at, by).0
-    }
-
-    /// The same with the pair that ends it.
-    fn retraction(&self, at: AtPoint, by: f64) -> (Vec<[f64; 6]>, Option<usize>) {
+    /// From a path point straight along the tool axis, away from the work, as far as the arm reaches and nothing hits. The margin that
+    /// plans keep from the limits of the joints is for the cut, and not for the way to it.
+    fn line(&self, at: AtPoint, wanted: f64) -> Line {
         let AtPoint { point, beta, posture, joints } = at;
         let flange = self.problem.base_from_flange(point, self.placement, beta);
         let axis: Vector3<f64> = self.problem.placed(point, self.placement).axes.column(2).into_owned();
-        let steps = (by / STRAIGHT_STEP).ceil().max(0.0) as usize;
+        let steps = (wanted / STRAIGHT_STEP).ceil().max(0.0) as usize;
+        let margin = self.problem.constraints.joint_margin + ANGLE_ROUNDING;
         let mut all = vec![joints];
         let mut last = joints;
         for step in 1..=steps {
-            let lift = axis * (by * step as f64 / steps as f64);
-            let target = Pose { translation: flange.translation + lift, ..flange };
-            let Ok(found) = self.problem.robot.inverse(&target, posture) else { break };
-            let next: [f64; 6] = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
-            let is_inside = (0..6).all(|j| {
-                let joint = &self.problem.robot.joints()[j];
-                (joint.min..=joint.max).contains(&next[j]) && (next[j] - last[j]).abs() <= MAX_SWING
-            });
-            if !is_inside {
-                break;
+            let share = |step: usize| wanted * step as f64 / steps as f64;
+            let target = Pose { translation: flange.translation + axis * share(step), ..flange };
+            let next =
+                self.problem.robot.inverse(&target, posture).map_err(|_| LineEnd::OutOfReach).and_then(|found| {
+                    let next: [f64; 6] = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
+                    let is_beyond = |j: &usize| {
+                        let joint = &self.problem.robot.joints()[*j];
+                        !(joint.min - margin..=joint.max + margin).contains(&next[*j])
+                    };
+                    let swings = |j: &usize| (next[*j] - last[*j]).abs() > MAX_SWING;
+                    match ((0..6).find(swings), (0..6).find(is_beyond)) {
+                        (Some(joint), _) => Err(LineEnd::Swing(joint + 1)),
+                        (None, Some(joint)) => Err(LineEnd::JointLimit(joint + 1)),
+                        (None, None) => match self.hit_in(self.scene, (&last, point), (&next, point)) {
+                            Some(names) => Err(LineEnd::Hit(names)),
+                            None => Ok(next),
+                        },
+                    }
+                });
+            match next {
+                Ok(next) => {
+                    last = next;
+                    all.push(next);
+                }
+                Err(end) => {
+                    let short = ShortLine { length: share(step - 1), wanted, end };
+                    return Line { joints: all, short: Some(short) };
+                }
             }
-            if let Some(pair) = self.hit((&last, point), (&next, point)) {
-                return (all, Some(pair));
-            }
-            last = next;
-            all.push(next);
         }
-        (all, None)
+        Line { joints: all, short: None }
     }
 
     /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path point: the
@@ -280,9 +396,10 @@ mod tests {
     use crate::redundancy::Planner;
     use crate::sense::Sense;
     use crate::testing::five_segments;
-    use std::sync::Arc;
+    use crate::tool_scene::{Cylinder, SegmentMoves, ToolBody};
     use stead_cell::testing::{kr270_shapes, scene_of, shape};
-    use stead_cell::{Attachment, PairKind, Solid};
+    use stead_cell::{Attachment, Solid};
+    use stead_model::task::{Task, ToolPath, Wrench};
 
     fn plans(problem: &Problem, placement: &Placement) -> Vec<SegmentPlan> {
         let free = Problem { scene: None, ..problem.clone() };
@@ -304,8 +421,7 @@ mod tests {
         plate.pose.rotation = nalgebra::Matrix3::from_columns(&[along, across, along.cross(&across)]);
         let shapes = kr270_shapes().into_iter().filter(|s| s.name == "spindle").chain([plate]).collect();
         problem.scene = Some(Arc::new(scene_of(shapes, 0.005)));
-        let settings = TransferSettings::default();
-        let found = way(&problem, &settings, &placement, [&free[0], &free[2]], 1).unwrap();
+        let found = way(&problem, &placement, [&free[0], &free[2]], 1).unwrap();
         let scene = problem.scene.as_deref().unwrap();
         let workpiece = placement.base_from_workpiece();
         if found.blocked_by.is_none() {
@@ -321,7 +437,7 @@ mod tests {
             }
         }
         assert_eq!(found.blocked_by, None);
-        assert_eq!(way(&problem, &settings, &placement, [&free[0], &free[2]], 1), Some(found));
+        assert_eq!(way(&problem, &placement, [&free[0], &free[2]], 1), Some(found));
     }
 
     #[test]
@@ -347,15 +463,144 @@ mod tests {
         let placement = Placement::from([0.1, -1.9, -0.4, 1.0]);
         let mut problem = five_segments();
         let free = plans(&problem, &placement);
-        let settings = TransferSettings::default();
-        assert_eq!(way(&problem, &settings, &placement, [&free[0], &free[1]], 1), None);
+        assert_eq!(way(&problem, &placement, [&free[0], &free[1]], 1), None);
         let spindle = kr270_shapes().into_iter().filter(|s| s.name == "spindle").collect();
         problem.scene = Some(Arc::new(scene_of(spindle, 0.005)));
-        let found = way(&problem, &settings, &placement, [&free[0], &free[1]], 1).unwrap();
+        let found = way(&problem, &placement, [&free[0], &free[1]], 1).unwrap();
         assert_eq!((found.joints.len(), found.along_axis, found.blocked_by), (4, [true; 2], None));
         let tip =
             |joints: &[f64; 6]| problem.robot.forward(joints).point(&problem.spindle.flange_from_tool.translation);
         let end = problem.placed(free[0].points.end - 1, &placement);
-        assert!((tip(&found.joints[1]) - end.tip - end.axes.column(2) * settings.retract).norm() < 1e-9);
+        assert!((tip(&found.joints[1]) - end.tip - end.axes.column(2) * problem.segment_moves.retract).norm() < 1e-9);
+    }
+
+    /// A cut on the floor of each of two pockets beside each other, 90 mm deep with a wall from x = -30 to 30 mm, and one on top.
+    fn two_pockets() -> Problem {
+        let mut problem = five_segments();
+        let row = |x: f64, z: f64, step: usize| PathPoint {
+            position: Vector3::new(x, 0.01 * step as f64, z),
+            feed: Vector3::y(),
+            axis: Vector3::z(),
+        };
+        let starts = [(1, -0.08, -0.09), (2, 0.08, -0.09), (3, 0.08, 0.0)];
+        let points = starts.into_iter().flat_map(|(segment, x, z)| (0..5).map(move |k| (segment, row(x, z, k))));
+        let wrenches = vec![Wrench { force: Vector3::new(10.0, 50.0, 20.0), moment: Vector3::zeros() }; 15];
+        problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
+        problem
+    }
+
+    /// The wall and the floor of the pockets.
+    fn pocketed_part() -> [stead_cell::Shape; 2] {
+        let part = |name: &str, edges: [f64; 3], z: f64| {
+            shape(name, Attachment::Workpiece, Solid::Box(edges.into()), [0.0, 0.0, z])
+        };
+        [part("wall", [0.06, 0.3, 0.09], -0.045), part("floor plate", [0.4, 0.3, 0.02], -0.101)]
+    }
+
+    /// With its spindle above a cutter of 20 mm by 40 mm, and a shank.
+    fn with_tool(mut problem: Problem, part: &[stead_cell::Shape], tool: ToolBody) -> Problem {
+        let spindle =
+            shape("spindle", Attachment::Flange, Solid::Cylinder { radius: 0.06, length: 0.3 }, [0.0, 0.0, 0.2]);
+        problem.scene = Some(Arc::new(scene_of([&[spindle], part].concat(), 0.002)));
+        let flange_from_tool = problem.spindle.flange_from_tool;
+        let scene = problem.scene.as_deref().unwrap();
+        let tool = ToolScene::new(&problem.robot, &flange_from_tool, scene, problem.task.path(), tool).unwrap();
+        problem.segment_moves.tool = Some(Arc::new(tool));
+        problem
+    }
+
+    fn end_mill() -> ToolBody {
+        let [cutter, shank] =
+            [(0.01, 0.0, 0.04), (0.008, 0.04, 0.15)].map(|(radius, from, to)| Cylinder { radius, from, to });
+        ToolBody { cutter: Some(cutter), holder: vec![shank] }
+    }
+
+    /// The least height of the tool centre point above the top of the part, in the workpiece frame, while it is over the wall. m
+    fn least_height_over_the_wall(problem: &Problem, placement: &Placement, joints: &[[f64; 6]]) -> f64 {
+        let workpiece = placement.base_from_workpiece().inverse();
+        let tool = problem.spindle.flange_from_tool.translation;
+        let heights = joints.windows(2).flat_map(|pair| {
+            (0..=400).filter_map(|step| {
+                let share = f64::from(step) / 400.0;
+                let at: [f64; 6] = std::array::from_fn(|j| pair[0][j] + share * (pair[1][j] - pair[0][j]));
+                let tip = workpiece.point(&problem.robot.forward(&at).point(&tool));
+                (tip.x.abs() < 0.03).then_some(tip.z)
+            })
+        });
+        heights.fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn between_deep_pockets_the_tool_goes_over_the_wall() {
+        let placement = Placement::from([0.0, -1.9, -0.4, 0.3]);
+        let bare = two_pockets();
+        let made = plans(&bare, &placement);
+        let tools = [ToolBody::default(), end_mill()];
+        for part in [&pocketed_part()[..], &[]] {
+            for tool in &tools {
+                let problem = with_tool(two_pockets(), part, tool.clone());
+                let found = way(&problem, &placement, [&made[0], &made[1]], 0).unwrap();
+                assert_eq!(found.blocked_by, None);
+                assert_eq!(found.short_lines, [None, None]);
+                let height = least_height_over_the_wall(&problem, &placement, &found.joints);
+                assert!(height > 0.0015, "{} mm, {} shapes, {tool:?}", height * 1e3, part.len());
+                assert_eq!(
+                    problem.segment_moves.tool.as_deref().unwrap().notes().len(),
+                    usize::from(part.is_empty()) + usize::from(tool.cutter.is_none())
+                );
+            }
+        }
+        // Without the part that is a move through the wall.
+        let problem = with_tool(two_pockets(), &[], ToolBody::default());
+        let unaware = Problem { segment_moves: SegmentMoves::default(), ..problem };
+        let found = way(&unaware, &placement, [&made[0], &made[1]], 0).unwrap();
+        assert!(least_height_over_the_wall(&unaware, &placement, &found.joints) < -0.02);
+    }
+
+    #[test]
+    fn a_line_out_counts_only_what_is_deeper_than_at_the_path_point() {
+        let problem = two_pockets();
+        let point = problem.task.points()[0];
+        let hit = |part: &[stead_cell::Shape], tool: ToolBody, length: f64| {
+            let problem = with_tool(problem.clone(), part, tool);
+            let names = problem.segment_moves.tool.as_deref().unwrap().line_hit(&point, length)?;
+            Some(names[1].clone())
+        };
+        let cutter =
+            |radius: f64, to: f64| ToolBody { cutter: Some(Cylinder { radius, from: 0.0, to }), holder: Vec::new() };
+        let block = |name: &str, edges: [f64; 3], at: [f64; 3]| {
+            shape(name, Attachment::Workpiece, Solid::Box(edges.into()), at)
+        };
+        // Against a wall, 0.3 mm inside of it, and 0.1 mm inside of the floor.
+        let wall = block("wall", [0.06, 0.3, 0.2], [-0.08 + 0.0097 + 0.03, 0.0, 0.0]);
+        let floor = block("base plate", [0.4, 0.3, 0.02], [0.0, 0.0, -0.0999]);
+        assert_eq!(hit(&[wall.clone(), floor.clone()], cutter(0.01, 0.04), 0.2), None);
+        // A ledge above the cutter, as over a slot that it cuts below.
+        let ledge = block("ledge", [0.06, 0.3, 0.01], [-0.08 + 0.009 + 0.03, 0.0, -0.02]);
+        assert_eq!(hit(&[floor.clone(), ledge.clone()], cutter(0.01, 0.04), 0.2).as_deref(), Some("ledge"));
+        assert_eq!(hit(&[floor, ledge], cutter(0.01, 0.04), 0.02), None);
+        // Stock that the whole cutter is in.
+        assert_eq!(hit(&[block("stock", [0.4, 0.3, 0.2], [0.0, 0.0, -0.1])], cutter(0.01, 0.04), 0.2), None);
+    }
+
+    #[test]
+    fn a_short_line_is_told_with_what_ends_it() {
+        let placement = Placement::from([0.0, -1.9, -0.4, 0.3]);
+        let bare = two_pockets();
+        let made = plans(&bare, &placement);
+        // A lid above the spindle at the first pocket.
+        let tip = bare.placed(4, &placement).tip;
+        let lid = shape("lid", Attachment::Base, Solid::Box(Vector3::new(0.1, 0.1, 0.01)), [tip.x, tip.y, tip.z + 1.0]);
+        let flange = made[0].joints.last().map(|joints| bare.robot.forward(joints).translation).unwrap();
+        let lid =
+            stead_cell::Shape { pose: Pose { translation: flange + Vector3::new(0.0, 0.0, 0.12), ..lid.pose }, ..lid };
+        let ball = shape("ball", Attachment::Flange, Solid::Capsule { radius: 0.08, length: 0.0 }, [0.0; 3]);
+        let problem = with_tool(bare.clone(), &[lid, ball], end_mill());
+        let found = way(&problem, &placement, [&made[0], &made[1]], 0).unwrap();
+        let [Some(out), None] = &found.short_lines else { panic!("{:?}", found.short_lines) };
+        assert!((0.02..0.05).contains(&out.length) && out.wanted == 0.05, "{out:?}");
+        assert_eq!(out.end.to_string(), "ball and lid come too near");
+        assert_eq!(whole_lines(&problem, &placement, &made[0]), [true, false]);
+        assert_eq!(whole_lines(&problem, &placement, &made[1]), [true, true]);
     }
 }

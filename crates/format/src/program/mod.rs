@@ -111,6 +111,8 @@ pub struct ExportOptions<'a> {
     pub blend: f64,
     /// Most moves in a part.
     pub max_moves: usize,
+    /// Whether a program is made though moves between segments hit what stands around; they are marked in it.
+    pub allow_blocked_moves: bool,
     /// The statement that starts the spindle.
     pub spindle_on: Option<&'a str>,
     /// The statement that stops it.
@@ -127,6 +129,7 @@ impl<'a> ExportOptions<'a> {
             approach: Self::APPROACH,
             blend: 1e-3,
             max_moves: 5000,
+            allow_blocked_moves: false,
             spindle_on: None,
             spindle_off: None,
         }
@@ -195,6 +198,10 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
     let planned = targets(run, plan, options.corrected, ends)?;
     let problem = &planned.problem;
+    let blocked = planned.ways.blocked(ends);
+    if !blocked.is_empty() && !options.allow_blocked_moves {
+        return Err(ProgramError::Blocked { moves: blocked.join("; ") }.into());
+    }
     let moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
     let frames = motion::frames(problem, &planned.placement);
     let parts = split::parts(&moves, options.max_moves);
@@ -217,7 +224,7 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
         uncorrected: planned.uncorrected,
         inputs: planned.inputs,
         notes,
-        warnings: planned.ways.warnings(problem.scene.as_deref(), ends),
+        warnings: planned.ways.warnings(ends),
     })
 }
 
@@ -232,7 +239,7 @@ fn files(
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
     let (Some(frames), Some(_)) = (frames, format.controller()) else {
-        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.as_deref()));
+        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.is_some()));
     };
     let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
@@ -248,7 +255,6 @@ fn files(
         external_units: motion::external_units(problem),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
-        scene: problem.scene.as_deref(),
     };
     Ok(match format {
         ProgramFormat::Rapid => rapid::files(&layout),
@@ -275,7 +281,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
     let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();
     inputs.push(file);
-    let ways = Ways::new(&problem, &run.transfer, &plan, ends.approach);
+    let ways = Ways::new(&problem, &plan, ends.approach);
     let PlacedPlan { placement, points, note, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()

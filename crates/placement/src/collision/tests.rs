@@ -225,3 +225,37 @@ fn a_mounted_arm_keeps_the_distances_of_its_base_frame_in_states_and_moves() {
         }
     }
 }
+
+/// A ball on the flange beside the axis of the tool, and a lid above where it is at the end of the first segment's best plan.
+fn under_a_lid(lid_radius: f64) -> (Problem, Placement) {
+    let placement = Placement::from([0.1, -1.9, -0.4, 1.0]);
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 60;
+    let planner = Planner::finer(&problem);
+    let plans = planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace()).unwrap();
+    let flange = problem.robot.forward(plans[0].joints.last().unwrap());
+    let ball = shape("ball", Attachment::Flange, Solid::Capsule { radius: 0.03, length: 0.0 }, [0.25, 0.0, 0.0]);
+    let at = flange.point(&ball.pose.translation) + Vector3::new(0.0, 0.0, 0.03 + 0.02 + 0.005);
+    let lid = Solid::Cylinder { radius: lid_radius, length: 0.01 };
+    problem.scene = Some(Arc::new(scene_of(vec![ball, shape("lid", Attachment::Base, lid, at.into())], 0.001)));
+    (problem, placement)
+}
+
+#[test]
+fn an_end_of_a_plan_whose_line_hits_is_not_chosen_where_another_can_be() {
+    for (lid_radius, can_be_whole) in [(0.05, true), (3.0, false)] {
+        let (problem, placement) = under_a_lid(lid_radius);
+        let free = Problem { scene: None, ..problem.clone() };
+        let [made, without] = [&problem, &free].map(|problem| {
+            let planner = Planner::finer(problem);
+            planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace()).unwrap()
+        });
+        assert!(!crate::way::whole_lines(&problem, &placement, &without[0])[1]);
+        assert_eq!(crate::way::whole_lines(&problem, &placement, &made[0])[1], can_be_whole);
+        if can_be_whole {
+            assert!(made[0].cost >= without[0].cost * (1.0 - 1e-9));
+            assert_eq!(made[2].cost, without[2].cost);
+        }
+        assert!(problem.is_free(&placement, &made));
+    }
+}
