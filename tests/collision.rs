@@ -53,7 +53,7 @@ fn what_covers_and_paths_call_free_is_free_in_all_shipped_cells() {
 }
 
 /// The shipped cell with a search that is small enough for a test.
-fn shipped() -> Bench {
+pub(crate) fn shipped() -> Bench {
     let bench = Bench::new();
     bench.copy_all(&[RUN, CELL]);
     let mesh = "configs/cells/stepped-part.stl";
@@ -64,7 +64,7 @@ fn shipped() -> Bench {
     bench
 }
 
-const RUN: &str = "configs/collision.toml";
+pub(crate) const RUN: &str = "configs/collision.toml";
 const CELL: &str = "configs/cells/kr270-cell.toml";
 
 /// The cases of a run of the shipped job.

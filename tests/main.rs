@@ -13,6 +13,7 @@ mod compensate;
 mod criterion;
 mod discretisation;
 mod documents;
+mod drawn_moves;
 mod export;
 mod facade;
 mod feed;

@@ -136,6 +136,52 @@ async function axesCarry(page, place) {
   return axes.length;
 }
 
+/** Every move between segments is drawn along its way of `summary.json`: out and in with the tool centre on a straight line, else straight in the joints. */
+await check('moves between segments are drawn as planned', 'collision', async (page, place) => {
+  const { cases } = JSON.parse(readFileSync(join(place, 'summary.json'), 'utf8'));
+  let [farthest, straight, count] = [0, 0, 0];
+  for (const [number, { transfers }] of cases.entries()) {
+    const segments = table(join(place, PLANS[number])).map((row) => +row.segment);
+    for (const move of transfers) {
+      const end = segments.lastIndexOf(move.after_segment);
+      const ways = move.joints_deg;
+      const [drawn, tips] = await page.evaluate(
+        ([number, end, ways]) => {
+          const { cases, jointsAt, framesOf } = window.stead;
+          const drawn = Array.from({ length: 1999 }, (_, k) => jointsAt(cases[number], end + (k + 1) / 2000));
+          const tip = (joints) => framesOf(joints)[7].slice(12, 15);
+          return [drawn.map((joints) => [joints, tip(joints)]), ways.map(tip)];
+        },
+        [number, end, ways],
+      );
+      /** How far a place is from the line between two others. */
+      const beside = (at, from, to) => {
+        const [line, off] = [to.map((v, k) => v - from[k]), at.map((v, k) => v - from[k])];
+        const [along, long] = [line.reduce((sum, v, k) => sum + v * off[k], 0), Math.hypot(...line) ** 2];
+        const share = Math.min(1, Math.max(0, along / (long || 1)));
+        return Math.hypot(...off.map((v, k) => v - share * line[k]));
+      };
+      for (const [joints, tip] of drawn) {
+        const offs = ways.slice(1).map((to, k) => {
+          const isLine = (k === 0 && move.retracts) || (k + 2 === ways.length && move.approaches);
+          return isLine ? beside(tip, tips[k], tips[k + 1]) : beside(joints, ways[k], to);
+        });
+        farthest = Math.max(farthest, Math.min(...offs));
+        straight = Math.max(straight, beside(joints, ways[0], ways.at(-1)));
+      }
+      // It passes all places of the way.
+      for (const joints of ways) {
+        const near = Math.min(...drawn.map(([at]) => Math.max(...at.map((v, k) => Math.abs(v - joints[k])))));
+        assert.ok(near < 0.5, `case ${number + 1}, move ${move.after_segment}: ${near} deg off a place of its way`);
+      }
+      count++;
+    }
+  }
+  assert.ok(farthest < 0.05, `${farthest} deg or mm off the way`);
+  assert.ok(straight > 1, 'all ways are straight: nothing is tested');
+  return `${count} moves, ${farthest.toFixed(3)} deg or mm off at most`;
+});
+
 for (const run of ['tilting-table', 'rail-panel', 'wall-raster']) {
   await check('tool, path and tables meet at every point', run, async (page, place) => {
     const said = await meets(page, place);
@@ -145,6 +191,19 @@ for (const run of ['tilting-table', 'rail-panel', 'wall-raster']) {
       await page.evaluate((t) => window.stead.set({ t }, true), rows.length - 1);
       const shown = await page.locator(`#axis-${k + 1}`).textContent();
       assert.ok(Math.abs(parseFloat(shown) - rows.at(-1)[column]) < 0.051, `${column}: ${shown}`);
+    }
+    // The table of cases has where the axes stand.
+    const { external_axes: axes } = JSON.parse(readFileSync(join(place, 'page-data.json'), 'utf8'));
+    const heads = await page.locator('#cases thead th').allTextContents();
+    for (const [number, name] of PLANS.entries()) {
+      const cells = await page.locator(`#cases tbody tr:nth-child(${number + 1}) td`).allTextContents();
+      for (const axis of axes) {
+        const cell = cells[heads.indexOf(`${axis.name} ${axis.kind === 'rail' ? 'mm' : 'deg'}`)];
+        const positions = table(join(place, name)).map((row) => +row[axis.column]);
+        const ends = [Math.min(...positions), Math.max(...positions)];
+        const told = cell.split(' … ').map((text) => parseFloat(text.replace('−', '-')));
+        assert.ok(Math.abs(told[0] - ends[0]) < 0.051 && Math.abs(told.at(-1) - ends[1]) < 0.051, `${axis.name}: ${cell}`);
+      }
     }
     return said;
   });

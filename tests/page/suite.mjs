@@ -183,7 +183,14 @@ export function tests(folder, others) {
         const what = row.reason ? reasonText(row.reason) : `${(+row.score_mm).toFixed(4)} mm, posture ${row.posture}`;
         await frame(page);
         assert.equal(await text(page, 'map-reading'), `point ${point}, ${beta}: ${what}`);
-        if (row.reason) return;
+        // Bar, tiles and charts tell the same state.
+        const words = row.reason
+          ? [`point ${point} of 104`, beta, `not allowed: ${reasonText(row.reason)}`, 'the robot stays on the plan']
+          : [`point ${point} of 104`, `segment ${plans[0][point].segment}`, `posture ${row.posture}`, beta, `${(+row.score_mm).toFixed(3)} mm, chosen in the map`];
+        assert.equal(await text(page, 'now'), words.join(' · '));
+        const cards = (await page.locator('.charts .sub').allTextContents()).slice(0, 3);
+        assert.ok(cards.every((one) => /chosen state|along plans only/.test(one)), cards.join('; '));
+        if (row.reason) return assert.equal(await text(page, 'limit'), '–');
         assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3));
         // The joints shown bring the tool to the point, but for their rounding to 0.02 deg.
         const off = await page.evaluate(

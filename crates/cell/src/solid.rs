@@ -1,7 +1,9 @@
 //! The forms that shapes have.
 
+mod solids;
+
 use nalgebra::Vector3;
-use std::collections::BTreeMap;
+use solids::{merged, solids_of};
 use std::sync::Arc;
 
 /// Triangles, as a mesh file holds them, checked.
@@ -9,7 +11,10 @@ use std::sync::Arc;
 pub struct TriangleMesh {
     vertices: Vec<Vector3<f64>>,
     triangles: Vec<[u32; 3]>,
+    /// Where the triangles are not those of one closed surface alone, the closed surfaces that they make; else none.
+    solids: Vec<Vec<[u32; 3]>>,
     is_closed: bool,
+    is_touching: bool,
 }
 
 /// Why triangles are no mesh.
@@ -30,8 +35,8 @@ pub enum MeshError {
 }
 
 impl TriangleMesh {
-    /// From vertices (m) and triangles of three vertex numbers, from 0. Vertices at one place are taken once, and triangles without
-    /// area are left out.
+    /// From vertices (m) and triangles of three vertex numbers, from 0. Vertices within 1e-6 of the size of the mesh are one, and triangles
+    /// without area are left out.
     ///
     /// # Errors
     /// [`MeshError`].
@@ -42,18 +47,7 @@ impl TriangleMesh {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-        let mut merged = Vec::new();
-        let mut number_of = Vec::with_capacity(vertices.len());
-        for vertex in vertices {
-            // Minus zero is zero.
-            let key = [vertex.x + 0.0, vertex.y + 0.0, vertex.z + 0.0].map(f64::to_bits);
-            let number = *known.entry(key).or_insert_with(|| {
-                merged.push(*vertex);
-                merged.len() as u32 - 1
-            });
-            number_of.push(number);
-        }
+        let (merged, number_of) = merged(vertices);
         let mut kept = Vec::with_capacity(triangles.len());
         for (place, triangle) in triangles.iter().enumerate() {
             if let Some(missing) = triangle.iter().find(|number| **number as usize >= vertices.len()) {
@@ -68,8 +62,11 @@ impl TriangleMesh {
         if kept.is_empty() {
             return Err(MeshError::Flat);
         }
-        let is_closed = is_closed(&kept);
-        Ok(Self { vertices: merged, triangles: kept, is_closed })
+        let (solids, is_closed, is_touching) = match solids_of(&merged, &kept) {
+            Some(found) if found.solids.len() > 1 => (found.solids, true, found.is_touching),
+            found => (Vec::new(), found.is_some(), false),
+        };
+        Ok(Self { vertices: merged, triangles: kept, solids, is_closed, is_touching })
     }
 
     /// The vertices. m
@@ -82,21 +79,21 @@ impl TriangleMesh {
         &self.triangles
     }
 
-    /// Whether every edge belongs to two triangles that turn the same way, so that the mesh has an inside.
+    /// The triangles of each closed surface, where there are several of them; else none.
+    pub fn solids(&self) -> &[Vec<[u32; 3]>] {
+        &self.solids
+    }
+
+    /// Whether it is made of closed surfaces alone, so that it has an inside: in each of them every edge belongs to two triangles that
+    /// turn the same way.
     pub fn is_closed(&self) -> bool {
         self.is_closed
     }
-}
 
-/// Whether each directed edge has its opposite, once.
-fn is_closed(triangles: &[[u32; 3]]) -> bool {
-    let mut edges: BTreeMap<(u32, u32), i32> = BTreeMap::new();
-    for [a, b, c] in triangles {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            *edges.entry((*from, *to)).or_insert(0) += 1;
-        }
+    /// Whether it is made of closed surfaces some of which have a vertex in common: solids that touch.
+    pub fn is_touching(&self) -> bool {
+        self.is_touching
     }
-    edges.iter().all(|((from, to), count)| *count == 1 && edges.get(&(*to, *from)) == Some(&1))
 }
 
 /// A form in a frame of its own: a box, cylinder or capsule about the origin, along z.
@@ -172,6 +169,51 @@ pub(crate) mod tests {
         assert!(!open.is_closed());
         let [low, high] = Solid::Mesh(Arc::new(whole)).extent();
         assert_eq!((low, high), (Vector3::new(-0.5, -1.0, -1.5), Vector3::new(0.5, 1.0, 1.5)));
+    }
+
+    /// Boxes side by side in one file, each with corners of its own that rounding has moved by some nanometres.
+    pub(crate) fn boxes(places: &[Vector3<f64>]) -> TriangleMesh {
+        let one = box_mesh(Vector3::new(1.0, 1.0, 1.0));
+        let mut vertices = Vec::new();
+        let mut triangles = Vec::new();
+        for (number, place) in places.iter().enumerate() {
+            // Every triangle with corners of its own, as STL has them.
+            for (k, corner) in one.triangles().iter().flatten().enumerate() {
+                let off = 2e-8 * ((k + number) % 7) as f64;
+                vertices.push(one.vertices()[*corner as usize] + place + Vector3::new(off, -off, off));
+            }
+        }
+        for first in (0..vertices.len() as u32).step_by(3) {
+            triangles.push([first, first + 1, first + 2]);
+        }
+        TriangleMesh::new(&vertices, &triangles).unwrap()
+    }
+
+    #[test]
+    fn corners_that_rounding_has_moved_are_one() {
+        let one = boxes(&[Vector3::zeros()]);
+        assert_eq!((one.vertices().len(), one.is_closed(), one.solids().len()), (8, true, 0));
+        // By a thousandth of its size they are not.
+        let whole = box_mesh(Vector3::new(1.0, 1.0, 1.0));
+        let mut vertices = whole.vertices().to_vec();
+        vertices.push(vertices[0] + Vector3::new(1e-3, 0.0, 0.0));
+        let mut triangles = whole.triangles().to_vec();
+        triangles[0] = triangles[0].map(|corner| if corner == 0 { 8 } else { corner });
+        assert!(!TriangleMesh::new(&vertices, &triangles).unwrap().is_closed());
+    }
+
+    #[test]
+    fn solids_that_touch_are_closed_and_told() {
+        let at = |x: f64, y: f64, z: f64| Vector3::new(x, y, z);
+        for beside in [at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(1.0, 1.0, 1.0)] {
+            let two = boxes(&[at(0.0, 0.0, 0.0), beside]);
+            assert_eq!((two.is_closed(), two.is_touching(), two.solids().len()), (true, true, 2), "{beside}");
+        }
+        let apart = boxes(&[at(0.0, 0.0, 0.0), at(2.0, 0.0, 0.0)]);
+        assert_eq!((apart.is_closed(), apart.is_touching(), apart.solids().len()), (true, false, 2));
+        let two = boxes(&[at(0.0, 0.0, 0.0), at(1.0, 1.0, 0.0)]);
+        let open = TriangleMesh::new(two.vertices(), &two.triangles()[1..]).unwrap();
+        assert!(!open.is_closed() && !open.is_touching());
     }
 
     #[test]

@@ -20,6 +20,9 @@ pub enum SurroundingsError {
     /// A pair to be ignored names what is neither a shape nor something that shapes are attached to.
     #[error("{0:?} is no shape, and nothing is attached to it")]
     UnknownName(String),
+    /// A pair to be ignored names one thing twice.
+    #[error("{0:?} is told to ignore itself")]
+    IgnoresItself(String),
     /// The clearance is negative or not finite.
     #[error("the clearance must not be negative")]
     Clearance,
@@ -50,6 +53,9 @@ impl Surroundings {
             |name: &String| shapes.iter().any(|shape| shape.name == *name || shape.attached.to_string() == *name);
         if let Some(unknown) = ignored.iter().flatten().find(|name| !is_known(name)) {
             return Err(SurroundingsError::UnknownName(unknown.clone()));
+        }
+        if let Some([name, _]) = ignored.iter().find(|[first, second]| first == second) {
+            return Err(SurroundingsError::IgnoresItself(name.clone()));
         }
         Ok(Self { shapes, zones, clearance, ignored })
     }
@@ -110,6 +116,9 @@ mod tests {
         let found = Surroundings::new(shapes.clone(), Vec::new(), 0.01, pair("link_2", "a")).unwrap();
         assert!(found.is_ignored(&shapes[0], &shapes[1]) && found.is_ignored(&shapes[1], &shapes[0]));
         assert!(!found.is_ignored(&shapes[0], &shapes[0]));
+        let itself = vec![["a".to_owned(), "a".to_owned()]];
+        let refused = Surroundings::new(shapes.clone(), Vec::new(), 0.0, itself);
+        assert_eq!(refused.unwrap_err(), SurroundingsError::IgnoresItself("a".to_owned()));
         let error = |shapes, clearance, ignored| Surroundings::new(shapes, Vec::new(), clearance, ignored).unwrap_err();
         assert_eq!(error(shapes.clone(), -1.0, Vec::new()), SurroundingsError::Clearance);
         assert_eq!(

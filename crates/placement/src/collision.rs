@@ -123,10 +123,11 @@ impl Problem {
         scene.clearance(&self.poses(scene, point, placement, joints), &PairKind::ALL)
     }
 
-    /// The same as a constraint: that of the pair with the least room; `None` where there is no scene, or nothing is near.
+    /// The pair with the least room as a constraint, of pairs that touch the deepest; `None` where there is no scene, or nothing is near.
     pub fn clearance_constraint(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Measured> {
         let scene = self.scene.as_deref()?;
-        let Clearance { distance, pair } = self.state_clearance(point, placement, joints)?;
+        let poses = self.poses(scene, point, placement, joints);
+        let Clearance { distance, pair } = scene.deepest(&poses, &PairKind::ALL)?;
         let pair = scene.pair(pair)?;
         Some(Measured::Clearance { names: pair.names.clone(), distance, required: pair.required })
     }

@@ -92,17 +92,6 @@ impl FeedLimit {
     }
 }
 
-impl fmt::Display for FeedLimit {
-    /// What decides, without the feed.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, joint, segment, point, .. } = self;
-        match joint.checked_sub(6) {
-            Some(axis @ 1..) => write!(f, "{kind} of external axis {axis} at point {point}, segment {segment}"),
-            _ => write!(f, "{kind} of joint {joint} at point {point}, segment {segment}"),
-        }
-    }
-}
-
 /// The feed of a cut: as programmed, and as the arm holds it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CutFeed {
@@ -112,12 +101,28 @@ pub struct CutFeed {
     pub programmed_segments: Vec<f64>,
     /// The highest feed of each segment; `None` where no limit of a joint is known or none of these joints moves.
     pub segments: Vec<Option<FeedLimit>>,
+    /// The names of the external axes, which a limit has by their numbers.
+    pub external_axes: Vec<String>,
 }
 
 impl CutFeed {
     /// The highest feed of the whole path: that of the segment with the lowest.
     pub fn highest(&self) -> Option<FeedLimit> {
         self.segments.iter().flatten().copied().reduce(FeedLimit::smaller)
+    }
+
+    /// The name of the external axis that decides a limit, where that is no joint of the arm.
+    pub fn external_axis(&self, limit: &FeedLimit) -> Option<&str> {
+        self.external_axes.get(limit.joint.checked_sub(7)?).map(String::as_str)
+    }
+
+    /// What decides a limit, without the feed.
+    pub fn decided_by(&self, limit: &FeedLimit) -> String {
+        let FeedLimit { kind, joint, segment, point, .. } = limit;
+        let what = self
+            .external_axis(limit)
+            .map_or_else(|| format!("joint {joint}"), |axis| format!("external axis {axis:?}"));
+        format!("{kind} of {what} at point {point}, segment {segment}")
     }
 
     /// The highest feed with which a segment (from 0) is cut: the highest programmed one, or the highest that the arm holds where that
@@ -155,6 +160,7 @@ pub fn cut_feed(problem: &Problem, blend: f64, plans: &[SegmentPlan]) -> CutFeed
         programmed: programmed_segments.iter().copied().reduce(f64::max).unwrap_or(problem.redundancy.feed),
         programmed_segments,
         segments: plans.par_iter().enumerate().map(segment).collect(),
+        external_axes: problem.external_axes.iter().map(|axis| axis.name.clone()).collect(),
     }
 }
 

@@ -25,6 +25,7 @@ pub mod certify;
 pub mod collision;
 pub mod constraints;
 pub mod coordinate_search;
+pub mod course;
 pub mod criterion;
 pub mod evaluate;
 pub mod evaluator;

@@ -59,8 +59,8 @@ pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettin
             let joints = way.as_ref().map_or(&direct[..], |way| &way.joints);
             let travel = (0..6).map(|j| joints.windows(2).map(|step| (step[0][j] - step[1][j]).abs()).sum::<f64>());
             let positions = [pair[0].points.end - 1, pair[1].points.start].map(|point| problem.axis_positions(point));
-            let of_joints = way_duration(problem, settings, joints);
-            let duration = of_joints.zip(axis_duration(problem, settings, positions)).map(|(a, b)| a.max(b));
+            let axes_from = way.as_ref().map_or(1, |way| way.axes_from);
+            let duration = part_durations(problem, settings, joints, axes_from, positions).map(|all| all.iter().sum());
             Some(Transfer { after_segment: index + 1, duration, travel: travel.fold(0.0, f64::max), way })
         })
         .collect();
@@ -84,9 +84,20 @@ fn cutting_time(problem: &Problem, settings: &TransferSettings, held: f64, segme
     (1..plan.joints.len()).map(step).sum()
 }
 
-/// Time of joint moves one after the other, each from rest to rest. s
-fn way_duration(problem: &Problem, settings: &TransferSettings, joints: &[[f64; 6]]) -> Option<f64> {
-    joints.windows(2).try_fold(0.0, |sum, step| Some(sum + duration(problem, settings, &step[0], &step[1])?))
+/// Times of joint moves one after the other, each from rest to rest; on the move to one of them (`axes_from`) the external axes move too,
+/// between these positions. `None` as in [`duration`]. s
+pub(crate) fn part_durations(
+    problem: &Problem,
+    settings: &TransferSettings,
+    joints: &[[f64; 6]],
+    axes_from: usize,
+    positions: [&[f64]; 2],
+) -> Option<Vec<f64>> {
+    let time = |(step, place): (&[[f64; 6]], usize)| {
+        let of_joints = duration(problem, settings, &step[0], &step[1])?;
+        Some(if place == axes_from { of_joints.max(axis_duration(problem, settings, positions)?) } else { of_joints })
+    };
+    joints.windows(2).zip(1..).map(time).collect()
 }
 
 /// Shortest time from rest at `from` to rest at `to` (joint angles in rad); `None` when a joint that has to move has no

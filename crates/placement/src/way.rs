@@ -68,7 +68,7 @@ impl std::fmt::Display for LineEnd {
 /// Lifts beyond the retraction that are tried. m
 const LIFTS: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
-const STRAIGHT_STEP: f64 = 0.01;
+pub(crate) const STRAIGHT_STEP: f64 = 0.01;
 /// A joint that turns farther in one such step swings round a singularity, which no controller follows at a useful speed. rad
 const MAX_SWING: f64 = 0.5;
 /// Positions of external axes between which all is taken to turn about one axis. m or rad

@@ -128,8 +128,15 @@ pub fn deflection_mm(figures: &DeflectionFigures) -> Value {
 pub fn cut_feed(feed: &CutFeed) -> Value {
     let speed = |feed: f64| Unit::SPEED_MM_PER_S.number(feed);
     let highest = feed.highest();
-    let decided_by = highest.map(|FeedLimit { kind, joint, segment, point, .. }| {
-        json!({ "kind": kind, "joint": joint, "segment": segment, "point": point })
+    let decided_by = highest.map(|limit| {
+        let axis = feed.external_axis(&limit);
+        let FeedLimit { kind, joint, segment, point, .. } = limit;
+        let mut value = json!({ "kind": kind, "joint": joint, "segment": segment, "point": point });
+        if let Some(axis) = axis {
+            value["joint"] = Value::Null;
+            value["external_axis"] = json!(axis);
+        }
+        value
     });
     json!({
         "programmed_mm_per_s": speed(feed.programmed),
@@ -142,6 +149,20 @@ pub fn cut_feed(feed: &CutFeed) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What decides the feed is a joint by its number or an external axis by its name.
+    #[test]
+    fn the_external_axis_that_decides_the_feed_is_named() {
+        use stead_placement::feed::FeedLimitKind;
+        let of = |joint: usize| {
+            let limit = FeedLimit { feed: 0.02, kind: FeedLimitKind::Speed, joint, segment: 1, point: 7 };
+            let (programmed_segments, external_axes) = (vec![0.05], vec!["rail".to_owned()]);
+            let feed = CutFeed { programmed: 0.05, programmed_segments, segments: vec![Some(limit)], external_axes };
+            cut_feed(&feed)["decided_by"].clone()
+        };
+        assert_eq!(of(3), json!({ "kind": "speed", "joint": 3, "segment": 1, "point": 7 }));
+        assert_eq!(of(7), json!({ "kind": "speed", "joint": null, "external_axis": "rail", "segment": 1, "point": 7 }));
+    }
 
     #[test]
     fn a_document_states_where_it_comes_from_before_its_result() {

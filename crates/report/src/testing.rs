@@ -187,6 +187,7 @@ impl Grid {
             programmed: problem().redundancy.feed,
             programmed_segments: vec![problem().redundancy.feed; 5],
             segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
+            external_axes: Vec::new(),
         };
         let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };
         let (placement, setup) = (self.placement, problem().setup.clone());

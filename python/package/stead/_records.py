@@ -123,10 +123,11 @@ class Deflections(Record):
 
 
 class FeedLimit(Record):
-    """What decides the highest feed: which kind of limit, of which joint (from 1), in which segment, at which point."""
+    """What decides the highest feed: which kind of limit, of which joint (from 1) or external axis, in which segment, at which point."""
 
     kind: str
-    joint: int
+    joint: int | None
+    external_axis: str | None
     segment: int
     point: int
 

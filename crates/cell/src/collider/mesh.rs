@@ -18,8 +18,18 @@ pub struct Mesh {
     triangles: TriMesh,
     /// Whether it is the surface of a solid.
     is_closed: bool,
+    /// The solids that it is made of, where there are several.
+    solids: Vec<Part>,
     /// The convex hull of its vertices, and a little more for rounding.
     hull: Convex,
+}
+
+/// A closed surface of a mesh that has several, facing outwards.
+#[derive(Clone)]
+struct Part {
+    surface: TriMesh,
+    /// Whether it is a hollow in another.
+    is_hollow: bool,
 }
 
 /// A distance from the hull and one from the mesh that differ by no more are one: what rounding and GJK on round surfaces make of them. m
@@ -51,11 +61,22 @@ impl Mesh {
     pub fn new(mesh: &TriangleMesh) -> Option<Self> {
         let vertices: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
         let formed = |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
-        // What is inside of a closed mesh is told by the normals of its edges and vertices.
+        // What is inside of a closed surface is told by the normals of its edges and vertices; of several, of each by itself.
+        let hull = Convex::around(vertices.clone())?;
+        if !mesh.solids().is_empty() {
+            let solids = parts(mesh);
+            let is_closed = solids.is_some();
+            return Some(Self {
+                triangles: formed(TriMeshFlags::empty())?,
+                is_closed,
+                solids: solids.unwrap_or_default(),
+                hull,
+            });
+        }
         let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
         let is_closed = solid.is_some();
         let triangles = solid.or_else(|| formed(TriMeshFlags::empty()))?;
-        Some(Self { triangles, is_closed, hull: Convex::around(vertices)? })
+        Some(Self { triangles, is_closed, solids: Vec::new(), hull })
     }
 
     /// How far it extends along a direction. m
@@ -168,8 +189,57 @@ impl Mesh {
     fn is_inside(&self, point: Vector) -> bool {
         let bounds = self.triangles.local_aabb();
         let is_near = (0..3).all(|k| point[k] >= bounds.mins[k] && point[k] <= bounds.maxs[k]);
-        self.is_closed && is_near && self.triangles.contains_local_point(point)
+        if !self.is_closed || !is_near {
+            return false;
+        }
+        if self.solids.is_empty() {
+            return self.triangles.contains_local_point(point);
+        }
+        let around = self.solids.iter().filter(|part| part.contains(point));
+        around.map(|part| if part.is_hollow { -1 } else { 1 }).sum::<i32>() > 0
     }
+}
+
+impl Part {
+    fn contains(&self, point: Vector) -> bool {
+        let bounds = self.surface.local_aabb();
+        let is_near = (0..3).all(|k| point[k] >= bounds.mins[k] && point[k] <= bounds.maxs[k]);
+        is_near && self.surface.contains_local_point(point)
+    }
+}
+
+/// The closed surfaces of a mesh. One that faces inwards is a hollow where it lies in one that faces outwards; else the file has turned it.
+fn parts(mesh: &TriangleMesh) -> Option<Vec<Part>> {
+    let read = |triangles: &Vec<[u32; 3]>| {
+        let mut corners: Vec<u32> = triangles.iter().flatten().copied().collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let vertices: Vec<Vector> = corners.iter().map(|corner| vector(&mesh.vertices()[*corner as usize])).collect();
+        let about = vertices.first().copied()?;
+        let at = |corner: u32| corners.binary_search(&corner).unwrap_or_default();
+        let mut own: Vec<[u32; 3]> =
+            triangles.iter().map(|triangle| triangle.map(|corner| at(corner) as u32)).collect();
+        let volume = |[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|corner| vertices[*corner as usize] - about);
+            a.dot(b.cross(c))
+        };
+        let is_turned = own.iter().map(volume).sum::<f64>() < 0.0;
+        if is_turned {
+            own.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        let surface = TriMesh::with_flags(vertices, own, TriMeshFlags::ORIENTED).ok()?;
+        Some((Part { surface, is_hollow: false }, is_turned))
+    };
+    let read: Vec<(Part, bool)> = mesh.solids().iter().map(read).collect::<Option<_>>()?;
+    let is_within = |part: &Part| {
+        let vertex = part.surface.vertices().first();
+        vertex.is_some_and(|v| read.iter().any(|(outer, is_turned)| !is_turned && outer.contains(*v)))
+    };
+    Some(
+        read.iter()
+            .map(|(part, is_turned)| Part { is_hollow: *is_turned && is_within(part), ..part.clone() })
+            .collect(),
+    )
 }
 
 /// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that direction where it is as

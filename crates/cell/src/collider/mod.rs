@@ -139,7 +139,7 @@ impl Collider {
 mod tests {
     use super::*;
     use crate::solid::TriangleMesh;
-    use crate::solid::tests::box_mesh;
+    use crate::solid::tests::{box_mesh, boxes};
     use proptest::prelude::*;
     use std::sync::Arc;
     use stead_numerics::rotation::rotation_from_zyx;
@@ -177,6 +177,30 @@ mod tests {
         assert!((cube.distance(&here, &capsule, &at(0.0, 0.0, 2.0), 10.0) - 0.9).abs() < 1e-12);
         assert!((cube.distance(&here, &cylinder, &at(0.0, 0.0, 2.0), 10.0) - 1.0).abs() < 1e-9);
         assert_eq!(cube.distance(&here, &cube, &at(0.9, 0.0, 0.0), 10.0), 0.0);
+    }
+
+    /// Two boxes that touch along a face, one that the file has turned inside out, and one with a hollow.
+    #[test]
+    fn each_of_several_solids_has_an_inside() {
+        let bead = collider(&Solid::Capsule { radius: 0.01, length: 0.0 });
+        let inside = |mesh: &TriangleMesh, x: f64| {
+            let solid = collider(&Solid::Mesh(Arc::new(mesh.clone())));
+            solid.distance(&Pose::identity(), &bead, &at(x, 0.02, 0.03), 1.0) == 0.0
+        };
+        let two = boxes(&[Vector3::zeros(), Vector3::x()]);
+        assert!(two.is_touching() && [0.0, 0.45, 0.55, 1.2].iter().all(|x| inside(&two, *x)) && !inside(&two, 1.6));
+        let turned_from = |first: usize, mesh: &TriangleMesh| {
+            let turn = |(k, [a, b, c]): (usize, &[u32; 3])| if k < first { [*a, *b, *c] } else { [*a, *c, *b] };
+            let triangles: Vec<[u32; 3]> = mesh.triangles().iter().enumerate().map(turn).collect();
+            TriangleMesh::new(mesh.vertices(), &triangles).unwrap()
+        };
+        let apart = turned_from(12, &boxes(&[Vector3::zeros(), Vector3::x() * 3.0]));
+        assert!(inside(&apart, 0.0) && inside(&apart, 3.0) && !inside(&apart, 1.5));
+        let (outer, inner) = (box_mesh(Vector3::new(2.0, 2.0, 2.0)), box_mesh(Vector3::new(1.0, 1.0, 1.0)));
+        let vertices = [outer.vertices(), inner.vertices()].concat();
+        let triangles = outer.triangles().iter().copied().chain(inner.triangles().iter().map(|t| t.map(|k| k + 8)));
+        let hollow = turned_from(12, &TriangleMesh::new(&vertices, &triangles.collect::<Vec<_>>()).unwrap());
+        assert!(inside(&hollow, 0.75) && !inside(&hollow, 0.0) && !inside(&hollow, 1.2));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! An arm in its surroundings: which shapes can meet, and whether they do.
 
 mod build;
+mod depth;
 mod motion;
 mod near;
 mod proximity;

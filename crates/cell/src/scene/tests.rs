@@ -62,6 +62,37 @@ fn what_covers_call_free_is_free_and_clearances_agree() {
     assert!(hits > 50 && free > 30 && saved > 5, "{hits} {free} {saved}");
 }
 
+/// Of pairs that touch the deepest is told, wherever it stands in the list.
+#[test]
+fn the_deepest_pair_is_told() {
+    let wall = |name: &str, depth: f64| {
+        // The part is a box of 0.4 by 0.5 by 0.2 m; walls lie in it from one side and from above.
+        let edges = Vector3::new(0.3, 0.3, 0.3);
+        let at = if name == "side" { [0.2 + 0.15 - depth, 0.0, -0.1] } else { [0.0, 0.0, 0.15 - depth] };
+        shape(name, Attachment::Base, Solid::Box(edges), at)
+    };
+    let part = || shape("part", Attachment::Workpiece, Solid::Box(Vector3::new(0.4, 0.5, 0.2)), [0.0, 0.0, -0.1]);
+    for (side, top, deepest) in [(0.05, 0.02, "side"), (0.02, 0.05, "top"), (0.021, 0.02, "side"), (0.02, 0.021, "top")]
+    {
+        for turned in [false, true] {
+            let mut walls = vec![wall("side", side), wall("top", top)];
+            if turned {
+                walls.reverse();
+            }
+            let scene = scene_of(walls.into_iter().chain([part()]).collect(), 0.01);
+            let poses = scene.poses(&[0.0; 6], &Pose::identity());
+            let found = scene.deepest(&poses, &[PairKind::WorkpieceCell]).unwrap();
+            let names = &scene.pairs()[found.pair].names;
+            assert!(found.distance == 0.0 && names.iter().any(|name| name == deepest), "{names:?} {side} {top}");
+        }
+    }
+    let apart = scene_of(vec![wall("side", -0.02), wall("top", -0.005), part()], 0.01);
+    let poses = apart.poses(&[0.0; 6], &Pose::identity());
+    let kinds = [PairKind::WorkpieceCell];
+    assert_eq!(apart.deepest(&poses, &kinds), apart.clearance(&poses, &kinds));
+    assert!(apart.deepest(&poses, &kinds).unwrap().distance > 0.004);
+}
+
 #[test]
 fn a_free_motion_is_free_in_small_steps_and_a_hit_is_one() {
     let (scene, mut random) = (scene_of(kr270_shapes(), 0.01), ChaCha8Rng::seed_from_u64(2));

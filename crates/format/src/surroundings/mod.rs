@@ -149,6 +149,19 @@ fn no_surroundings(parts: &[Part<'_>], error: &SurroundingsError) -> InputError 
             let allowed = format!("names of shapes ({}), or what shapes are attached to", known.join(", "));
             located(place, "is no shape, and nothing is attached to it", &allowed)
         }
+        SurroundingsError::IgnoresItself(_) => {
+            let place = parts.iter().find_map(|part| {
+                let pairs = part.tables.collision.iter().flat_map(|table| table.ignored()).zip(1..);
+                let mut same = pairs.filter(|([first, second], _)| first == second);
+                same.next().map(|(_, number)| part.at.key("collision").key("ignore").element(number))
+            });
+            let place = place.or_else(|| collision(parts));
+            located(
+                place,
+                "names one shape twice",
+                "two that may touch each other: a shape is never held against itself",
+            )
+        }
         SurroundingsError::Clearance => located(collision(parts), &error.to_string(), "a clearance not below 0"),
     }
 }

@@ -13,8 +13,11 @@ const SMALLEST_MESH: f64 = 5e-3;
 pub(super) fn notes(scene: &Scene, robot: &Robot, spindle: &Spindle) -> Vec<String> {
     let reach = reach(robot, spindle);
     let shapes = scene.surroundings().shapes();
-    let mut notes: Vec<String> =
-        shapes.iter().flat_map(|shape| [size_note(shape, reach), open_note(shape)]).flatten().collect();
+    let mut notes: Vec<String> = shapes
+        .iter()
+        .flat_map(|shape| [size_note(shape, reach), open_note(shape), touching_note(shape)])
+        .flatten()
+        .collect();
     notes.extend(unchecked_note(&scene.unchecked_links()));
     notes
 }
@@ -46,6 +49,15 @@ fn open_note(shape: &Shape) -> Option<String> {
     let is_open = matches!(&shape.solid, Solid::Mesh(mesh) if !mesh.is_closed());
     is_open.then(|| {
         format!("the mesh of shape {:?} is not closed: its surface counts, but nothing is inside of it", shape.name)
+    })
+}
+
+/// A mesh of several solids that touch each other.
+fn touching_note(shape: &Shape) -> Option<String> {
+    let Solid::Mesh(mesh) = &shape.solid else { return None };
+    mesh.is_touching().then(|| {
+        let (name, count) = (&shape.name, mesh.solids().len());
+        format!("the mesh of shape {name:?} is made of {count} closed surfaces, some of which touch: each is solid by itself")
     })
 }
 

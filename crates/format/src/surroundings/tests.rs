@@ -146,15 +146,22 @@ fn what_looks_wrong_is_noted() {
     std::fs::write(folder.path().join("open.stl"), open).unwrap();
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     std::fs::write(folder.path().join("small.obj"), obj).unwrap();
-    let tables = "[[shape]]\nname = 'open'\nattached = 'workpiece'\nmesh = 'open.stl'\n\
+    // Two tetrahedra with an edge in common, the second with corners that rounding has moved.
+    let touching = "v 0 0 0\nv 0 0 100\nv 100 0 0\nv 0 100 0\nv 0 0.00001 0\nv 0 0 100.00001\nv -100 0 0\nv 0 -100 0\n\
+                    f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    std::fs::write(folder.path().join("touching.obj"), touching).unwrap();
+    let tables = "[[shape]]\nname = 'touching'\nattached = 'workpiece'\nmesh = 'touching.obj'\n\
+                  [[shape]]\nname = 'open'\nattached = 'workpiece'\nmesh = 'open.stl'\n\
                   [[shape]]\nname = 'small'\nattached = 'workpiece'\nmesh = 'small.obj'\n";
     let notes = run(folder.path(), "", tables).unwrap().notes.join("\n");
     for part in [
         "the mesh of shape \"open\" is not closed",
+        "the mesh of shape \"touching\" is made of 2 closed surfaces, some of which touch",
         "shape \"small\" is 1.00 mm long: is its mesh in metres (unit = \"m\")?",
     ] {
         assert!(notes.contains(part), "{part} in {notes}");
     }
+    assert!(!notes.contains("\"touching\" is not closed"), "{notes}");
 }
 
 #[test]
@@ -207,6 +214,11 @@ fn each_broken_rule_names_file_line_field_value_and_what_is_allowed() {
             "'link_2', 'flange'",
             "'link_4', 'flange'",
             [":39: collision.ignore[2][1]: ", "is no shape", "found 'link_4'"],
+        ),
+        (
+            "['upper arm', 'fence']",
+            "['fence', 'fence']",
+            [":39: collision.ignore[1]: ", "names one shape twice", "a shape is never held against itself"],
         ),
         ("['upper arm', 'fence']", "['upper arm']", [":39: collision.ignore", "2", "found"]),
         ("[collision]", "[collison]", [":37: collison: ", "nearest known one: collision", "allowed: shape, keep_out"]),

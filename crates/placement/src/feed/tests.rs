@@ -203,3 +203,14 @@ fn an_arm_with_offsets_and_a_tilted_base_is_followed_too() {
     let limit = cut_feed(&problem, BLEND, &[plan]).highest().unwrap();
     assert!((limit.feed * largest / 1.5 - 1.0).abs() < 1e-3, "{limit:?}");
 }
+
+/// An external axis that is slower than all joints decides, and is told by its name.
+#[test]
+fn an_external_axis_that_decides_is_named() {
+    let limit = |joint: usize| FeedLimit { feed: 0.02, kind: FeedLimitKind::Speed, joint, segment: 2, point: 7 };
+    let problem = five_segments();
+    let feed = CutFeed { external_axes: vec!["rail".to_owned(), "table".to_owned()], ..cut_feed(&problem, BLEND, &[]) };
+    assert_eq!((feed.external_axis(&limit(6)), feed.external_axis(&limit(8))), (None, Some("table")));
+    assert_eq!(feed.decided_by(&limit(6)), "speed of joint 6 at point 7, segment 2");
+    assert_eq!(feed.decided_by(&limit(8)), "speed of external axis \"table\" at point 7, segment 2");
+}

@@ -29,10 +29,11 @@ fn slowed(feed: &CutFeed) -> Option<String> {
     let (segments, limit) = (feed.slowed(), feed.highest()?);
     (segments > 0).then(|| {
         format!(
-            "the best plan does not hold the programmed feed of {} mm/s but {} mm/s: {limit}, decides; {segments} of {} segments are \
+            "the best plan does not hold the programmed feed of {} mm/s but {} mm/s: {}, decides; {segments} of {} segments are \
              slower, and cutting times are with the highest feed of each",
             figures(feed.programmed * 1e3),
             figures(limit.feed * 1e3),
+            feed.decided_by(&limit),
             feed.segments.len()
         )
     })

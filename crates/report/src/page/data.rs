@@ -2,6 +2,7 @@
 
 use super::base64::base64;
 use super::map_data;
+use super::moves::moves;
 use super::packed::singles;
 use super::setup::{external_axes, part_turns};
 use super::shapes::{BodyFrame, BodyMesh, bodies};
@@ -12,7 +13,9 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 use stead_placement::criterion::Direction;
 use stead_placement::feasibility::DeflectionMap;
+use stead_placement::outcome::Case;
 use stead_placement::problem::{Interval, Placement, Problem};
+use stead_placement::settings::TransferSettings;
 use stead_placement::setup::Setup;
 
 /// A deflection map with the placement and the setup that it is of and the name of its table.
@@ -21,16 +24,17 @@ pub(crate) type MapOf<'a> = (Placed<'a>, &'a DeflectionMap, &'static str);
 /// A placement with the setup of the cell.
 pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
 
-/// The content of `page-data.json`: robot, spindle, cell, limits and task of a problem, the joint angles of its maps, and the bodies that
-/// are drawn, for the placements of the plans. Lists of numbers are in single precision, little endian, as Base64.
+/// The content of `page-data.json`: robot, spindle, cell, limits and task of a problem, the joint angles of its maps, the moves between
+/// segments of its plans, and the bodies that are drawn. Lists of numbers are in single precision, little endian, as Base64.
 pub(crate) fn page_data(
     document: Document,
     command: &str,
     problem: &Problem,
-    plans: &[Placed<'_>],
+    settings: &TransferSettings,
+    plans: &[&Case],
     maps: &[MapOf<'_>],
 ) -> Value {
-    document.with(json!({
+    let mut data = json!({
         "command": command,
         "robot": robot(problem),
         "spindle": {
@@ -59,7 +63,11 @@ pub(crate) fn page_data(
         "surroundings": surroundings(problem).iter().map(body).collect::<Value>(),
         "external_axes": external_axes(problem),
         "part_turns": part_turns(problem, plans),
-    }))
+    });
+    if let Some(moves) = moves(problem, settings, plans) {
+        data["moves"] = moves;
+    }
+    document.with(data)
 }
 
 fn robot(problem: &Problem) -> Value {

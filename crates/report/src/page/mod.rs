@@ -12,6 +12,7 @@ mod folder;
 pub mod gltf;
 mod html;
 mod map_data;
+mod moves;
 mod packed;
 pub mod setup;
 mod shapes;

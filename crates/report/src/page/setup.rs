@@ -1,10 +1,11 @@
 //! How the cell is set up along each plan, for the view: the external axes, and how the part is turned.
 
-use super::data::{Placed, mm, rows};
+use super::data::{mm, rows};
 use crate::placement::setup::{column, unit, word};
 use nalgebra::Matrix3;
 use serde_json::{Value, json};
 use stead_model::external_axis::{Carried, ExternalAxis};
+use stead_placement::outcome::Case;
 use stead_placement::problem::Problem;
 
 /// The external axes in their order; their positions along the plans are columns of the plans, `e1_mm` or `e1_deg`.
@@ -26,10 +27,10 @@ pub(super) fn external_axes(problem: &Problem) -> Value {
 
 /// For each plan the rotation from the workpiece frame that the page has the task in to the frame that is placed; null where there is one
 /// orientation.
-pub(super) fn part_turns(problem: &Problem, plans: &[Placed<'_>]) -> Value {
+pub(super) fn part_turns(problem: &Problem, plans: &[&Case]) -> Value {
     if problem.orientations.is_empty() {
         return Value::Null;
     }
     let rotation = |problem: &Problem| problem.orientation().map_or(Matrix3::identity(), |found| found.rotation);
-    plans.iter().map(|(_, setup)| rows(&(rotation(&problem.in_setup(setup)) * rotation(problem).transpose()))).collect()
+    plans.iter().map(|case| rows(&(rotation(&problem.in_setup(&case.setup)) * rotation(problem).transpose()))).collect()
 }

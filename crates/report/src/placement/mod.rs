@@ -76,11 +76,11 @@ impl Context {
         mut files: Files,
         command: &str,
         problem: &Problem,
-        plans: &[Placed<'_>],
+        plans: &[&Case],
         maps: &[MapOf<'_>],
     ) -> Result<Files, ReportError> {
         if self.page {
-            let data = page_data(self.document(), command, problem, plans, maps);
+            let data = page_data(self.document(), command, problem, &self.transfer, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
             page::put_page(&mut files)?;
         }
@@ -175,7 +175,7 @@ pub fn score_files(
     }
     let placed: Placed<'_> = (&score.placement, &score.setup);
     let maps: Vec<MapOf<'_>> = map.iter().map(|map| (placed, *map, SCORE_MAP[0])).collect();
-    context.with_page(named(files), SCORE, problem, &[placed; 2], &maps)
+    context.with_page(named(files), SCORE, problem, &[&best, &worst], &maps)
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
@@ -233,6 +233,5 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
     let maps = outcome.maps.iter().flat_map(|[map_best, map_worst]| {
         [(placed(best), map_best, MAPS[0][0]), (placed(worst), map_worst, MAPS[1][0])]
     });
-    let plans = outcome.cases.all().map(placed);
-    context.with_page(named(files), PLACE, problem, &plans, &maps.collect::<Vec<_>>())
+    context.with_page(named(files), PLACE, problem, &outcome.cases.all(), &maps.collect::<Vec<_>>())
 }

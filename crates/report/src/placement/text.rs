@@ -141,7 +141,7 @@ pub(super) fn highest_feed(feed: &CutFeed) -> Vec<String> {
         let [highest, programmed] = [limit.feed, feed.programmed].map(|feed| figures(feed * 1e3));
         vec![
             format!("the best plan holds a feed of up to {highest} mm/s (programmed: {programmed} mm/s)"),
-            format!("  what decides: {limit}"),
+            format!("  what decides: {}", feed.decided_by(&limit)),
         ]
     };
     feed.highest().map_or_else(Vec::new, lines)

@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
+use stead_placement::course::{MovePart, PlaceOnMove};
 use stead_placement::problem::Placement;
 
 /// `cell.glb` of the files of a run, `page-data.json` among them: its first plan.
@@ -48,6 +49,7 @@ pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {
     if !bodies.iter().any(|body| body.frame == BodyFrame::Workpiece) {
         bodies.push(block_of(&positions, &vectors(&data["task"]["axis"], 1.0)));
     }
+    let ways = ways(&data["moves"][0], &axes).ok_or_else(|| PageError::data("moves", NOT_OURS))?;
     let cell = Cell {
         name: data["robot"]["name"].as_str().unwrap_or_default(),
         rows: rows(&data["robot"]["rows"])?,
@@ -56,7 +58,7 @@ pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {
         axes: &axes,
         cell_from_workpiece,
         bodies: &bodies,
-        motion: &motion(&plan, driven, &axes, &positions, &singles(&data["task"]["step_s"]))?,
+        motion: &motion(&plan, driven, &axes, &positions, &singles(&data["task"]["step_s"]), &ways)?,
     };
     Ok(glb(&cell))
 }
@@ -182,6 +184,31 @@ fn frame(word: &str) -> Option<BodyFrame> {
     }
 }
 
+/// The ways of the moves of a plan, in their order; empty where a move is straight in joint space.
+fn ways(list: &Value, axes: &[ExternalAxis]) -> Option<Vec<Vec<MovePart>>> {
+    let one = |value: &Value| if value.is_null() { Some(Vec::new()) } else { way(value, axes) };
+    list.as_array().into_iter().flatten().map(one).collect()
+}
+
+fn way(value: &Value, axes: &[ExternalAxis]) -> Option<Vec<MovePart>> {
+    let (joints, positions) = (singles(&value["joints_deg"]), singles(&value["axes"]));
+    let place = |number: usize| {
+        let joints = joints.get(6 * number..6 * (number + 1))?;
+        let positions = positions.get(axes.len() * number..axes.len() * (number + 1))?;
+        let axes = positions.iter().zip(axes).map(|(at, axis)| at / unit(axis.kind).factor).collect();
+        Some(PlaceOnMove { joints: std::array::from_fn(|j| joints[j].to_radians()), axes })
+    };
+    let mut first = 0;
+    let parts = value["steps"].as_array()?.iter().zip(value["time_shares"].as_array()?);
+    let part = |(steps, share): (&Value, &Value)| {
+        let last = first + steps.as_u64()? as usize;
+        let places = (first..=last).map(place).collect::<Option<Vec<_>>>()?;
+        first = last;
+        Some(MovePart { places, time_share: share.as_f64()? })
+    };
+    parts.map(part).collect()
+}
+
 /// The plan at the feed that is held, with the times of its moves between segments: as long as its document says.
 pub(super) fn motion(
     plan: &Table,
@@ -189,6 +216,7 @@ pub(super) fn motion(
     axes: &[ExternalAxis],
     positions: &[Vector3<f64>],
     steps: &[f64],
+    ways: &[Vec<MovePart>],
 ) -> Result<Motion, PageError> {
     let numbers = |name: &str| plan.numbers(name);
     let angles = [1, 2, 3, 4, 5, 6].map(|joint| numbers(&format!("theta{joint}_deg")));
@@ -202,12 +230,15 @@ pub(super) fn motion(
     let mut time = 0.0;
     let stops = (0..plan.len()).map(|point| {
         let segment = segments[point] as usize;
+        let mut way = Vec::new();
         if point > 0 && segments[point - 1] == segments[point] {
             // A turn of the tool in place has no time of its own.
             let step = steps.get(point).copied().filter(|step| *step > 0.0);
             time += step.map_or(UNKNOWN_MOVE, |step| step * scale);
         } else if point > 0 {
-            let duration = driven["transfers"][(segments[point - 1] as usize).saturating_sub(1)]["duration_s"].as_f64();
+            let number = (segments[point - 1] as usize).saturating_sub(1);
+            way = ways.get(number).cloned().unwrap_or_default();
+            let duration = driven["transfers"][number]["duration_s"].as_f64();
             time += duration.unwrap_or(UNKNOWN_MOVE).max(SHORTEST_MOVE);
         }
         Stop {
@@ -217,6 +248,7 @@ pub(super) fn motion(
             segment,
             score: scores[point] / 1e3,
             time,
+            way,
         }
     });
     Ok(Motion { name: "best plan".to_owned(), stops: stops.collect() })

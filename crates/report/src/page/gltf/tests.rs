@@ -8,6 +8,7 @@ use crate::testing::{context, outcome, problem};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
 use stead_model::external_axis::{AxisKind, AxisUse, carried};
+use stead_placement::course::{MovePart, PlaceOnMove};
 
 /// A file taken apart.
 struct Read {
@@ -91,7 +92,7 @@ fn motion_of(files: &Files) -> Motion {
         .collect();
     let plan = Table::read("best.csv", bytes("best.csv")).unwrap();
     let positions: Vec<Vector3<f64>> = task.points().iter().map(|point| point.position).collect();
-    kept::motion(&plan, &document["cases"][0], &[], &positions, &steps).unwrap()
+    kept::motion(&plan, &document["cases"][0], &[], &positions, &steps, &[]).unwrap()
 }
 
 /// The column of a CSV file at its last row, in mm.
@@ -157,6 +158,7 @@ fn long_turns_go_the_long_way_round() {
         segment,
         score: 1e-4,
         time,
+        way: Vec::new(),
     };
     let motion = Motion {
         name: String::new(),
@@ -169,6 +171,36 @@ fn long_turns_go_the_long_way_round() {
     assert_eq!(keys.last().unwrap().joints[3], -6.1);
 }
 
+/// A move that goes a way goes through all of its places, each part in its share of the time, and stands still where parts meet.
+#[test]
+fn moves_go_their_way() {
+    let place = |turn: f64, at: f64| PlaceOnMove { joints: [turn, 0.0, 0.0, 0.0, 0.0, 0.0], axes: vec![at] };
+    let stop = |turn: f64, segment: usize, time: f64, way: Vec<MovePart>| Stop {
+        joints: [turn, 0.0, 0.0, 0.0, 0.0, 0.0],
+        axes: vec![0.0],
+        position: Vector3::new(time, 0.0, 0.0),
+        segment,
+        score: 1e-4,
+        time,
+        way,
+    };
+    let line = vec![place(0.0, 0.0), place(0.1, 0.0), place(0.3, 0.0)];
+    let way = vec![
+        MovePart { places: line, time_share: 0.25 },
+        MovePart { places: vec![place(0.3, 0.0), place(-2.0, 0.5)], time_share: 0.75 },
+    ];
+    let stops = vec![stop(0.0, 1, 0.0, Vec::new()), stop(0.0, 1, 2.0, Vec::new()), stop(-2.0, 2, 6.0, way)];
+    let keys = Motion { name: String::new(), stops }.keys();
+    let at = |time: f32| keys.iter().find(|key| (key.time - time).abs() < 1e-6).map(|key| (key.joints[0], key.axes[0]));
+    assert_eq!((at(0.0), at(2.0), at(2.5)), (Some((0.0, 0.0)), Some((0.0, 0.0)), Some((0.1, 0.0))));
+    assert_eq!(at(3.0), Some((0.3, 0.0)));
+    let (turn, along) = at(6.0).unwrap();
+    assert!((turn + 2.0).abs() < 1e-12 && (along - 0.5).abs() < 1e-12, "{turn} {along}");
+    assert!(keys.windows(2).all(|pair| pair[0].time < pair[1].time));
+    let first = keys.iter().find(|key| key.time > 3.0).unwrap();
+    assert!(first.joints[0] > 0.27, "it starts at {first:?}");
+}
+
 /// A long path is thinned, with the ends of its segments.
 #[test]
 fn long_paths_are_thinned() {
@@ -179,6 +211,7 @@ fn long_paths_are_thinned() {
         segment: 1 + k / 20_000,
         score: 1e-4,
         time: k as f64,
+        way: Vec::new(),
     });
     let motion = Motion { name: String::new(), stops: stops.collect() };
     let shown = motion.shown();
@@ -238,6 +271,7 @@ fn external_axes_move_what_they_carry() {
         segment: 1,
         score: 1e-4,
         time: k as f64,
+        way: Vec::new(),
     };
     let motion = Motion { name: String::new(), stops: positions.iter().enumerate().map(stop).collect() };
     let plate = |frame: BodyFrame, name: &str| BodyMesh {

@@ -15,6 +15,13 @@ function posturesText(postures) {
   return text.length > 40 ? `${postures.length} segments` : text;
 }
 
+/** Where an external axis stands along a plan: one position, or the least and the largest. @param {Case} of @param {ExternalAxis} axis */
+function positionsText(of, axis) {
+  const at = of.columns[axis.column];
+  const [least, most] = [at.reduce((a, b) => Math.min(a, b)), at.reduce((a, b) => Math.max(a, b))].map((end) => fixed(end, 1));
+  return least === most ? least : `${least} … ${most}`;
+}
+
 function casesCard() {
   const worst = CASES.reduce((most, of) => Math.max(most, of.mean), 0) || 1;
   const figures_ = RAW.document.reference?.case_mm;
@@ -26,6 +33,8 @@ function casesCard() {
     ...(figures_ ? ['Published'] : []),
     'x, y, z mm',
     'Yaw',
+    ...(PART_TURNS ? ['Part'] : []),
+    ...AXES.map((axis) => `${axis.name} ${axis.isRail ? 'mm' : 'deg'}`),
     'Postures',
     'Cycle',
   ];
@@ -43,6 +52,8 @@ function casesCard() {
       ...(figures_ ? [el('td', {}, String(figures_[k]))] : []),
       el('td', {}, [x, y, z].map((value) => fixed(value, 1)).join(', ')),
       el('td', {}, `${fixed(yaw, 1)}°`),
+      ...(PART_TURNS ? [el('td', {}, of.entry.orientation || '–')] : []),
+      ...AXES.map((axis) => el('td', {}, positionsText(of, axis))),
       el('td', {}, posturesText(of.postures)),
       el('td', {}, of.cycle === null ? '–' : `${fixed(of.cycle, 1)} s`),
     ];

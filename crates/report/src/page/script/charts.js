@@ -18,6 +18,19 @@ const moveTo = (x) => {
   set({ t: Math.round(x) });
 };
 
+/** Says in the words of a card what its chart marks of a state that is chosen in the map. @param {HTMLElement} out @param {string} usual @param {() => string} told */
+function sayChosen(out, usual, told) {
+  const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
+  onChange(() => {
+    const chosen = chosenState();
+    words.textContent = !chosen ? usual : `${usual}; ${chosen.isAllowed ? told() : 'the chosen state is not allowed'}`;
+  });
+  return out;
+}
+
+/** Of a state chosen in the map nothing is marked where only the plans have it. */
+const notOfChosen = () => (state.chosen ? [NaN] : null);
+
 /** @param {string} label @param {Partial<ChartWants> & { lines: () => Line[], range: () => [number, number] }} wants */
 const alongPath = (label, wants) =>
   lineChart({
@@ -59,6 +72,7 @@ function deflectionCard() {
     const most = CASES.reduce((sum, of) => absolute(of).reduce((a, b) => Math.max(a, b), sum), 0);
     return /** @type {[number, number]} */ ([Math.min(SCALE[0], most / 100), Math.max(SCALE[1], most)]);
   };
+  const isScored = () => DEFLECTIONS[deflection][0] === DIRECTION;
   const chart = alongPath('Deflection', {
     lines: () => linesBeside(absolute, true),
     range,
@@ -66,6 +80,11 @@ function deflectionCard() {
     xTicks: pointTicks,
     xText: pointText,
     digits: 4,
+    chosen: () => {
+      const chosen = chosenState();
+      if (!chosen) return null;
+      return [chosen.isAllowed && isScored() ? Math.max(chosen.score, SCALE[0] / 100) : NaN];
+    },
   });
   const parts = choice(
     'Direction of the deflection',
@@ -77,7 +96,8 @@ function deflectionCard() {
       set({});
     },
   );
-  const out = card('Deflection', 'mm, logarithmic', chart.host);
+  const told = () => (isScored() ? `dot: ${SCORED} error of the chosen state` : 'of the chosen state the scored error alone is known');
+  const out = sayChosen(card('Deflection', '', chart.host), 'mm, logarithmic', told);
   /** @type {HTMLElement} */ (out.firstChild).append(parts);
   return out;
 }
@@ -102,8 +122,12 @@ function jointsCard() {
     xText: pointText,
     digits: 0,
     endNames: true,
+    chosen: () => {
+      const chosen = chosenState();
+      return chosen && chosen.joints.map((angle, j) => share(j, angle));
+    },
   });
-  return card('Joints within their limits', '% of range', chart.host);
+  return sayChosen(card('Joints within their limits', '', chart.host), '% of range', () => 'dots: the chosen state');
 }
 
 /** What depends on the case alone, computed once for each. @template T @param {() => T} make @returns {() => T} */
@@ -130,8 +154,9 @@ function conditioningCard() {
     limits: () => [LIMITS.inverse],
     xTicks: pointTicks,
     xText: pointText,
+    chosen: notOfChosen,
   });
-  return card('Conditioning 1/κ', `limit ${LIMITS.inverse}`, chart.host);
+  return sayChosen(card('Conditioning 1/κ', '', chart.host), `limit ${LIMITS.inverse}`, () => 'along plans only');
 }
 
 /** @returns {HTMLElement | null} where the run knows clearances */
@@ -145,10 +170,12 @@ function clearanceCard() {
     xTicks: pointTicks,
     xText: pointText,
     digits: 1,
+    chosen: notOfChosen,
   });
   const out = card('Clearance', '', chart.host);
   const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
   onChange(() => {
+    if (state.chosen) return void (words.textContent = 'mm; along plans only');
     const [clearance, pair] = [column(current())[currentPoint()], current().columns.nearest_pair[currentPoint()]];
     words.textContent = Number.isFinite(clearance) ? `mm; here ${fixed(clearance, 1)}: ${pair}` : 'mm; here nothing within 1 m';
   });

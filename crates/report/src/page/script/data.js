@@ -7,8 +7,11 @@
  * @typedef {{ x: number, y: number, z: number, yaw: number }} Place
  * @typedef {{
  *   number: number, place: number, plan: number, name: string, at: Place, mean: number, max: number, columns: Columns,
- *   joints: number[][], postures: string[], cycle: number | null, cutting: number, moves: (number | null)[], entry: any
+ *   joints: number[][], postures: string[], cycle: number | null, cutting: number, moves: (number | null)[], ways: (Way | null)[],
+ *   entry: any
  * }} Case one placement with one plan
+ * @typedef {{ joints: number[][], axes: number[][], parts: { first: number, steps: number, from: number, until: number }[] }} Way how a
+ *   move between segments goes: places one after the other, and its parts from rest to rest with the shares of the time between them
  * @typedef {{
  *   points: number[], betaCount: number, codes: Uint8Array, reasons: string[], scores: Float32Array, joints: Float32Array
  * }} StateMap the states of a placement: `points.length * betaCount` of them
@@ -127,6 +130,26 @@ const ROWS = RAW.robot.rows.map((/** @type {any} */ row) => ({
   max: row.max_deg,
 }));
 
+/** Numbers in rows of so many. @param {string} text @param {number} rows @returns {number[][]} */
+function rowsOf(text, rows) {
+  const all = singlesOf(text);
+  const wide = all.length / rows;
+  return Array.from({ length: rows }, (_, k) => Array.from(all.subarray(wide * k, wide * (k + 1))));
+}
+
+/** @param {any} entry @returns {Way | null} null where a move is straight in joint space */
+function wayOf(entry) {
+  if (!entry) return null;
+  const places = 1 + entry.steps.reduce((/** @type {number} */ sum, /** @type {number} */ steps) => sum + steps, 0);
+  let [first, from] = [0, 0];
+  const parts = entry.steps.map((/** @type {number} */ steps, /** @type {number} */ k) => {
+    const part = { first, steps, from, until: from + entry.time_shares[k] };
+    [first, from] = [first + steps, part.until];
+    return part;
+  });
+  return { joints: rowsOf(entry.joints_deg, places), axes: rowsOf(entry.axes, places), parts };
+}
+
 /** @type {Case[]} */
 const CASES = caseEntries().map((entry, k) => {
   const columns = columnsOf(RAW.plans[k]);
@@ -146,6 +169,7 @@ const CASES = caseEntries().map((entry, k) => {
     cycle: entry.cycle_s,
     cutting: entry.cutting_s,
     moves: (entry.transfers || []).map((/** @type {any} */ move) => move.duration_s),
+    ways: (RAW.moves ? RAW.moves[k] : []).map(wayOf),
     entry,
   };
 });

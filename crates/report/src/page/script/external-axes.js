@@ -37,7 +37,7 @@ const axisMotion = (axis, at) =>
     : turnAbout(axis.direction, axis.point, at);
 
 /** Positions of the axes at a fractional path point. @param {Case} of @param {number} t */
-const axesAt = (of, t) => between((i) => AXES.map((axis) => of.columns[axis.column][i]), t);
+const axesAt = (of, t) => between(of, (i) => AXES.map((axis) => of.columns[axis.column][i]), (way) => way.axes, t);
 
 /** Where the first `count` axes have brought what they carry, in the cell. @param {string} what @param {number[]} at @param {number} count @returns {Mat} */
 const carriedBy = (what, at, count = AXES.length) =>

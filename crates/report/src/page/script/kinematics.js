@@ -25,16 +25,36 @@ function framesOf(joints, base = MOUNT) {
   return frames;
 }
 
-/** What a plan has at a fractional path point; between segments everything moves over smoothly. @param {(i: number) => number[]} at @param {number} t */
-function between(at, t) {
+/** How much of a way from rest to rest is done at a share of its time. @param {number} f */
+const smooth = (f) => f * f * (3 - 2 * f);
+
+/** The number of the place that a move is at, at a share of its time; between two places in proportion. @param {Way} way @param {number} f */
+function placeOn(way, f) {
+  const part = way.parts.find(({ until }) => f < until) || way.parts[way.parts.length - 1];
+  return part.first + part.steps * smooth(clamp((f - part.from) / (part.until - part.from || 1), 0, 1));
+}
+
+/** Rows in proportion to a number between two of theirs. @param {number[][]} rows @param {number} at */
+function rowAt(rows, at) {
+  const i = Math.min(Math.floor(at), rows.length - 1);
+  return i === at ? rows[i] : mix(rows[i], rows[i + 1], at - i);
+}
+
+/**
+ * What a plan has at a fractional path point; between segments it goes the way of its move, or smoothly straight over where that has none.
+ * @param {Case} of @param {(i: number) => number[]} at @param {(way: Way) => number[][]} on @param {number} t
+ */
+function between(of, at, on, t) {
   const i = Math.min(Math.floor(t), COUNT - 1);
   const f = t - i;
   if (!f) return at(i);
-  return mix(at(i), at(i + 1), isMove(i) ? f * f * (3 - 2 * f) : f);
+  if (!isMove(i)) return mix(at(i), at(i + 1), f);
+  const way = of.ways[SEGMENT[i] - 1];
+  return way ? rowAt(on(way), placeOn(way, f)) : mix(at(i), at(i + 1), smooth(f));
 }
 
 /** Joint angles at a fractional path point. @param {Case} of @param {number} t */
-const jointsAt = (of, t) => between((i) => of.joints[i], t);
+const jointsAt = (of, t) => between(of, (i) => of.joints[i], (way) => way.joints, t);
 
 /** How far the wrist centre reaches from the shoulder, and the shoulder's distance from axis 1 and height. */
 const REACH = {

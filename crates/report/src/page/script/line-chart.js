@@ -5,8 +5,9 @@
  * @typedef {{
  *   label: string, lines: () => Line[], range: () => [number, number], log?: boolean, xRange: () => [number, number],
  *   limits?: () => number[], breaks?: () => number[], xTicks?: (low: number, high: number) => number[], xText?: (x: number) => string,
- *   digits?: number, unit?: string, endNames?: boolean, cursor?: () => number | null, onPoint?: (x: number) => void, zoomable?: boolean
- * }} ChartWants
+ *   digits?: number, unit?: string, endNames?: boolean, cursor?: () => number | null, onPoint?: (x: number) => void, zoomable?: boolean,
+ *   chosen?: () => Numbers | null
+ * }} ChartWants chosen: what is marked at the cursor in place of the values of the solid lines, in their order
  */
 
 /** @param {ChartWants} wants @returns {{ host: HTMLElement, refresh: () => void }} */
@@ -135,9 +136,10 @@ function lineChart(wants) {
         [xOf(at), margins.top],
         [xOf(at), plot.height - margins.bottom],
       ]);
-      for (const line of lines) {
-        const y = line.y[Math.round(at)];
-        if (line.dash || line.x || !Number.isFinite(y)) continue;
+      const chosen = wants.chosen ? wants.chosen() : null;
+      for (const [k, line] of lines.filter(({ dash, x }) => !dash && !x).entries()) {
+        const y = chosen ? chosen[k] : line.y[Math.round(at)];
+        if (!Number.isFinite(y)) continue;
         g.fillStyle = themeColour('--card');
         g.beginPath();
         g.arc(xOf(at), yOf(y), 5, 0, 7);

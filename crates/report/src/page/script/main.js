@@ -51,7 +51,7 @@ function main() {
   const observer = new ResizeObserver(() => set({ size: true }));
   document.querySelectorAll('.plot, .view').forEach((host) => observer.observe(host));
   // For measurements and tests: what is shown, and when it first was.
-  const shown = { state, set, steps, cases: CASES, maps: MAPS, framesOf, meets, picture: viewPicture, first: 0 };
+  const shown = { state, set, steps, cases: CASES, maps: MAPS, framesOf, jointsAt, axesAt, meets, picture: viewPicture, first: 0 };
   requestAnimationFrame(() =>
     requestAnimationFrame(() => {
       shown.first = performance.now();

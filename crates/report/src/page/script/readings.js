@@ -17,8 +17,7 @@ function tiles() {
     const of = current();
     const i = currentPoint();
     const columns = of.columns;
-    const map = currentMap();
-    const chosen = state.chosen && map ? mapState(map, state.chosen) : null;
+    const chosen = chosenState();
     if (!chosen) {
       const more = `total ${fixed(columns.total_mm[i], 2)} mm`;
       here.show(fixed(columns.score_mm[i]), 'mm', more);
@@ -32,6 +31,7 @@ function tiles() {
       kappa.show('–', '', 'along plans only');
     }
     mean.show(fixed(of.mean), 'mm', `largest ${fixed(of.max)} mm`);
+    if (chosen && !chosen.isAllowed) return limit.show('–', '', 'state not allowed');
     const joints = currentJoints();
     const gaps = ROWS.map((row, j) => Math.min(joints[j] - row.min, row.max - joints[j]));
     const nearest = gaps.indexOf(Math.min(...gaps));

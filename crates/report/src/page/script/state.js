@@ -76,12 +76,14 @@ function mapState(map, at) {
   };
 }
 
-/** The joint angles that are shown: those of the state chosen in the map, else those of the plan. */
-function currentJoints() {
+/** The state that is chosen in the map, where one is. */
+function chosenState() {
   const map = currentMap();
-  if (state.chosen && map) {
-    const found = mapState(map, state.chosen);
-    if (found.isAllowed) return found.joints;
-  }
-  return jointsAt(current(), state.t);
+  return state.chosen && map ? mapState(map, state.chosen) : null;
+}
+
+/** The joint angles that are shown: those of the state chosen in the map where the arm may take it, else those of the plan. */
+function currentJoints() {
+  const chosen = chosenState();
+  return chosen?.isAllowed ? chosen.joints : jointsAt(current(), state.t);
 }

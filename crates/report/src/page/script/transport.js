@@ -53,6 +53,22 @@ function tick(now) {
   requestAnimationFrame(tick);
 }
 
+/** What is said on the way from one segment to the next. @param {Case} of */
+function moveWords(of) {
+  const low = Math.floor(state.t);
+  if (state.t === low || !isMove(low)) return '';
+  const pair = of.entry.transfers?.[SEGMENT[low] - 1]?.blocked_by;
+  return pair ? `moving over, no free way: ${pair}` : 'moving over';
+}
+
+/** What is said of a state of the map. @param {ReturnType<typeof mapState>} chosen */
+function chosenWords(chosen) {
+  const point = `point ${chosen.point} of ${RAW.task.points - 1}`;
+  const beta = `β ${fixed(chosen.beta, 1)}°`;
+  if (!chosen.isAllowed) return [point, beta, `not allowed: ${reasonText(chosen.reason)}`, 'the robot stays on the plan'];
+  return [point, `segment ${SEGMENT[currentPoint()]}`, `posture ${chosen.posture}`, beta, `${fixed(chosen.score)} mm, chosen in the map`];
+}
+
 function transport() {
   const button = el('button.play', { type: 'button', id: 'play', 'aria-label': 'Play', onclick: playOrPause }, '▶');
   showPlaying = () => {
@@ -77,21 +93,19 @@ function transport() {
     const of = current();
     const i = currentPoint();
     slider.value = String(state.t);
+    const chosen = chosenState();
     slider.setAttribute(
       'aria-valuetext',
-      `point ${pathPoint(i)}, segment ${SEGMENT[i]}, ${fixed(of.columns.score_mm[i])} mm`,
+      chosen ? chosenWords(chosen).join(', ') : `point ${pathPoint(i)}, segment ${SEGMENT[i]}, ${fixed(of.columns.score_mm[i])} mm`,
     );
-    const low = Math.floor(state.t);
-    const isBetween = state.t > low && isMove(low);
-    const words = isBetween ? 'moving over' : `segment ${SEGMENT[i]}`;
     const parts = [
       `point ${pathPoint(i)} of ${RAW.task.points - 1}`,
-      words,
+      moveWords(of) || `segment ${SEGMENT[i]}`,
       `posture ${of.columns.posture[i]}`,
       `β ${fixed(of.columns.beta_deg[i], 1)}°`,
       `${fixed(timeAt(clock(), state.t), 1)} s`,
     ];
-    now.textContent = parts.join(' · ');
+    now.textContent = (chosen ? chosenWords(chosen) : parts).join(' · ');
     if (!isOther) return;
     const wide = Math.min(COUNT, 2000);
     strip.width = wide;
