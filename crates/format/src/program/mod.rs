@@ -4,6 +4,7 @@
 //! Between segments the moves are the free `ways`, where a run has surroundings. Linear poses are in the workpiece frame, so that positions are those of the task. The two frames of a program are where the
 //! workpiece stands in the controller's robot root, and where the tool is on the flange.
 
+mod carrier;
 pub mod check;
 mod corrected;
 mod error;
@@ -29,6 +30,7 @@ use crate::input::{InputError, InputFile};
 use crate::new_file::write_all_new;
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
+use carrier::Carrier;
 use corrected::corrected_targets;
 use layout::Layout;
 use motion::{Frames, Move, MoveKind, Target};
@@ -111,6 +113,10 @@ pub struct ExportOptions<'a> {
     pub blend: f64,
     /// Most moves in a part.
     pub max_moves: usize,
+    /// KUKA: the number n of `MACHINE_DEF[n]`, the mechanism that carries the workpiece.
+    pub mechanism: Option<usize>,
+    /// ABB: the mechanical unit that carries the workpiece.
+    pub unit: Option<&'a str>,
     /// The statement that starts the spindle.
     pub spindle_on: Option<&'a str>,
     /// The statement that stops it.
@@ -125,14 +131,18 @@ impl<'a> ExportOptions<'a> {
             name,
             corrected: None,
             approach: Self::APPROACH,
-            blend: 1e-3,
+            blend: Self::BLEND,
             max_moves: 5000,
+            mechanism: None,
+            unit: None,
             spindle_on: None,
             spindle_off: None,
         }
     }
     /// How far the tool is retracted where nothing is said. m
     pub const APPROACH: f64 = 0.05;
+    /// Where blending begins where nothing is said. m
+    pub const BLEND: f64 = 1e-3;
 }
 
 /// A program, not written to files yet.
@@ -146,7 +156,7 @@ pub struct Program {
     pub robot: String,
     /// Its files, the one to start first.
     pub files: Vec<ProgramFile>,
-    /// The frames to enter at the controller, where its root is known: workpiece, then tool.
+    /// The frames to enter at the controller, where its root is known: workpiece, tool, and the table where the program is coupled to one.
     pub frames: Vec<OperatorFrame>,
     /// How many segments it has.
     pub segments: usize,
@@ -195,14 +205,21 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
     let planned = targets(run, plan, options.corrected, ends)?;
     let problem = &planned.problem;
-    let moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
-    let frames = motion::frames(problem, &planned.placement);
+    let carrier = carrier::carrier(problem, options)?;
+    let mut moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
+    let cell_from_workpiece = match options.format {
+        ProgramFormat::Fanuc => carrier::standing_still(problem, &planned.placement, &mut moves),
+        _ => motion::at_zero(problem, &planned.placement),
+    };
+    let table = carrier.and_then(|_| carrier::root_from_table(problem));
+    let frames = motion::frames(problem, &cell_from_workpiece, table);
     let parts = split::parts(&moves, options.max_moves);
     let mut notes = planned.notes;
     notes.extend(names::check(options.name, options.format, parts.len())?);
     notes.extend(format_note(options, &moves, frames.is_some()));
+    notes.extend(carrier::note(problem, carrier));
     let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
-    let files = files((run, problem), options, &planned.inputs, &moves, parts, frames)?;
+    let files = files((run, problem), options, &planned.inputs, &moves, parts, (frames, carrier))?;
     let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
     Ok(Program {
         format: options.format,
@@ -228,7 +245,7 @@ fn files(
     inputs: &[InputFile],
     moves: &[Move],
     parts: Vec<Range<usize>>,
-    frames: Option<Frames>,
+    (frames, carrier): (Option<Frames>, Option<Carrier<'_>>),
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
     let (Some(frames), Some(_)) = (frames, format.controller()) else {
@@ -242,6 +259,7 @@ fn files(
         moves,
         parts,
         frames,
+        carrier,
         blend: options.blend,
         spindle_on: on.as_deref(),
         spindle_off: off.as_deref(),
