@@ -246,7 +246,7 @@ impl Keeping for StudyFolder<'_> {
         write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;
         if let Some(certificate) = &certificate {
             let files = placement_files(&run.problem, &outcome, &context).map_err(|error| error.to_string())?;
-            write_certificate(&folder, &run.problem, certificate, &run.inputs, files)
+            write_certificate(&folder, &run.problem, certificate, &run.inputs, (files, outcome.interrupted))
                 .map_err(|error| error.to_string())?;
         }
         Ok(())

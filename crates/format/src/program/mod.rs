@@ -294,7 +294,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
     let mut inputs = run.inputs.clone();
     inputs.push(file);
     let ways = Ways::new(&problem, &run.transfer, &plan, ends.approach);
-    let PlacedPlan { placement, points, note, .. } = &plan;
+    let PlacedPlan { placement, points, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()
         .enumerate()
@@ -313,8 +313,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
         }
         None => (planned, 0),
     };
-    let notes = note.iter().cloned().collect();
-    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes })
+    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes: plan.notes })
 }
 
 /// Whether the options are in their ranges, and the form is one for the robot.
