@@ -135,7 +135,8 @@ impl Study {
                 allowed: "the folder of a study that is done (stead study run)".to_owned(),
             }));
         };
-        let analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
+        let mut analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
+        analysis.notes.clone_from(&self.plan.notes);
         let csv = input_file("table", cases::TABLES[0], &table.to_csv()?);
         let inputs = self.plan.study.inputs.iter().cloned().chain([csv]).collect();
         Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs, pages: self.pages(folder) })
@@ -191,6 +192,10 @@ impl Report for StudyReport {
 
     fn table(&self) -> String {
         study_text(&self.plan.name(), &self.analysis)
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.analysis.notes
     }
 }
 

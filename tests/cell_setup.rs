@@ -99,9 +99,11 @@ fn axes_are_in_plans_results_and_programs() {
     let [a, b] = [&document["cases"][0], &again["best"]].map(|entry| entry["mean_mm"].as_f64().unwrap());
     assert!((a - b).abs() < 2e-7, "{a} {b}");
     // The part is on the table: the program has to be coupled to it.
-    let refused = bench.stead(&["export", RUN, "r/best.csv", "--format", "krl", "--out", "p/PART", "--approach-mm", "5"]);
+    let refused =
+        bench.stead(&["export", RUN, "r/best.csv", "--format", "krl", "--out", "p/PART", "--approach-mm", "5"]);
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
-    refused.assert_says(&["error: --mechanism: is missing, and the workpiece is carried by", "; allowed: the number n"]);
+    refused
+        .assert_says(&["error: --mechanism: is missing, and the workpiece is carried by", "; allowed: the number n"]);
     assert_exported(&bench, "krl", "PART.src", &["--mechanism", "2"]);
     assert_exported(&bench, "csv", "PART.csv", &[]);
     let text = bench.read("p/PART_01.src");

@@ -230,14 +230,17 @@ mod interrupt {
         };
         let ended = again(&[]);
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-        ended.assert_says(&["note: out has finished results and is left as it is; those of this run are in out.interrupted"]);
+        ended.assert_says(&[
+            "note: out has finished results and is left as it is; those of this run are in out.interrupted",
+        ]);
         assert!(ended.stdout.contains("; results in out.interrupted\n"), "{}", ended.stdout);
         assert_eq!(bench.tree("out"), finished);
         assert_eq!(json_in(&bench, "out.interrupted/summary.json")["interrupted"], true);
         assert_eq!(json_in(&bench, "out.interrupted/manifest.json")["results"][0]["interrupted"], true);
 
         // Whoever goes on from them is told.
-        let said = "is from a run of `stead place` that was interrupted: the best found by then, not the end of the search";
+        let said =
+            "is from a run of `stead place` that was interrupted: the best found by then, not the end of the search";
         let scored = bench.stead(&["score", RUN, "--placement-of", "out.interrupted", "--json"]);
         assert_eq!(scored.code, Some(0), "{}", scored.stderr);
         scored.assert_says(&["note: out.interrupted/summary.json ", said]);

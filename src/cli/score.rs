@@ -36,7 +36,9 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     // What was known before was said then.
     say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
     say_warnings(score.warnings());
-    let written = out.as_ref().map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));
+    let written = out
+        .as_ref()
+        .map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));
     if options.json {
         print_json(&score)?;
     } else {

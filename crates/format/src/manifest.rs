@@ -181,7 +181,9 @@ pub fn interruption_note(file: &Path) -> Option<String> {
     let name = file.file_name()?.to_str()?;
     let set = manifest.results.iter().find(|set| set.interrupted && set.file(name).is_some())?;
     let (file, command) = (file.display(), &set.command);
-    Some(format!("{file} is from a run of `stead {command}` that was interrupted: the best found by then, not the end of the search"))
+    Some(format!(
+        "{file} is from a run of `stead {command}` that was interrupted: the best found by then, not the end of the search"
+    ))
 }
 
 /// Refuses a file whose bytes are not those that the manifest beside it, if there is one, states of a run that came to its end.
@@ -233,7 +235,14 @@ mod tests {
 
     fn set(command: &str, complete: bool, files: &[(&str, &[u8])]) -> ResultSet {
         let files = files.iter().map(|(name, bytes)| ResultFile::of(name, bytes)).collect();
-        ResultSet { command: command.to_owned(), version: "1".to_owned(), complete, interrupted: false, inputs: Vec::new(), files }
+        ResultSet {
+            command: command.to_owned(),
+            version: "1".to_owned(),
+            complete,
+            interrupted: false,
+            inputs: Vec::new(),
+            files,
+        }
     }
 
     fn folder_with(manifest: &[u8]) -> tempfile::TempDir {

@@ -96,7 +96,13 @@ fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan
         stations.push(station);
     }
     let setup = problem.setup.clone();
-    Ok(PlacedPlan { placement, setup, points: stations, betas: rows.iter().map(|row| row.beta).collect(), notes: note.into_iter().collect() })
+    Ok(PlacedPlan {
+        placement,
+        setup,
+        points: stations,
+        betas: rows.iter().map(|row| row.beta).collect(),
+        notes: note.into_iter().collect(),
+    })
 }
 
 fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {

@@ -45,7 +45,16 @@ enum Step {
 
 impl<'a> Transaction<'a> {
     pub(super) fn new(folder: &'a Path, command: &'a str, inputs: &'a [InputFile]) -> Self {
-        Self { folder, command, inputs, outdated: Vec::new(), form: None, anchor: None, derived: None, interrupted: false }
+        Self {
+            folder,
+            command,
+            inputs,
+            outdated: Vec::new(),
+            form: None,
+            anchor: None,
+            derived: None,
+            interrupted: false,
+        }
     }
 
     /// Removes these too, if they are there: results that would contradict these, in folders without a manifest.
