@@ -38,7 +38,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
-use stead_placement::problem::{Placement, Problem};
+use stead_placement::problem::{Placement, Problem, UNCHECKED};
 use ways::{Ends, Ways};
 
 /// The form of a program.
@@ -255,7 +255,7 @@ fn files(
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
     let layout = Layout {
         name: options.name,
-        origin: origin(run, inputs),
+        origin: origin(run, inputs, problem.unchecked_collisions().is_some()),
         moves,
         parts,
         frames,
@@ -355,11 +355,12 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
         .into())
 }
 
-/// What the program is and what it was made of, for comments.
-fn origin(run: &Run, inputs: &[InputFile]) -> Vec<String> {
+/// What the program is, what it was made of and what it does not say, for comments.
+fn origin(run: &Run, inputs: &[InputFile], is_unchecked: bool) -> Vec<String> {
     let mut lines = vec![format!("written by stead {} for", env!("CARGO_PKG_VERSION"))];
     lines.push(names::comment(run.problem.robot.name(), 60));
     lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
+    lines.extend(is_unchecked.then(|| UNCHECKED.to_owned()));
     lines
 }
 

@@ -142,12 +142,10 @@ const STIFFNESS_LIKE: &str = "stiffness_like";
 pub(super) fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
     match other {
         None => Ok(robot),
-        Some(name) if !name.trim().is_empty() && !name.chars().any(char::is_control) => {
-            Ok(robot.with_stiffness_like(name.trim()))
-        }
+        Some(name) if !name.chars().any(char::is_control) => Ok(robot.with_stiffness_like(name)),
         Some(_) => {
             let rule = "the name of the other arm, a text on one line";
-            Err(at.key(STIFFNESS_LIKE).error("is empty or has a line break or another control in it", rule))
+            Err(at.key(STIFFNESS_LIKE).error("has a line break or another control in it", rule))
         }
     }
 }

@@ -253,6 +253,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
+    notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     Ok(Run { problem, search, transfer, certificate, maps, page, inputs, reference, path_stability, notes })
 }

@@ -33,6 +33,9 @@ fn programs_among_surroundings_are_read_back_with_what_hits() {
                 let plain = ExportOptions { format, ..bench.options() };
                 let asked = if axes.is_empty() { plain } else { options(&bench, format) };
                 let program = bench.export(&asked).unwrap();
+                let is_said = program.files.iter().any(|file| file.text.contains("collisions were not checked"));
+                let is_around = !zone.is_empty();
+                assert_eq!(is_said, !is_around && format != ProgramFormat::Csv, "{name} {format:?}");
                 let found = bench.check(&bench.written(&program, folder)).unwrap();
                 assert!(found.is_sound(), "{name} {format:?} {zone}: {found:?}");
                 assert_eq!(found.hits.len(), program.warnings.len(), "{name} {format:?} {zone}: {found:?}");
