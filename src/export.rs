@@ -51,7 +51,9 @@ impl From<ExportError> for Error {
     fn from(error: ExportError) -> Self {
         match error {
             ExportError::Input(error) => Self::Input(error),
-            ExportError::Program(error @ ProgramError::Unreached { .. }) => Self::failed(error),
+            ExportError::Program(error @ (ProgramError::Unreached { .. } | ProgramError::Blocked { .. })) => {
+                Self::failed(error)
+            }
             ExportError::Program(error @ ProgramError::Name { .. }) => Self::Argument(format!("--out: {error}")),
             ExportError::Program(error) => Self::Argument(error.to_string()),
         }

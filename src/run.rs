@@ -355,7 +355,7 @@ impl Report for Placements {
     }
 
     fn document(&self) -> Value {
-        let mut document = place_json(&self.run.problem, &self.outcome, &self.context, &self.timing);
+        let mut document = place_json(&self.outcome, &self.context, &self.timing);
         if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
             entries.insert("certificate".to_owned(), certificate_json(certificate, &self.run.inputs));
         }

@@ -28,6 +28,9 @@ pub(super) struct ExportCommand {
     /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not at all
     #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
     pub approach_mm: f64,
+    /// Write the program though no free way was found for some moves between segments: they hit, and are marked NOT FREE in it
+    #[arg(long)]
+    pub allow_blocked_moves: bool,
     /// Distance from a corner at which blending begins; 0 for exact stops
     #[arg(long, value_name = "D", value_parser = finite, default_value = "1", allow_hyphen_values = true)]
     pub blend_mm: f64,
@@ -47,7 +50,7 @@ pub(super) struct ExportCommand {
     #[arg(long, value_name = "TEXT")]
     pub spindle_off: Option<String>,
     /// Read this program back (its main file) and compare every pose, feed and blending with the plan, instead of writing one
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off"])]
     pub check: Option<PathBuf>,
     /// Print one JSON document instead of a text
     #[arg(long)]
@@ -70,13 +73,15 @@ Files written, none of which may be there yet:
   NAME.csv                           csv: one row for each move
 The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or --unit (rapid).
 Programs need [controller] and [root] in the robot file; csv does not.
-With surroundings, moves between segments are the free ways of `stead place`; a move without one is a warning, and a comment in
-the program. Without, collisions are not checked. Run a program slowly and without a cut first. --check writes nothing.
+With surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has none is refused, or
+written with --allow-blocked-moves and the move marked NOT FREE. Without, collisions are not checked. Run a program slowly and
+without a cut first. --check writes nothing.
 
 Exit codes:
   0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, feeds and blending too, and no move between
      segments hits
-  1  the arm does not reach a retracted point, a file could not be written; with --check: not the program of the plan, or it hits
+  1  a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the
+     plan, or it hits
   2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
@@ -109,6 +114,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         corrected: corrected(options),
         approach: options.approach_mm / 1e3,
         blend: options.blend_mm / 1e3,
+        allow_blocked_moves: options.allow_blocked_moves,
         max_moves: options.max_moves,
         mechanism: options.mechanism,
         unit: options.unit.as_deref(),

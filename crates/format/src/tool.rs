@@ -10,14 +10,16 @@ pub(crate) use moved::successor;
 
 use crate::input::InputError;
 use crate::place::Place;
+use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
-use crate::shapes::List;
+use crate::shapes::{Array, List};
 use crate::units::{Acute, Deg, Mm, Mpa, NPerMm, NotNegative, Number, Positive, Rpm, Um, ranges};
 pub use engagement::EngagementKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_model::cutting::{MillingDirection, Rotation, Side};
+use stead_placement::tool_scene::{Cylinder, ToolBody};
 
 /// Speeds beyond this are those of no spindle. rpm
 pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
@@ -53,6 +55,9 @@ pub struct ToolTable {
     pub helix_deg: Option<Deg<Acute>>,
     /// Length of the flutes.
     pub flute_length_mm: Option<Mm<Positive>>,
+    /// Shank and holder above the flutes, from below: height and diameter of each cylinder. With the cutter they are kept out of the
+    /// part on the moves between segments, where there are surroundings.
+    pub holder_mm: Option<List<Array<Mm<Positive>, 2>>>,
     /// Entering angle of the edges, between the edge and the plane normal to the tool axis; 90 where left out.
     pub entering_angle_deg: Option<Deg<EnteringAngle>>,
     /// Rake angle of the edges; 0 where left out.
@@ -98,6 +103,22 @@ pub struct CutTable {
     /// On which side of the path its corners are those of a pocket, where the cutter is in the work all over; `none` where
     /// left out.
     pub concave_corners: Option<Word<Option<Side>>>,
+}
+
+impl ToolTable {
+    /// The cylinders that cutter, shank and holder fill.
+    pub(crate) fn body(&self) -> ToolBody {
+        let flutes = self.flute_length_mm.map_or(0.0, Quantity::si);
+        let cutter = Cylinder { radius: self.cutter_diameter_mm.si() / 2.0, from: 0.0, to: flutes };
+        let stacked = |from: &mut f64, piece: &Array<Mm<Positive>, 2>| {
+            let [height, diameter] = piece.si();
+            let cylinder = Cylinder { radius: diameter / 2.0, from: *from, to: *from + height };
+            *from = cylinder.to;
+            Some(cylinder)
+        };
+        let pieces = self.holder_mm.iter().flat_map(|list| &list.0);
+        ToolBody { cutter: Some(cutter), holder: pieces.scan(flutes, stacked).collect() }
+    }
 }
 
 /// Both tables with their places in a file.

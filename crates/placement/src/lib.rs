@@ -49,7 +49,9 @@ pub mod sensitivity;
 pub mod settings;
 pub mod setup;
 pub mod symmetry;
+pub mod tool_scene;
 pub mod transfer;
+pub mod way;
 mod whole_path;
 
 #[cfg(any(test, feature = "testing"))]
@@ -60,6 +62,7 @@ pub mod testing {
     use super::postures::PostureRules;
     use super::problem::*;
     use super::setup::Setup;
+    use super::tool_scene::SegmentMoves;
     use nalgebra::{DMatrix, Vector3};
     use std::f64::consts::PI;
     use stead_model::robot::testing::{kr270, spindle};
@@ -92,6 +95,7 @@ pub mod testing {
             },
             postures: PostureRules::NONE,
             scene: None,
+            segment_moves: SegmentMoves::default(),
             orientations: [].into(),
             external_axes: Vec::new(),
             setup: Setup::default(),

@@ -100,6 +100,7 @@ impl PathSubset {
             task: problem.task.thinned(&kept),
             criterion: problem.criterion.clone(),
             scene: problem.scene.clone(),
+            segment_moves: problem.segment_moves.clone(),
             orientations: Arc::clone(&problem.orientations),
             external_axes: problem.external_axes.clone(),
             setup: Setup { positions: problem.setup.positions.of_points(&self.points), ..problem.setup },

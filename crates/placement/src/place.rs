@@ -12,7 +12,7 @@ use super::sensitivity::objective_with_force_errors;
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{best_alone, choose, leading, refine_basins};
-use notes::{blocked_moves, cancellation, interruption};
+use notes::{cancellation, interruption};
 use plan::{StatedPlans, detailed};
 use refined::Refined;
 use searched::{Searched, search_cell};
@@ -102,7 +102,9 @@ fn place_as_set_up(
         Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
         _ => None,
     };
-    let blocked = blocked_moves(problem, &best_case.cycle);
+    let named =
+        [(&best_case, "case 1"), (&best_worst_plan, "case 2"), (&worst_case, "case 3"), (&worst_worst_plan, "case 4")];
+    let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)));
     Ok(Outcome {
         sets: sets.outcomes(&best_case),
         set_basins: sets.basins,
@@ -122,7 +124,7 @@ fn place_as_set_up(
         interrupted,
         warnings: cancellation(problem, best.solution.objective)
             .into_iter()
-            .chain(blocked)
+            .chain(of_moves)
             .chain(interrupted.then(interruption))
             .collect(),
     })

@@ -5,6 +5,7 @@ mod in_setup;
 use super::criterion::Criterion;
 use super::postures::PostureRules;
 use super::setup::{Orientation, Setup};
+use super::tool_scene::SegmentMoves;
 use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
@@ -194,6 +195,8 @@ pub struct Problem {
     pub postures: PostureRules,
     /// The shapes on the arm and around it, where collisions are looked for.
     pub scene: Option<Arc<Scene>>,
+    /// How the tool gets from segment to segment among these shapes.
+    pub segment_moves: SegmentMoves,
     /// The ways in which the part may lie; none where it lies as in the task file.
     pub orientations: Arc<[Orientation]>,
     /// Rails and turntables beside the robot's own axes.
@@ -219,7 +222,9 @@ impl Problem {
             plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
             self.cell.note(),
         ];
-        plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).collect()
+        let has_moves = self.task.segments().len() > 1;
+        let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
+        plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).chain(of_tool).collect()
     }
 
     /// That collisions are not checked, where nothing stands around the robot, or nothing but shapes of the arm itself.

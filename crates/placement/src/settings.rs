@@ -73,15 +73,12 @@ pub struct TransferSettings {
     pub jerk_time: f64,
     /// Distance over which the controller blends changes of the joint speeds along the cut ([`super::feed`]). m
     pub blend: f64,
-    /// How far the tool is drawn out of the cut along its axis before a move to the next segment, where there are shapes to keep
-    /// free of. m
-    pub retract: f64,
 }
 
 impl Default for TransferSettings {
     /// Assumptions: manufacturers publish speeds, not accelerations, and the blending distance is set by the robot's program.
     fn default() -> Self {
-        Self { acceleration_time: 0.4, jerk_time: 0.1, blend: 5e-3, retract: 0.05 }
+        Self { acceleration_time: 0.4, jerk_time: 0.1, blend: 5e-3 }
     }
 }
 

@@ -4,14 +4,11 @@
 //! profiles come from rsruckig. Without shapes of the cell only the time is computed: that the move clears the workpiece is for the
 //! programmer to see to. With them, moves keep free of all shapes ([`Way`]).
 
-mod way;
-
-pub use way::{AtPoint, Space, Way, way};
-
 use super::feed::{CutFeed, cut_feed};
 use super::problem::{Placement, Problem};
-use super::redundancy::SegmentPlan;
+use super::segment_plan::SegmentPlan;
 use super::settings::TransferSettings;
+use super::way::{Way, way};
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 
 /// How long the cut takes.
@@ -58,7 +55,7 @@ pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettin
         .enumerate()
         .filter_map(|(index, pair)| {
             let direct = [*pair[0].joints.last()?, *pair[1].joints.first()?];
-            let way = way(problem, settings, placement, [&pair[0], &pair[1]], index);
+            let way = way(problem, placement, [&pair[0], &pair[1]], index);
             let joints = way.as_ref().map_or(&direct[..], |way| &way.joints);
             let travel = (0..6).map(|j| joints.windows(2).map(|step| (step[0][j] - step[1][j]).abs()).sum::<f64>());
             let positions = [pair[0].points.end - 1, pair[1].points.start].map(|point| problem.axis_positions(point));

@@ -15,7 +15,7 @@ pub use proximity::Proximity;
 
 use crate::collider::{Collider, Separation};
 use crate::cover::{Cover, lower_bound};
-use crate::shape::{Attachment, TrackedPoint};
+use crate::shape::{Attachment, Shape, TrackedPoint};
 use crate::surroundings::Surroundings;
 use nalgebra::{Matrix3, Vector3};
 use quick::Quick;
@@ -224,6 +224,12 @@ impl Scene {
     /// A pair by its number; `None` where there is none.
     pub fn pair(&self, number: usize) -> Option<&Pair> {
         self.pairs.get(number)
+    }
+
+    /// The shapes that move with something, each made ready for queries in the frame of that.
+    pub fn attached_to(&self, attached: Attachment) -> impl Iterator<Item = (&Shape, &Collider)> {
+        let shapes = self.surroundings.shapes().iter().zip(&self.bodies);
+        shapes.filter(move |(shape, _)| shape.attached == attached).map(|(shape, body)| (shape, &body.collider))
     }
 
     /// Links, from 1 to 5, that no shape is attached to: the arm is not checked there.

@@ -257,9 +257,10 @@ impl Scene {
                 Members::Bodies(a, b) => {
                     [a, b].iter().map(|body| of(self.bodies[*body].frame, self.bodies[*body].cover.farthest())).sum()
                 }
-                // A zone turns with the cell about the base: no point of the arm is farther from that than its reach and spindle.
+                // A zone turns with the cell about the origin of the base frame: no point of the arm is farther from that.
                 Members::Zone(..) => {
-                    of(0, self.robot.geometry().reach() + self.flange_from_tool.translation.norm() + 1.0)
+                    let rows: f64 = self.robot.mounted_rows().iter().map(|row| row.translation.norm()).sum();
+                    of(0, rows + self.flange_from_tool.translation.norm())
                 }
             }
     }

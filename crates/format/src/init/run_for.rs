@@ -187,7 +187,13 @@ mod tests {
         let table =
             "[[shape]]\nname = 'table'\nattached = 'base'\nbox_mm = [1000, 1000, 100]\nxyz_mm = [2000, 0, -500]\n";
         std::fs::write(at("arm-cell.toml"), format!("{shape}{table}")).unwrap();
-        assert!(!read_run(&at("runs/with.toml")).unwrap().notes.iter().any(|note| note.contains("not checked")));
+        assert!(
+            !read_run(&at("runs/with.toml"))
+                .unwrap()
+                .notes
+                .iter()
+                .any(|note| note.contains("collisions were not checked"))
+        );
     }
 
     #[test]

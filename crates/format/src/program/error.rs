@@ -53,6 +53,15 @@ pub enum ProgramError {
         /// The range.
         allowed: &'static str,
     },
+    /// Moves between segments for which no free way is known.
+    #[error(
+        "NOT FREE: {moves}; allowed: another placement or plan, more room in the cell, a longer transfer.retract_mm, or \
+         --allow-blocked-moves, which writes the program with these moves marked as NOT FREE"
+    )]
+    Blocked {
+        /// The moves and what hits.
+        moves: String,
+    },
     /// The arm cannot be at a path point or retract from it in the posture of the plan.
     #[error("point {point}{way}: {reason}; allowed: {}", approaches(*.most))]
     Unreached {

@@ -5,7 +5,6 @@ use super::motion::{Frames, Heading, Move, MoveKind};
 use super::names;
 use std::fmt::Write;
 use std::ops::Range;
-use stead_cell::Scene;
 
 /// One file of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,8 +38,6 @@ pub(super) struct Layout<'a> {
     pub external_units: [&'static str; 6],
     /// Mass and centre (m, flange frame) of what the flange carries, where known.
     pub load: Option<(f64, [f64; 3])>,
-    /// What stands around.
-    pub scene: Option<&'a Scene>,
 }
 
 impl Layout<'_> {
@@ -61,23 +58,27 @@ impl Layout<'_> {
     pub fn heading(&self, index: usize, number: usize) -> Vec<String> {
         let step = &self.moves_of(index)[number];
         let segment = step.segment;
-        let mut lines = match (step.heading, step.kind) {
-            (Some(Heading::FreeWay), _) => vec![format!("segment {segment}, by a free way")],
+        let mut lines = match (&step.heading, step.kind) {
+            (Some(Heading::FreeWay(short_lines)), _) => {
+                let short = short_lines.iter().map(|line| names::comment(line, LONGEST_LINE));
+                std::iter::once(format!("segment {segment}, by a free way")).chain(short).collect()
+            }
             (Some(Heading::Segment), _) | (Some(Heading::Hits(_)), MoveKind::Joint) => {
                 vec![format!("segment {segment}")]
             }
             _ if number == 0 => vec![format!("segment {segment} goes on")],
             _ => Vec::new(),
         };
-        if let Some(Heading::Hits(pair)) = step.heading {
+        if let Some(Heading::Hits(hit)) = &step.heading {
             lines.push("NOT FREE: this move hits".to_owned());
-            let names = self.scene.and_then(|scene| scene.pair(pair)).map(|pair| &pair.names[..]).unwrap_or_default();
-            lines.extend(names.iter().map(|name| format!("- {}", names::comment(name, LONGEST_NAME))));
+            lines.extend(hit.iter().map(|name| format!("- {}", names::comment(name, LONGEST_NAME))));
         }
         lines
     }
 }
 
+/// The longest line of a comment on a short line.
+const LONGEST_LINE: usize = 120;
 /// The longest name of a shape in a comment.
 const LONGEST_NAME: usize = 60;
 

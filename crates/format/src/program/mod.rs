@@ -117,6 +117,8 @@ pub struct ExportOptions<'a> {
     pub mechanism: Option<usize>,
     /// ABB: the mechanical unit that carries the workpiece.
     pub unit: Option<&'a str>,
+    /// Whether a program is made though moves between segments hit what stands around; they are marked in it.
+    pub allow_blocked_moves: bool,
     /// The statement that starts the spindle.
     pub spindle_on: Option<&'a str>,
     /// The statement that stops it.
@@ -135,6 +137,7 @@ impl<'a> ExportOptions<'a> {
             max_moves: 5000,
             mechanism: None,
             unit: None,
+            allow_blocked_moves: false,
             spindle_on: None,
             spindle_off: None,
         }
@@ -205,6 +208,10 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     let ends = Ends { approach: options.approach, has_blending: options.blend > 0.0 };
     let planned = targets(run, plan, options.corrected, ends)?;
     let problem = &planned.problem;
+    let blocked = planned.ways.blocked(ends);
+    if !blocked.is_empty() && !options.allow_blocked_moves {
+        return Err(ProgramError::Blocked { moves: blocked.join("; ") }.into());
+    }
     let carrier = carrier::carrier(problem, options)?;
     let mut moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
     let cell_from_workpiece = match options.format {
@@ -234,7 +241,7 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
         uncorrected: planned.uncorrected,
         inputs: planned.inputs,
         notes,
-        warnings: planned.ways.warnings(problem.scene.as_deref(), ends),
+        warnings: planned.ways.warnings(ends),
     })
 }
 
@@ -249,7 +256,7 @@ fn files(
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
     let (Some(frames), Some(_)) = (frames, format.controller()) else {
-        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.as_deref()));
+        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.is_some()));
     };
     let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
@@ -266,7 +273,6 @@ fn files(
         external_units: motion::external_units(problem),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
-        scene: problem.scene.as_deref(),
     };
     Ok(match format {
         ProgramFormat::Rapid => rapid::files(&layout),
@@ -293,7 +299,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
     let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();
     inputs.push(file);
-    let ways = Ways::new(&problem, &run.transfer, &plan, ends.approach);
+    let ways = Ways::new(&problem, &plan, ends.approach);
     let PlacedPlan { placement, points, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()

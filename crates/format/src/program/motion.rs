@@ -2,12 +2,12 @@
 //! then linear moves through its points, and back; among surroundings the free way to the next segment in place of these.
 
 use super::ProgramError;
-use super::ways::{Ends, Ways};
+use super::ways::{Ends, Names, Ways};
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
 use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
-use stead_placement::transfer::Way;
+use stead_placement::way::Way;
 
 /// Positions of the external axes that there are, in mm and deg.
 pub(super) type External = [Option<f64>; 6];
@@ -55,18 +55,18 @@ pub(super) enum MoveKind {
 }
 
 /// What begins with a move, for a comment before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Heading {
     /// The moves of a segment.
     Segment,
-    /// The same, over a way that keeps free of all that stands around.
-    FreeWay,
-    /// A move that is known to hit: the number of the pair.
-    Hits(usize),
+    /// The same, over a way that keeps free of all that stands around, with what is said of lines that are too short.
+    FreeWay(Vec<String>),
+    /// A move that is known to hit: the names of the two.
+    Hits(Names),
 }
 
 /// One move to a pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Move {
     pub kind: MoveKind,
     /// What begins with it, if anything does.
@@ -172,13 +172,13 @@ pub(super) fn moves(
         let way_here = ways.free_to(segment);
         let is_at_first = match way_here {
             Some(way) => {
-                moves.extend(maker.way_to(segment, way, targets, &start));
+                moves.extend(maker.way_to(segment, (way, ways.short_lines(segment)), targets, &start));
                 true
             }
             None => {
                 let entry = retracted(first, &start, "before")?;
                 let joint = maker.to(segment, first, MoveKind::Joint, &targets[first], &entry);
-                let heading = Some(ways.hit_before(segment).map_or(Heading::Segment, Heading::Hits));
+                let heading = Some(ways.hit_before(segment).map_or(Heading::Segment, |hit| Heading::Hits(hit.clone())));
                 // Without an approach the joint move goes to the first point.
                 moves.push(Move { heading, ..if has_approach { joint.without_point() } else { joint } });
                 !has_approach
@@ -197,7 +197,7 @@ pub(super) fn moves(
             let exit = retracted(last, &end, "after")?;
             let linear = maker.to(segment, last, MoveKind::Linear, &targets[last], &exit).without_point();
             let is_end = range.end == targets.len();
-            let heading = ways.ends_hit[1].filter(|_| is_end).map(Heading::Hits);
+            let heading = ways.ends_hit[1].clone().filter(|_| is_end).map(Heading::Hits);
             moves.push(Move { heading, ..linear });
         }
     }
@@ -251,7 +251,13 @@ impl Maker<'_> {
 
     /// The other moves of a free way, to the first point of the segment (from 0) that it leads to. External axes are where the last segment
     /// ends, or where this one begins.
-    fn way_to(&self, segment: usize, way: &Way, targets: &[Target], start: &At) -> Vec<Move> {
+    fn way_to(
+        &self,
+        segment: usize,
+        (way, short_lines): (&Way, Vec<String>),
+        targets: &[Target],
+        start: &At,
+    ) -> Vec<Move> {
         let first = self.problem.task.segments()[segment].start;
         let end = way.joints.len() - 1;
         let places = (1 + usize::from(way.along_axis[0])..=end).map(|place| {
@@ -266,7 +272,7 @@ impl Maker<'_> {
         });
         let mut moves: Vec<Move> = places.collect();
         if let Some(step) = moves.first_mut() {
-            step.heading = Some(Heading::FreeWay);
+            step.heading = Some(Heading::FreeWay(short_lines));
         }
         moves
     }

@@ -3,7 +3,6 @@
 use super::layout::{Lines, ProgramFile};
 use super::motion::{Heading, Move, MoveKind};
 use super::names::number;
-use stead_cell::Scene;
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 
 /// The columns: poses of the tool in the workpiece frame, as `Rz(A) Ry(B) Rx(C)` and as a quaternion; angles of the controller, empty
@@ -17,18 +16,18 @@ const DEG_DECIMALS: usize = 5;
 const QUATERNION_DECIMALS: usize = 9;
 
 /// The one file.
-pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6], scene: Option<&Scene>) -> Vec<ProgramFile> {
+pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6], has_scene: bool) -> Vec<ProgramFile> {
     let mut lines = Lines::default();
     let external = moves.first().map_or([None; 6], |step| step.external);
     let there = external.iter().zip(units).zip(1..).filter(|((axis, _), _)| axis.is_some());
     let names: String = there.map(|((_, unit), axis)| format!(",e{axis}_{unit}")).collect();
-    let hits = if scene.is_some() { ",hits" } else { "" };
+    let hits = if has_scene { ",hits" } else { "" };
     lines.line(format_args!("{COLUMNS}{names}{hits}"));
-    moves.iter().for_each(|step| lines.line(row(step, scene)));
+    moves.iter().for_each(|step| lines.line(row(step, has_scene)));
     vec![ProgramFile { name: format!("{name}.csv"), text: lines.0 }]
 }
 
-fn row(step: &Move, scene: Option<&Scene>) -> String {
+fn row(step: &Move, has_scene: bool) -> String {
     let pose = &step.workpiece_from_tool;
     let kind = match step.kind {
         MoveKind::Joint => "joint",
@@ -46,9 +45,9 @@ fn row(step: &Move, scene: Option<&Scene>) -> String {
     // A joint move has no speed of the tool.
     cells.push(if step.kind == MoveKind::Linear { number(step.feed * 1e3, 4) } else { String::new() });
     cells.extend(step.external.into_iter().flatten().map(|position| number(position, DEG_DECIMALS)));
-    cells.extend(scene.map(|scene| match step.heading {
+    cells.extend(has_scene.then(|| match &step.heading {
         // Names of shapes have no quotes in them.
-        Some(Heading::Hits(pair)) => scene.pair(pair).map_or_else(String::new, |pair| format!("\"{pair}\"")),
+        Some(Heading::Hits(names)) => format!("\"{} and {}\"", names[0], names[1]),
         _ => String::new(),
     }));
     cells.join(",")

@@ -2,12 +2,12 @@
 //! the plan, and what its other moves hit.
 
 use crate::plan::PlacedPlan;
-use stead_cell::Scene;
+use std::sync::Arc;
+use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 use stead_placement::problem::Problem;
 use stead_placement::redundancy::SegmentPlan;
-use stead_placement::settings::TransferSettings;
-use stead_placement::transfer::{AtPoint, Space, Way, way};
+use stead_placement::way::{AtPoint, LineEnd, ShortLine, Space, Way, way};
 
 /// How close to its points a program goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,13 +23,16 @@ pub(super) struct Ends {
 pub(super) struct Ways {
     /// From each segment to the next.
     all: Vec<Way>,
-    /// The pairs of the scene that hit before the first segment and after the last.
-    pub ends_hit: [Option<usize>; 2],
+    /// The pairs that hit before the first segment and after the last.
+    pub ends_hit: [Option<Names>; 2],
 }
+
+/// The names of two shapes.
+pub(super) type Names = Arc<[String; 2]>;
 
 impl Ways {
     /// Those of a plan, with the retraction before the first segment and after the last one in m.
-    pub fn new(problem: &Problem, settings: &TransferSettings, plan: &PlacedPlan, approach: f64) -> Self {
+    pub fn new(problem: &Problem, plan: &PlacedPlan, approach: f64) -> Self {
         let Some(space) = Space::new(problem, &plan.placement) else { return Self::default() };
         let at = |point: usize| {
             let row = &plan.points[point];
@@ -37,12 +40,16 @@ impl Ways {
         };
         let segments = problem.task.segments();
         let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
-        let way = |(index, pair): (usize, &[SegmentPlan])| {
-            way(problem, settings, &plan.placement, [&pair[0], &pair[1]], index)
-        };
+        let way = |(index, pair): (usize, &[SegmentPlan])| way(problem, &plan.placement, [&pair[0], &pair[1]], index);
         let all = plans.windows(2).enumerate().filter_map(way).collect();
         let last = problem.task.points().len().checked_sub(1);
-        let ends_hit = [Some(0), last].map(|point| space.retraction_hit(at(point?), approach));
+        let ends_hit = [Some(0), last].map(|point| {
+            let of_arm = match space.line_end(at(point?), approach)?.end {
+                LineEnd::Hit(names) => Some(names),
+                _ => None,
+            };
+            of_arm.or_else(|| space.tool_hit(point?, approach))
+        });
         Self { all, ends_hit }
     }
 
@@ -56,31 +63,50 @@ impl Ways {
         self.free_from(segment.checked_sub(1)?)
     }
 
-    /// The number of the pair that hits on the move to a segment (from 0).
-    pub fn hit_before(&self, segment: usize) -> Option<usize> {
+    /// The pair that hits on the move to a segment (from 0).
+    pub fn hit_before(&self, segment: usize) -> Option<&Names> {
         match segment.checked_sub(1) {
-            None => self.ends_hit[0],
-            Some(previous) => self.all.get(previous)?.blocked_by,
+            None => self.ends_hit[0].as_ref(),
+            Some(previous) => self.all.get(previous)?.blocked_by.as_ref(),
         }
     }
 
-    /// One warning for each move that hits.
-    pub fn warnings(&self, scene: Option<&Scene>, ends: Ends) -> Vec<Warning> {
-        let Some(scene) = scene else { return Vec::new() };
+    /// The moves that hit, in sentences.
+    pub fn blocked(&self, ends: Ends) -> Vec<String> {
         let between = self.all.iter().zip(1..).filter_map(|(way, number)| {
-            let pair = scene.pair(way.blocked_by?)?;
+            let [a, b] = &**way.blocked_by.as_ref()?;
             Some(format!(
-                "the move from segment {number} to segment {} hits: {pair}; no free way was found, and the program goes straight over",
+                "the move from segment {number} to segment {} hits ({a} and {b}), and no free way was found",
                 number + 1
             ))
         });
         let mm = ends.approach * 1e3;
         let whens = ["before the first segment", "after the last segment"];
         let at_ends = self.ends_hit.iter().zip(whens).filter_map(|(hit, when)| {
-            let pair = scene.pair((*hit)?)?;
-            Some(format!("the move of {mm:.1} mm along the tool axis {when} hits: {pair}"))
+            let [a, b] = &**hit.as_ref()?;
+            Some(format!("the move of {mm:.1} mm along the tool axis {when} hits ({a} and {b})"))
         });
-        between.chain(at_ends).map(|text| Warning::new("blocked-move", text)).collect()
+        between.chain(at_ends).collect()
+    }
+
+    /// What is said in the program of the lines out of the segment before a segment (from 0), and into it, that are too short.
+    pub fn short_lines(&self, segment: usize) -> Vec<String> {
+        let Some(way) = self.free_to(segment) else { return Vec::new() };
+        let named =
+            way.short_lines.iter().zip([format!("out of segment {segment}"), format!("into segment {}", segment + 1)]);
+        let line = |(line, name): (&Option<ShortLine>, String)| {
+            let line = line.as_ref()?;
+            let [length, wanted] = [line.length, line.wanted].map(|length| figures(length * 1e3));
+            Some((format!("line {name} along the tool axis {length} of {wanted} mm"), line.end.to_string()))
+        };
+        named.filter_map(line).map(|(what, why)| format!("{what}: {why}")).collect()
+    }
+
+    /// Warnings of moves that hit, and of lines into and out of the cut that are too short.
+    pub fn warnings(&self, ends: Ends) -> Vec<Warning> {
+        let hits = self.blocked(ends).into_iter().map(|text| Warning::new("blocked-move", format!("NOT FREE: {text}")));
+        let short = (0..=self.all.len()).flat_map(|segment| self.short_lines(segment));
+        hits.chain(short.map(|text| Warning::new("short-line", text))).collect()
     }
 }
 

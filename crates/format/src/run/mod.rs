@@ -84,7 +84,8 @@ pub struct RunFile {
     pub transfer: Option<TransferTable>,
     /// Asks for a proof of how far the placement is from the best possible.
     pub certificate: Option<CertificateTable>,
-    /// The cutter. With `[cut]` it gives the forces of a task without force columns, and what `[stability]` is asked of.
+    /// The cutter. With `[cut]` it gives the forces of a task without force columns, and what `[stability]` is asked of; among
+    /// surroundings it is kept out of the part on the moves between segments.
     pub tool: Option<ToolTable>,
     /// What the cutter cuts.
     pub cut: Option<CutTable>,
@@ -175,13 +176,15 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
     let search_table = run.search.unwrap_or_default();
     let search = search_table.settings();
-    let transfer = run.transfer.unwrap_or_default().settings();
+    let transfer_table = run.transfer.unwrap_or_default();
+    let transfer = transfer_table.settings();
     let output = run.output.unwrap_or_default();
     let (maps, page) = (output.maps(), output.page());
     let certificate = run.certificate.map(|table| table.settings());
     let with_gap = |gap| CertificateSettings { gap, ..certificate.unwrap_or(CertificateSettings::new(gap)) };
     let certificate = gap.map(with_gap).or(certificate);
-    let cutting = Cutting::of(&run.tool, &run.cut, &at)?;
+    // Without a cut, the tool is there for the moves between segments.
+    let cutting = if run.cut.is_some() { Cutting::of(&run.tool, &run.cut, &at)? } else { None };
 
     let (robot_field, task_field) = (at.key("robot"), at.key("task"));
     let robot_file = robot_field.named_file()?;
@@ -226,6 +229,8 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
     let around = read_scene(around, &at, (&robot, &spindle), &external_axes)?;
     let scene = around.scene;
+    let tool = (run.tool.as_ref(), &at.key("tool"));
+    let segment_moves = transfer_table.segment_moves((&robot, &spindle), scene.as_deref(), task.path(), tool)?;
     let orientations = run.cell.orientations(&task, &at.key("cell"))?;
     let task = orientations.first().map_or(task, |first| (*first.task).clone());
     let problem = Problem {
@@ -238,6 +243,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         redundancy,
         postures: rules,
         scene,
+        segment_moves,
         orientations,
         setup: Setup::at_rest(&external_axes),
         external_axes,

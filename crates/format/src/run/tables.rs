@@ -7,17 +7,22 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::{Array, Interval, Matrix, Vector};
+use crate::tool::ToolTable;
 use crate::units::{Deg, Gb, Mm, NotNegative, Number, Positive, S, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
+use std::sync::Arc;
+use stead_cell::Scene;
 use stead_model::published::Published;
-use stead_model::robot::{Robot, angles::yaw_from_q4};
+use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4};
+use stead_model::task::ToolPath;
 use stead_numerics::digits::figures;
 use stead_placement::lookup::LookupTable;
 use stead_placement::place::planning_memory;
 use stead_placement::problem::{self, Cell, Constraints, Problem};
 use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
+use stead_placement::tool_scene::{SegmentMoves, ToolScene};
 
 ranges! {
     /// From -1 to 1.
@@ -222,8 +227,22 @@ impl TransferTable {
             acceleration_time: self.acceleration_time_s.map_or(default.acceleration_time, Quantity::si),
             jerk_time: self.jerk_time_s.map_or(default.jerk_time, Quantity::si),
             blend: self.blend_mm.map_or(default.blend, Quantity::si),
-            retract: self.retract_mm.map_or(default.retract, Quantity::si),
         }
+    }
+
+    /// The moves between segments among the shapes of a scene, with the tool that a table states.
+    pub(super) fn segment_moves(
+        &self,
+        (robot, spindle): (&Robot, &Spindle),
+        scene: Option<&Scene>,
+        path: &ToolPath,
+        (tool, at): (Option<&ToolTable>, &Place<'_>),
+    ) -> Result<SegmentMoves, InputError> {
+        let body = tool.map(ToolTable::body).unwrap_or_default();
+        let joined = scene.map(|scene| ToolScene::new(robot, &spindle.flange_from_tool, scene, path, body)).transpose();
+        let tool = joined.map_err(|error| at.error(error.to_string(), "a tool with room around it").found_if(None))?;
+        let default = SegmentMoves::default();
+        Ok(SegmentMoves { retract: self.retract_mm.map_or(default.retract, Quantity::si), tool: tool.map(Arc::new) })
     }
 }
 

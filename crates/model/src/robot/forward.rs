@@ -59,9 +59,10 @@ impl<T: Scalar> Frames<T> {
 }
 
 impl Robot {
-    /// The frames of the six rows in the base frame for joint angles `theta` in rad, each fixed to its link.
+    /// The frames of the six rows in base coordinates, in those of the cell for an arm that is mounted, for joint angles `theta` in
+    /// rad, each fixed to its link.
     pub fn link_frames(&self, theta: &[f64; 6]) -> [Pose<f64>; 6] {
-        let mut pose = Pose::identity();
+        let mut pose = self.cell_from_base();
         std::array::from_fn(|j| {
             let row = &self.rows()[j];
             let (sine, cosine) = libm::sincos(theta[j]);
@@ -82,10 +83,13 @@ mod tests {
     use super::super::testing::{kr270, odd_arms};
     use super::*;
     use proptest::prelude::*;
+    use stead_numerics::rotation::rotation_from_zyx;
 
     #[test]
     fn the_frames_of_links_are_those_of_the_joints() {
-        for robot in odd_arms().iter().chain([&kr270()]) {
+        let mount = Pose { rotation: rotation_from_zyx([0.4, -1.1, 2.0]), translation: Vector3::new(0.3, -0.7, 1.9) };
+        let arms = || odd_arms().into_iter().chain([kr270()]);
+        for robot in &arms().chain(arms().map(|arm| arm.mounted(&mount))).collect::<Vec<_>>() {
             let theta = [0.3, -0.4, 0.7, 1.1, -0.9, 2.0];
             let (links, frames) = (robot.link_frames(&theta), Frames::new(robot, &theta));
             for j in 0..6 {

@@ -4,6 +4,7 @@ use crate::criterion::Criterion;
 use crate::feed::CutFeed;
 use crate::outcome::{CANCELLATION, Cycle, Plan};
 use crate::problem::Problem;
+use crate::way::{ShortLine, Way};
 use stead_model::plausibility;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
@@ -58,22 +59,54 @@ pub(super) fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
-/// That moves between segments have no free way, where they hit.
-pub(super) fn blocked_moves(problem: &Problem, cycle: &Cycle) -> Option<Warning> {
-    let scene = problem.scene.as_deref()?;
-    let blocked: Vec<String> = cycle
-        .transfers
-        .iter()
-        .filter_map(|transfer| {
-            let pair = scene.pair(transfer.way.as_ref()?.blocked_by?)?;
-            Some(format!("after segment {} ({pair})", transfer.after_segment))
-        })
-        .collect();
-    (!blocked.is_empty()).then(|| {
-        let moves = blocked.join(", ");
-        Warning::new(
-            "blocked-move",
-            format!("no free way was found for the move {moves}: its time is that of the straight move"),
-        )
-    })
+/// Moves between segments that have no free way, and lines into and out of the cut that are shorter than they should be, of plans with
+/// their names.
+pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
+    let ways = |plan: &(&str, &Cycle)| {
+        let found =
+            plan.1.transfers.iter().filter_map(|transfer| Some((transfer.after_segment, transfer.way.clone()?)));
+        found.map(|found| (plan.0.to_owned(), found)).collect::<Vec<_>>()
+    };
+    let all: Vec<(String, (usize, Way))> = plans.iter().flat_map(ways).collect();
+    let blocked = all.iter().filter_map(|(plan, (segment, way))| {
+        let names = way.blocked_by.as_ref()?;
+        Some(format!("{plan} after segment {segment} ({} and {})", names[0], names[1]))
+    });
+    let short = all.iter().flat_map(|(plan, (segment, way))| {
+        let [out, into] = &way.short_lines;
+        let line = |line: &ShortLine, words: String| {
+            let [length, wanted] = [line.length, line.wanted].map(|length| figures(length * 1e3));
+            format!("{plan} {words}: {length} of {wanted} mm, since {}", line.end)
+        };
+        let out = out.as_ref().map(|short| line(short, format!("out of segment {segment}")));
+        let into = into.as_ref().map(|short| line(short, format!("into segment {}", segment + 1)));
+        out.into_iter().chain(into)
+    });
+    let (blocked, short): (Vec<String>, Vec<String>) = (blocked.collect(), short.collect());
+    let blocked = (!blocked.is_empty()).then(|| {
+        let text = format!(
+            "NOT FREE: no free way between segments was found for {}; the time stated is that of the straight joint move",
+            listed(&blocked, ", ")
+        );
+        Warning::new("blocked-move", text)
+    });
+    let short = (!short.is_empty()).then(|| {
+        let text = format!(
+            "the tool cannot be drawn out of the cut, or go in again, along its axis as far as transfer.retract_mm states: {}",
+            listed(&short, "; ")
+        );
+        Warning::new("short-line", text)
+    });
+    blocked.into_iter().chain(short).collect()
+}
+
+/// Of many things the first are listed.
+const LISTED: usize = 6;
+
+fn listed(all: &[String], separator: &str) -> String {
+    let mut text = all[..all.len().min(LISTED)].join(separator);
+    if all.len() > LISTED {
+        text.push_str(&format!("{separator}and {} more", all.len() - LISTED));
+    }
+    text
 }

@@ -74,7 +74,8 @@ pub fn score(
     let cancelled = cancellation(problem, best.objective);
     let plan = detailed(problem, placement, &best.plans);
     let cycles = [&best.plans, &worst].map(|plans| cycle(problem, placement, transfer, plans));
-    let warnings = cancelled.into_iter().chain(notes::blocked_moves(problem, &cycles[0])).collect();
+    let warnings =
+        cancelled.into_iter().chain(notes::moves(&[("best plan", &cycles[0]), ("worst plan", &cycles[1])])).collect();
     Ok(Score {
         placement: *placement,
         setup: problem.setup.clone(),

@@ -2,7 +2,7 @@
 //!
 //! A plan is made, its states are looked at, those that hit are forbidden with their neighbours in beta that hit too, and the plan
 //! is made again until nothing hits. A plan over fewer states is never better, so the first one that is free is the best free one of
-//! its grid. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
+//! its grid. Lines into the cut and out of it between segments count too, as far as there are states with whole ones. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
 
 use super::joint_turns::SegmentChoice;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, kinds_left, off_grid};
@@ -10,8 +10,10 @@ use crate::candidate::Objective;
 use crate::collision::PlanHit;
 use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
+use crate::way::{AtPoint, Space, line_ends, whole_lines};
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::{PairKind, Proximity};
+use stead_model::robot::angles::wrap;
 use stead_model::robot::{Posture, PostureClass};
 
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
@@ -48,34 +50,46 @@ pub(crate) fn forbid(
 }
 
 /// A plan with beta taken off the grid ([`off_grid::refine`]; one of infinite cost only says where, and may stay so). Where it would hit
-/// at some points, the states of these are looked at one by one, at last those of all.
+/// at some points, the states of these are looked at one by one, at last those of all; lines into and out of the cut that are whole stay
+/// so (`lines`).
 pub(crate) fn settled_among_free(
     problem: &Problem,
     placement: &Placement,
     sense: Sense,
-    spacing: off_grid::Spacing,
+    (spacing, lines): (off_grid::Spacing, [bool; 2]),
     plan: &SegmentPlan,
 ) -> SegmentPlan {
-    let mut watched = vec![false; plan.points.len()];
-    for _ in 0..WATCHES {
+    let kept = |place: usize, is_watched: bool| off_grid::Watch {
+        collisions: is_watched,
+        line: is_watched && ((place == 0 && lines[0]) || (place + 1 == plan.points.len() && lines[1])),
+    };
+    let refined = |watched: &[bool]| {
+        let watched: Vec<_> = watched.iter().enumerate().map(|(place, watch)| kept(place, *watch)).collect();
         let mut refined = plan.clone();
         off_grid::refine(problem, placement, sense, spacing, &watched, &mut refined);
-        let hits = match refined.cost.is_finite() {
-            true => problem.plan_hits(placement, &refined, false),
-            false => Vec::new(),
-        };
-        if hits.is_empty() {
+        refined
+    };
+    let mut watched = vec![false; plan.points.len()];
+    for _ in 0..WATCHES {
+        let refined = refined(&watched);
+        let mut places: Vec<usize> = Vec::new();
+        if refined.cost.is_finite() {
+            let hits = problem.plan_hits(placement, &refined, false);
+            places.extend(hits.iter().map(|hit| hit.point - plan.points.start));
+            let whole = whole_lines(problem, placement, &refined);
+            places.extend((lines[0] && !whole[0]).then_some(0));
+            places.extend((lines[1] && !whole[1]).then_some(watched.len() - 1));
+        }
+        if places.is_empty() {
             return refined;
         }
         // What hits at one point mostly hits at the next.
-        for place in hits.iter().map(|hit| hit.point - plan.points.start) {
+        for place in places {
             let last = (place + 2).min(watched.len());
             watched[place.saturating_sub(1)..last].fill(true);
         }
     }
-    let mut refined = plan.clone();
-    off_grid::refine(problem, placement, sense, spacing, &vec![true; watched.len()], &mut refined);
-    refined
+    refined(&vec![true; watched.len()])
 }
 
 impl Planner<'_> {
@@ -99,12 +113,28 @@ impl Planner<'_> {
             choices = vec![Vec::new(); all.len()];
         }
         let mut collisions = Collisions::new();
-        let mut asked = all;
+        let mut asked = all.clone();
+        // Ends of segments, by their points, at which no state of a plan has a whole line, and those at which some were forbidden for that.
+        let (mut waived, mut bound) = (BTreeSet::new(), BTreeSet::new());
         // Plans in which nothing hits, as far as they were looked at.
         let mut free: Vec<Option<SegmentPlan>> = vec![None; choices.len()];
         for _ in 0..MAX_ROUNDS {
-            let found =
-                plan(workspace, &asked).map_err(|none| NoFeasiblePlan { collisions: collisions.clone(), ..none })?;
+            let found = match plan(workspace, &asked) {
+                Ok(found) => found,
+                Err(none) => {
+                    let lines = self.lines_of(&none, &bound);
+                    if lines.is_empty() {
+                        return Err(NoFeasiblePlan { collisions, ..none });
+                    }
+                    // Without a state that has its whole line, the segment is planned as if it needed none.
+                    bound.clear();
+                    waived.extend(lines);
+                    workspace.forbidden.clear();
+                    free.fill(None);
+                    asked.clone_from(&all);
+                    continue;
+                }
+            };
             if !has_scene {
                 return Ok(joint_turns::select_joint_paths(self.problem, sense, found));
             }
@@ -121,7 +151,12 @@ impl Planner<'_> {
                     collisions.entry(hit.pair).or_default().insert(hit.point);
                     self.forbid_hit(placement, plan, hit, &mut workspace.forbidden);
                 }
-                if hits.is_empty() {
+                let lines = match hits.is_empty() && self.checks_motions {
+                    true => self.forbid_short_lines(placement, plan, &waived, &mut workspace.forbidden),
+                    false => Vec::new(),
+                };
+                bound.extend(&lines);
+                if hits.is_empty() && lines.is_empty() {
                     free[segment] = Some(plan.clone());
                 } else {
                     asked.push(segment);
@@ -168,7 +203,11 @@ impl Planner<'_> {
     pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
         let (problem, spacing) = (self.problem, self.spacing);
         if problem.plan_hits(placement, plan, false).is_empty() {
-            *plan = settled_among_free(problem, placement, sense, spacing, plan);
+            let lines = match self.checks_motions {
+                true => whole_lines(problem, placement, plan),
+                false => [false; 2],
+            };
+            *plan = settled_among_free(problem, placement, sense, (spacing, lines), plan);
         }
     }
 
@@ -218,28 +257,74 @@ impl Planner<'_> {
         self.problem.plan_hits(placement, plan, with_motions)
     }
 
+    /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
+    fn lines_of(&self, none: &NoFeasiblePlan, bound: &BTreeSet<usize>) -> Vec<usize> {
+        let path = self.problem.task.path();
+        let blocked = none.blocked_points.iter().map(|point| path.segment_of(*point));
+        let failed: BTreeSet<usize> = blocked.chain(none.broken_segments.iter().map(|(segment, _)| *segment)).collect();
+        bound.iter().copied().filter(|point| failed.contains(&path.segment_of(*point))).collect()
+    }
+
+    /// Forbids the states of the grid next to the ends of a plan whose lines into or out of the cut are short, but for ends that are
+    /// waived: the points of these ends.
+    fn forbid_short_lines(
+        &self,
+        placement: &Placement,
+        plan: &SegmentPlan,
+        waived: &BTreeSet<usize>,
+        forbidden: &mut StateSet,
+    ) -> Vec<usize> {
+        let problem = self.problem;
+        let Some(space) = Space::new(problem, placement) else { return Vec::new() };
+        let is_short = |at: AtPoint| space.line_end(at, problem.segment_moves.retract).is_some();
+        let ends = line_ends(problem, plan).into_iter().flatten();
+        let short: Vec<AtPoint> = ends.filter(|end| !waived.contains(&end.point) && is_short(*end)).collect();
+        for end in &short {
+            let hits = |k: usize| {
+                let beta = self.grid.beta(k);
+                let joints = problem.robot.inverse(&problem.base_from_flange(end.point, placement, beta), plan.posture);
+                let turned = |found: [f64; 6]| std::array::from_fn(|j| end.joints[j] + wrap(found[j] - end.joints[j]));
+                joints.is_ok_and(|found| is_short(AtPoint { beta, joints: turned(found), ..*end }))
+            };
+            self.forbid_near((end.point, plan.posture.class()), end.beta, hits, forbidden);
+        }
+        short.into_iter().map(|end| end.point).collect()
+    }
+
     /// Forbids the states of the grid next to one of a plan that hits.
     fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut StateSet) {
-        let count = self.grid.beta_count;
         let place = hit.point - plan.points.start;
-        let class = plan.posture.class();
         // Of a motion that hits, the state at its end; once that is forbidden, the one at its start.
         for place in if hit.is_between { vec![place, place - 1] } else { vec![place] } {
             let point = plan.points.start + place;
-            let share = (plan.betas[place] - self.grid.beta(0)) / self.grid.beta_step();
-            let nearest = (share.round() as i64).rem_euclid(count as i64) as usize;
-            let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
-            for beta in [nearest, other] {
-                if !forbidden.contains(point, class, beta) {
-                    let (kinds, mut known) = (kinds_left(self.tool_hits.as_deref()), Proximity::default());
-                    let mut hits = |k| {
-                        let state = (point, self.grid.beta(k));
-                        self.problem.next_hit(state, placement, plan.posture, kinds, &mut known).is_some()
-                    };
-                    forbid((point, class), (beta, count, 1), &mut hits, forbidden);
-                    return;
-                }
+            let (kinds, mut known) = (kinds_left(self.tool_hits.as_deref()), Proximity::default());
+            let hits = |k| {
+                let state = (point, self.grid.beta(k));
+                self.problem.next_hit(state, placement, plan.posture, kinds, &mut known).is_some()
+            };
+            if self.forbid_near((point, plan.posture.class()), plan.betas[place], hits, forbidden) {
+                return;
             }
         }
+    }
+
+    /// Forbids the state of the grid next to a beta (rad), or where that is forbidden the one on its other side, with its neighbours as far
+    /// as they hit too; whether one of the two was not forbidden.
+    fn forbid_near(
+        &self,
+        (point, class): (usize, PostureClass),
+        beta: f64,
+        mut hits: impl FnMut(usize) -> bool,
+        forbidden: &mut StateSet,
+    ) -> bool {
+        let count = self.grid.beta_count;
+        let share = (beta - self.grid.beta(0)) / self.grid.beta_step();
+        let nearest = (share.round() as i64).rem_euclid(count as i64) as usize;
+        let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
+        let fresh = [nearest, other].into_iter().find(|beta| !forbidden.contains(point, class, *beta));
+        if let Some(beta) = fresh {
+            forbid((point, class), (beta, count, 1), &mut hits, forbidden);
+        }
+        fresh.is_some()
     }
 }

@@ -6,10 +6,12 @@
 
 use super::super::evaluate::point_evaluator::PointEvaluator;
 use super::super::problem::{Placement, Problem, Redundancy};
+use super::super::way::{AtPoint, Space};
 use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
 use super::{SegmentPlan, Sense};
 use crate::constraints::joint_steps_hold;
 use rayon::prelude::*;
+use stead_model::robot::angles::wrap;
 
 /// Values of beta at each point of a level.
 const VALUES: usize = 5;
@@ -71,17 +73,26 @@ struct Node {
     from: usize,
 }
 
+/// What is looked at in the states of a path point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Watch {
+    /// Whether shapes keep apart.
+    pub collisions: bool,
+    /// Whether the line along the tool axis, out of the cut or into it, has its whole length.
+    pub line: bool,
+}
+
 /// Refines the plan of one segment for the workpiece at a placement. Returns whether it got better.
 ///
 /// The plan given need not be one for this placement exactly: with an infinite cost, the betas of `plan` are only where the grid
 /// is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and false is returned.
-/// Nothing hits in the states at the points that are `watched` (one entry for each point of the plan).
+/// In the states at the points of the plan holds what is `watched` there.
 pub fn refine(
     problem: &Problem,
     placement: &Placement,
     sense: Sense,
     range: Spacing,
-    watched: &[bool],
+    watched: &[Watch],
     plan: &mut SegmentPlan,
 ) -> bool {
     let first = plan.points.start;
@@ -89,8 +100,18 @@ pub fn refine(
         plan.points.clone().map(|point| PointEvaluator::new(problem, point, placement)).collect();
     let allowed = |place: usize, beta, plan: &SegmentPlan| {
         let state = allowed(&at[place], beta, plan)?;
-        let is_free = || problem.state_hit(first + place, placement, &state.joints).is_none();
-        (!watched[place] || is_free()).then_some(state)
+        let (point, joints) = (first + place, state.joints);
+        let is_free = || problem.state_hit(point, placement, &joints).is_none();
+        let is_whole = || {
+            // In the turns of the plan.
+            let near = &plan.joints[place];
+            let joints = std::array::from_fn(|j| near[j] + wrap(joints[j] - near[j]));
+            let at = AtPoint { point, beta, posture: plan.posture, joints };
+            Space::new(problem, placement)
+                .is_none_or(|space| space.line_end(at, problem.segment_moves.retract).is_none())
+        };
+        let Watch { collisions, line } = watched[place];
+        ((!collisions || is_free()) && (!line || is_whole())).then_some(state)
     };
     let mut better = false;
     let mut spacing = range.first;

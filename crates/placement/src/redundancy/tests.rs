@@ -217,7 +217,8 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
         let mut plans = planner.plan(&placement, sense, None, &mut planner.workspace()).unwrap();
         let before: f64 = plans.iter().map(|p| p.cost).sum();
         for plan in &mut plans {
-            let (full, unwatched) = (off_grid::Spacing::full(&problem.redundancy), vec![false; plan.points.len()]);
+            let (full, unwatched) =
+                (off_grid::Spacing::full(&problem.redundancy), vec![off_grid::Watch::default(); plan.points.len()]);
             off_grid::refine(&problem, &placement, sense, full, &unwatched, plan);
             let replayed = off_grid::replay(&problem, &placement, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);

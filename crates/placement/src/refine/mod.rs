@@ -36,6 +36,7 @@ use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
 use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid, settled_among_free};
 use super::sense::Sense;
+use super::way::whole_lines;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
@@ -256,7 +257,8 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
     for plan in &solution.plans {
         let betas = betas[plan.points.clone()].to_vec();
         let shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
-        let shifted = settled_among_free(problem, &placement, Sense::Min, SETTLING, &shifted);
+        let lines = whole_lines(problem, &solution.placement, plan);
+        let shifted = settled_among_free(problem, &placement, Sense::Min, (SETTLING, lines), &shifted);
         if !shifted.cost.is_finite() {
             return None;
         }

@@ -10,7 +10,7 @@ use crate::document::{Timing, cut_feed, deflection_mm, placement, placement_exac
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
-use stead_cell::Scene;
+
 use stead_format::input::InputFile;
 use stead_placement::collision::PlanClearance;
 use stead_placement::criterion::{Criterion, Direction};
@@ -18,17 +18,19 @@ use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
     CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement, SetBasin,
-    SetOutcome, SubsetAccuracy, Transfer,
+    SetOutcome, SubsetAccuracy,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Problem, Redundancy};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
+use stead_placement::transfer::Transfer;
+use stead_placement::way::ShortLine;
 
 /// What `stead place --json` prints.
-pub fn place_json(problem: &Problem, outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
+pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
     let mut entries = common(outcome, context, true);
-    entries.insert("cases".to_owned(), cases(outcome, true, problem.scene.as_deref()));
+    entries.insert("cases".to_owned(), cases(outcome, true));
     entries.insert("threads".to_owned(), json!(timing.threads));
     entries.insert("wall_s".to_owned(), number(Unit::TIME_S, timing.wall));
     let rate = if timing.wall > 0.0 { json!((outcome.states as f64 / timing.wall).round()) } else { Value::Null };
@@ -49,7 +51,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("criterion", criterion(problem)),
         ("redundancy", redundancy(problem)),
         ("task", task(problem)),
-        ("cases", cases(outcome, false, problem.scene.as_deref())),
+        ("cases", cases(outcome, false)),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
     entries.extend(tried(problem, outcome).map(|tried| ("setups".to_owned(), tried)));
@@ -135,11 +137,11 @@ fn lookup_summary(lookup_summary: &Result<LookupSummary, Unsupported>) -> Value 
     }
 }
 
-fn cases(outcome: &Outcome, with_plans: bool, scene: Option<&Scene>) -> Value {
-    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans, scene)).collect()
+fn cases(outcome: &Outcome, with_plans: bool) -> Value {
+    outcome.cases.all().into_iter().map(|entry| case(entry, with_plans)).collect()
 }
 
-fn case(case: &Case, with_plan: bool, scene: Option<&Scene>) -> Value {
+fn case(case: &Case, with_plan: bool) -> Value {
     let mut value = json!({
         "case": case.number(),
         "placement": placement(&case.placement),
@@ -156,7 +158,7 @@ fn case(case: &Case, with_plan: bool, scene: Option<&Scene>) -> Value {
         "feed": cut_feed(&case.cycle.feed),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
-        "transfers": case.cycle.transfers.iter().map(|entry| transfer(entry, scene)).collect::<Vec<_>>(),
+        "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
     });
     if let Some(clearance) = &case.plan.clearance {
         value["clearance"] = plan_clearance(clearance);
@@ -252,21 +254,31 @@ fn plan_point(point: &PlanPoint) -> Value {
     value
 }
 
-fn transfer(transfer: &Transfer, scene: Option<&Scene>) -> Value {
+fn transfer(transfer: &Transfer) -> Value {
     let mut value = json!({
         "after_segment": transfer.after_segment,
         "duration_s": optional(Unit::TIME_S, transfer.duration),
         "travel_deg": number(Unit::ANGLE_DEG, transfer.travel),
     });
     if let Some(way) = &transfer.way {
-        let pair = way.blocked_by.and_then(|pair| scene?.pair(pair));
-        value["blocked_by"] = json!(pair.map(ToString::to_string));
+        value["blocked_by"] = json!(way.blocked_by.as_deref().map(|[a, b]| format!("{a} and {b}")));
+        value["short_lines"] =
+            way.short_lines.iter().map(|line| line.as_ref().map_or(Value::Null, short_line)).collect();
         value["joints_deg"] =
             way.joints.iter().map(|joints| json!(joints.map(|angle| number(Unit::ANGLE_DEG, angle)))).collect();
         value["retracts"] = json!(way.along_axis[0]);
         value["approaches"] = json!(way.along_axis[1]);
     }
     value
+}
+
+/// A line along the tool axis that is not as long as it should be.
+fn short_line(line: &ShortLine) -> Value {
+    json!({
+        "length_mm": number(Unit::PLACE_MM, line.length),
+        "wanted_mm": number(Unit::PLACE_MM, line.wanted),
+        "since": line.end.to_string(),
+    })
 }
 
 /// The least room at the points of a plan.

@@ -206,13 +206,13 @@ fn segment(path: &ToolPath, point: usize) -> String {
 
 /// `transfers.csv`: the joint moves between segments. The duration is empty where a joint speed is not known. Among shapes of a cell,
 /// `moves` is the number of straight moves that keep free, retraction and approach among them, and `blocked_by` the pair that hits where
-/// no free way was found.
+/// no free way was found; `line_out_mm` and `line_into_mm` are lengths of lines out of the cut and into it that are shorter than asked for.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn transfers(cases: &Cases, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
     let mut header = vec!["case", "after_segment", "duration_s", "travel_deg"];
-    header.extend(scene.iter().flat_map(|_| ["moves", "blocked_by"]));
+    header.extend(scene.iter().flat_map(|_| ["moves", "blocked_by", "line_out_mm", "line_into_mm"]));
     let rows = cases.all().into_iter().flat_map(|case| {
         case.cycle.transfers.iter().map(move |transfer| {
             let mut row = vec![
@@ -221,11 +221,16 @@ pub fn transfers(cases: &Cases, scene: Option<&Scene>) -> Result<Vec<u8>, Report
                 Unit::TIME_S.text_or_empty(transfer.duration),
                 Unit::ANGLE_DEG.text(transfer.travel),
             ];
-            row.extend(scene.iter().flat_map(|scene| {
+            row.extend(scene.iter().flat_map(|_| {
                 let way = transfer.way.as_ref();
-                let pair = way.and_then(|way| scene.pair(way.blocked_by?));
+                let pair = way.and_then(|way| way.blocked_by.as_deref());
                 let moves = way.map_or(1, |way| way.joints.len().saturating_sub(1));
-                [moves.to_string(), pair.map(ToString::to_string).unwrap_or_default()]
+                let pair = pair.map_or_else(String::new, |[a, b]| format!("{a} and {b}"));
+                let line = |end: usize| {
+                    let short = way.and_then(|way| way.short_lines[end].as_ref());
+                    Unit::PLACE_MM.text_or_empty(short.map(|line| line.length))
+                };
+                [moves.to_string(), pair, line(0), line(1)]
             }));
             row
         })

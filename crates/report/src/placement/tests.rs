@@ -94,10 +94,10 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
         assert_eq!(cut, without);
     }
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(problem(), &known, &context(), &timing);
+    let document = place_json(&known, &context(), &timing);
     assert_eq!(document["cases"][3]["mean_std_mm"], 0.004);
     assert_eq!(document["cases"][0]["plan"][9]["std_mm"], 0.02);
-    let bare = place_json(problem(), outcome(), &context(), &timing);
+    let bare = place_json(outcome(), &context(), &timing);
     assert!(bare["cases"][3].get("mean_std_mm").is_none() && bare["cases"][0]["plan"][9].get("std_mm").is_none());
     assert!(summary_json(problem(), outcome(), &context())["criterion"].get("confidence").is_none());
     let text = placement_text(problem(), &known, &context());
@@ -136,7 +136,7 @@ fn the_other_tables_have_their_columns() {
 #[test]
 fn json_has_the_keys_of_the_contract() {
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(problem(), outcome(), &context(), &timing);
+    let document = place_json(outcome(), &context(), &timing);
     for key in [
         "evaluations",
         "states",

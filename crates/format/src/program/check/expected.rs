@@ -9,7 +9,7 @@ use std::path::Path;
 use stead_model::robot::Pose;
 use stead_model::task::PathPoint;
 use stead_placement::problem::{Placement, Problem};
-use stead_placement::transfer::Way;
+use stead_placement::way::Way;
 
 /// One move as it has to be.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use super::{MoveHit, MovePlace};
 use crate::program::ways::Ways;
 use stead_model::robot::Controller;
 use stead_placement::problem::{Placement, Problem};
-use stead_placement::transfer::Space;
+use stead_placement::way::Space;
 
 /// The moves that hit: those of no free way, and joint moves of ways, straight between the angles of the program.
 pub(super) fn hits(
@@ -17,7 +17,7 @@ pub(super) fn hits(
     written: &[Written],
     expected: &[Expected],
 ) -> Vec<MoveHit> {
-    let Some((space, scene)) = Space::new(problem, placement).zip(problem.scene.as_deref()) else { return Vec::new() };
+    let Some(space) = Space::new(problem, placement) else { return Vec::new() };
     let controller = problem.robot.controller();
     let joints = |place: usize| joints_of(controller, &written[place], &expected[place]);
     let count = written.len().min(expected.len());
@@ -26,17 +26,20 @@ pub(super) fn hits(
         let is_first = place.checked_sub(1).is_none_or(|before| expected[before].segment != wanted.segment);
         let is_way = ways.free_to(wanted.segment - 1).is_some();
         if is_first && !is_way {
-            return ways.hit_before(wanted.segment - 1);
+            return ways.hit_before(wanted.segment - 1).cloned();
         }
         if is_way && wanted.is_joint {
             let before = place.checked_sub(1)?;
             return space.hit((&joints(before), expected[before].point), (&joints(place), wanted.point));
         }
-        ways.ends_hit[1].filter(|_| place + 1 == expected.len())
+        ways.ends_hit[1].clone().filter(|_| place + 1 == expected.len())
     };
     let hit = |place: usize| {
-        let pair = scene.pair(pair_at(place)?)?;
-        Some(MoveHit { at: MovePlace::of(&written[place], &expected[place]), pair: pair.to_string() })
+        let names = pair_at(place)?;
+        Some(MoveHit {
+            at: MovePlace::of(&written[place], &expected[place]),
+            pair: format!("{} and {}", names[0], names[1]),
+        })
     };
     (0..count).filter_map(hit).collect()
 }

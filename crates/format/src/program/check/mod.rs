@@ -162,7 +162,7 @@ pub fn check(
         ProgramFormat::Csv => table::moves(&source)?,
     };
     inputs.push(input_file("program", program.to_string_lossy().replace('\\', "/"), source.text.as_bytes()));
-    let ways = Ways::new(&problem, &run.transfer, &plan, approach);
+    let ways = Ways::new(&problem, &plan, approach);
     let expected = expected::moves(&problem, &plan, &ways, corrected.map(|path| path.file), approach * 1e3)?;
     let robot = &problem.robot;
     let lying = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);

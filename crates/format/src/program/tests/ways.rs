@@ -30,8 +30,12 @@ fn programs_among_surroundings_are_read_back_with_what_hits() {
             let at = |point: usize| if axes.is_empty() { Vec::new() } else { of_axes(point) };
             let bench = Bench::with(name, &format!("{SPINDLE}{zone}{axes}"), at);
             for (format, folder) in [(format, "maker"), (ProgramFormat::Csv, "table")] {
-                let plain = ExportOptions { format, ..bench.options() };
-                let asked = if axes.is_empty() { plain } else { options(&bench, format) };
+                let plain = ExportOptions { format, allow_blocked_moves: true, ..bench.options() };
+                let asked = if axes.is_empty() {
+                    plain
+                } else {
+                    ExportOptions { allow_blocked_moves: true, ..options(&bench, format) }
+                };
                 let program = bench.export(&asked).unwrap();
                 let is_said = program.files.iter().any(|file| file.text.contains("collisions were not checked"));
                 let is_around = !zone.is_empty();
