@@ -4,8 +4,8 @@ use crate::{Error, Run, Warning};
 use serde_json::Value;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use stead_format::program::check::{self, ANGLE_DEG, POSITION_MM, ProgramCheck};
-use stead_format::program::{CorrectedPath, ExportError, ExportOptions, OperatorFrame, Program, ProgramError};
+use stead_format::program::check::{self, ANGLE_DEG, POSITION_MM, ProgramCheck, ReadBackOptions};
+use stead_format::program::{ExportError, ExportOptions, OperatorFrame, Program, ProgramError};
 use stead_report::program::{program_check_json, program_check_text, program_json, program_text};
 
 impl Run {
@@ -31,8 +31,8 @@ impl Run {
         Ok(ExportedProgram { program })
     }
 
-    /// Reads a program back (its main file) and compares every pose in it with the plan. `corrected` and `approach` (m) are those of
-    /// the export. Nothing is shared with what writes programs.
+    /// Reads a program back (its main file) and compares every pose, feed and blending in it with the plan. The options are those of the
+    /// export. Nothing is shared with what writes programs.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line for a program that is not understood, or a plan that is not of this run.
@@ -40,10 +40,9 @@ impl Run {
         &self,
         plan: impl AsRef<Path>,
         program: impl AsRef<Path>,
-        corrected: Option<CorrectedPath<'_>>,
-        approach: f64,
+        options: &ReadBackOptions<'_>,
     ) -> Result<CheckedProgram, Error> {
-        let check = check::check(&self.run, plan.as_ref(), program.as_ref(), corrected, approach)?;
+        let check = check::check(&self.run, plan.as_ref(), program.as_ref(), options)?;
         Ok(CheckedProgram { check })
     }
 }
@@ -78,7 +77,7 @@ impl ExportedProgram {
         self.program.files.iter().map(|file| (file.name.as_str(), file.text.as_str()))
     }
 
-    /// The frames to enter at the controller, where the robot file has its root: workpiece, then tool.
+    /// The frames to enter at the controller, where the robot file has its root: workpiece, tool, and the table where the program is coupled to one.
     pub fn frames(&self) -> &[OperatorFrame] {
         &self.program.frames
     }
@@ -149,7 +148,7 @@ impl CheckedProgram {
         }
         Err(Error::Failed(format!(
             "{file}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
-             plan, checked with the --corrected and --approach-mm that it was exported with"
+             plan, checked with the --corrected, --approach-mm and --blend-mm that it was exported with"
         )))
     }
 

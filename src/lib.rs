@@ -85,7 +85,7 @@ pub use stead_format::catalogue::ShippedArm;
 pub use stead_format::field::{FieldOverride, FieldPath};
 pub use stead_format::init::{StarterSet, init, init_run};
 pub use stead_format::input::InputError;
-pub use stead_format::program::check::{Largest, MovePlace, ProgramCheck};
+pub use stead_format::program::check::{Largest, MovePlace, ProgramCheck, ReadBackOptions};
 pub use stead_format::program::{
     CorrectedPath, ExportOptions, OperatorFrame, Program, ProgramFile, ProgramFormat, Rotation,
 };

@@ -132,14 +132,17 @@ impl Run {
     }
 
     /// The same run with part and external axes set up as for case 1 (the best) or 3 (the worst) in a results folder that `stead place` has
-    /// written from the same files; with the exact placement of the case.
+    /// written from the same files; with the exact placement of the case. A search that was interrupted is a note of the run.
     ///
     /// # Errors
     /// [`Error::Input`] for a folder that is no such result, or one of other files.
     pub fn set_up_as_in(mut self, results: impl AsRef<Path>, case: u8) -> Result<(Self, Placement), Error> {
-        let (placement, setup) = format::read_setup_of(results.as_ref(), case, &self.run.inputs, &self.run.problem)?;
+        let (placement, setup, note) =
+            format::read_setup_of(results.as_ref(), case, &self.run.inputs, &self.run.problem)?;
         let problem = self.run.problem.in_setup(&setup).into_owned();
-        Arc::make_mut(&mut self.run).problem = problem;
+        let run = Arc::make_mut(&mut self.run);
+        run.problem = problem;
+        run.notes.extend(note);
         self.is_set_up = true;
         Ok((self, placement))
     }
@@ -323,7 +326,7 @@ impl Placements {
         let Some(certificate) = &self.certificate else { return Ok(Vec::new()) };
         let problem = &self.run.problem;
         let files = placement_files(problem, &self.outcome, &self.context)?;
-        Ok(write_certificate(folder, problem, certificate, &self.run.inputs, files)?)
+        Ok(write_certificate(folder, problem, certificate, &self.run.inputs, (files, self.outcome.interrupted))?)
     }
 
     /// How far from the best and the worst possible these placements are, where that was asked for.

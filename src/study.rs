@@ -135,7 +135,8 @@ impl Study {
                 allowed: "the folder of a study that is done (stead study run)".to_owned(),
             }));
         };
-        let analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
+        let mut analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
+        analysis.notes.clone_from(&self.plan.notes);
         let csv = input_file("table", cases::TABLES[0], &table.to_csv()?);
         let inputs = self.plan.study.inputs.iter().cloned().chain([csv]).collect();
         Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs, pages: self.pages(folder) })
@@ -192,6 +193,10 @@ impl Report for StudyReport {
     fn table(&self) -> String {
         study_text(&self.plan.name(), &self.analysis)
     }
+
+    fn notes(&self) -> &[String] {
+        &self.analysis.notes
+    }
 }
 
 result!(StudyReport);
@@ -246,7 +251,7 @@ impl Keeping for StudyFolder<'_> {
         write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;
         if let Some(certificate) = &certificate {
             let files = placement_files(&run.problem, &outcome, &context).map_err(|error| error.to_string())?;
-            write_certificate(&folder, &run.problem, certificate, &run.inputs, files)
+            write_certificate(&folder, &run.problem, certificate, &run.inputs, (files, outcome.interrupted))
                 .map_err(|error| error.to_string())?;
         }
         Ok(())

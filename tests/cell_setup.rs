@@ -41,8 +41,9 @@ fn place(bench: &Bench) -> serde_json::Value {
 }
 
 /// Programs of the best plan in a form, and their check.
-fn assert_exported(bench: &Bench, format: &str, file: &str) {
-    ok(&bench.stead(&["export", RUN, "r/best.csv", "--format", format, "--out", "p/PART", "--approach-mm", "5"]));
+fn assert_exported(bench: &Bench, format: &str, file: &str, more: &[&str]) {
+    let export = ["export", RUN, "r/best.csv", "--format", format, "--out", "p/PART", "--approach-mm", "5"];
+    ok(&bench.stead(&[&export[..], more].concat()));
     let file = format!("p/{file}");
     let checked = bench.stead(&["export", RUN, "r/best.csv", "--check", &file, "--approach-mm", "5"]);
     ok(&checked);
@@ -72,7 +73,7 @@ fn a_robot_on_a_wall_is_placed_exported_and_checked() {
     let found = wall["cases"][0]["mean_mm"].as_f64().unwrap();
     assert!((found / floor - 1.0).abs() < 0.02, "{found} {floor}");
     assert_eq!(wall["cases"][0]["orientation"], "as the robot");
-    assert_exported(&bench, "krl", "PART.src");
+    assert_exported(&bench, "krl", "PART.src", &[]);
     let summary: serde_json::Value = serde_json::from_str(&bench.read("r/summary.json")).unwrap();
     assert_eq!(summary["mount"]["rpy_deg"][0], 90.0);
     let at = ["--x-mm", "0", "--y-mm", "400", "--z-mm", "500", "--yaw-deg", "0"];
@@ -97,9 +98,16 @@ fn axes_are_in_plans_results_and_programs() {
     let again = bench.stead(&["score", RUN, "--placement-of", "r", "--json"]).json();
     let [a, b] = [&document["cases"][0], &again["best"]].map(|entry| entry["mean_mm"].as_f64().unwrap());
     assert!((a - b).abs() < 2e-7, "{a} {b}");
-    assert_exported(&bench, "krl", "PART.src");
-    assert_exported(&bench, "csv", "PART.csv");
+    // The part is on the table: the program has to be coupled to it.
+    let refused =
+        bench.stead(&["export", RUN, "r/best.csv", "--format", "krl", "--out", "p/PART", "--approach-mm", "5"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    refused
+        .assert_says(&["error: --mechanism: is missing, and the workpiece is carried by", "; allowed: the number n"]);
+    assert_exported(&bench, "krl", "PART.src", &["--mechanism", "2"]);
+    assert_exported(&bench, "csv", "PART.csv", &[]);
     let text = bench.read("p/PART_01.src");
+    assert!(text.contains("\n$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,{FRAME: X "), "{text}");
     let line = text.lines().find(|line| line.starts_with("LIN")).unwrap();
     let (before, after) = line.split_once("E1 ").unwrap();
     let (position, behind) = after.split_once(',').unwrap();

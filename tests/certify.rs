@@ -55,7 +55,7 @@ fn a_certificate_is_stated_and_leaves_the_placement_as_it_is() {
     assert_eq!(place(&bench, &[]).code, Some(0));
     let mut plain = bench.tree("out");
     let ended = place(&bench, &["--certify", "1", "--threads", "2"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     let certified = lasting(certificate(&bench));
     assert_holds(&certified, 0.0..=1.0);
     assert_eq!(certified["best"]["status"], "reached");
@@ -95,7 +95,7 @@ fn a_certificate_is_stated_and_leaves_the_placement_as_it_is() {
     let text = bench.read(RUN);
     bench.write(RUN, &format!("{text}\n[certificate]\ngap_percent = 1\n"));
     let ended = place(&bench, &["--threads", "1", "--json"]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     let mut again = lasting(ended.json()["certificate"].clone());
     assert_eq!(again, lasting(certificate(&bench)));
     // The run file is another one.
@@ -143,7 +143,7 @@ fn tables_beyond_the_memory_do_not_cost_the_placement() {
     let ended = place(&bench, &[]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let start = "warning: no certificate: the cell is so large that tables would take ";
-    assert!(ended.stderr.starts_with(start) && ended.stderr.lines().count() == 1, "{}", ended.stderr);
+    assert!(ended.said().starts_with(start) && ended.said().lines().count() == 1, "{}", ended.stderr);
     ended.assert_says(&["at most 0.001 GB are allowed by certificate.memory_gb; the workpiece is placed without one"]);
     let found = certificate(&bench);
     assert_eq!((&found["best"], &found["memory_gb"]), (&Value::Null, &0.001.into()));
@@ -173,8 +173,8 @@ fn what_cannot_be_certified_is_said_and_placed_all_the_same() {
     bench.write("out/open-region.svg", "of an earlier certificate");
     let ended = place(&bench, &["--certify", "1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    assert!(ended.stderr.starts_with("warning: no certificate: scores cover errors of the force"), "{}", ended.stderr);
-    assert_eq!(ended.stderr.lines().count(), 1);
+    assert!(ended.said().starts_with("warning: no certificate: scores cover errors of the force"), "{}", ended.stderr);
+    assert_eq!(ended.said().lines().count(), 1);
     let found = certificate(&bench);
     assert_eq!((&found["best"], &found["worst"]), (&Value::Null, &Value::Null));
     assert!(found["best_reason"].as_str().unwrap().starts_with("scores cover errors of the force"));

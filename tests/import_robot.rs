@@ -42,8 +42,17 @@ fn with_the_stiffness_of_a_shipped_arm_it_is_placed() {
     ended.assert_says(&["note: joint stiffness is that of another arm, KUKA KR270-2", "does not predict millimetres"]);
     bench.replace(RUN, "robots/kuka-kr270-2.toml", "../arm.toml");
     bench.replace(RUN, "z_mm = [-602.0, -214.0]", "z_mm = [73.0, 461.0]");
+    assert!(bench.read("arm.toml").contains("\nstiffness_like = \"KUKA KR270-2\"\n"));
     let placed = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!(placed.code, Some(0), "{}", placed.stderr);
+    // Every result says whose stiffness it is: notes, headlines, summary and page.
+    placed
+        .assert_says(&["(stiffness of KUKA KR270-2): the joint stiffness is borrowed from KUKA KR270-2, not measured"]);
+    let name = placed.stdout.lines().next().unwrap();
+    assert!(name.contains(" (stiffness of KUKA KR270-2): 105 points"), "{name}");
+    for file in ["out/summary.json", "out/report.html"] {
+        assert!(bench.read(file).contains("(stiffness of KUKA KR270-2)"), "{file}");
+    }
 }
 
 #[test]

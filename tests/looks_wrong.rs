@@ -69,7 +69,7 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
         let notes: Vec<&str> =
             document["notes"].as_array().unwrap().iter().map(|note| note.as_str().unwrap()).collect();
         if note.is_empty() {
-            assert_eq!(notes, [""; 0]);
+            assert!(notes.len() == 1 && notes[0].starts_with("collisions were not checked"), "{notes:?}");
         } else {
             assert!(notes.iter().any(|found| found.contains(note)), "{note} in {notes:?}");
             ended.assert_says(&["note: ", note]);

@@ -33,7 +33,7 @@ fn score_has_the_reference_values() {
     let bench = bench();
     let before = bench.tree("");
     let ended = run(&bench, "score", &[&PLACE, &Q4, &["--json"]]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert_eq!(bench.tree(""), before);
     let document = ended.json();
     assert_eq!(document["feasible"], true);
@@ -51,7 +51,7 @@ fn score_has_the_reference_values() {
     }
 
     let table = run(&bench, "score", &[&PLACE, &Q4]);
-    assert_eq!((table.code, table.stderr.as_str()), (Some(0), ""));
+    assert_eq!((table.code, table.said().as_str()), (Some(0), ""));
     for plan in ["best", "worst"] {
         let row = table.stdout.lines().find(|line| line.starts_with(plan)).unwrap();
         let mean = format!("{:.4}", number(&document[plan]["mean_mm"]));
@@ -110,7 +110,7 @@ fn score_out_of_reach_says_which_constraint_fails_where() {
 fn explain_has_the_reference_state() {
     let bench = bench();
     let ended = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40", "--json"]]);
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     let document = ended.json();
     assert_eq!((&document["point"], number(&document["beta_deg"])), (&30.into(), 40.0));
     let postures = document["postures"].as_array().unwrap();
@@ -167,7 +167,7 @@ fn explain_tells_what_each_refused_posture_breaks_and_by_how_much() {
     assert_eq!((refused, unreachable), (2, 4));
 
     let table = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40"]]);
-    assert_eq!((table.code, table.stderr.as_str()), (Some(0), ""));
+    assert_eq!((table.code, table.said().as_str()), (Some(0), ""));
     let rows: Vec<&str> = table.stdout.lines().filter(|l| l.ends_with("allowed") || l.ends_with("refused")).collect();
     assert_eq!(rows.len(), 8);
     assert!(rows[2].ends_with("allowed") && rows[0].ends_with("refused"), "{}", table.stdout);
@@ -194,7 +194,7 @@ fn a_reader_that_has_gone_away_is_no_failure() {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let ended = Ended::from(child.wait_with_output().unwrap());
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn help_and_version_are_no_failures() {
     for command in ["place", "score", "explain"] {
         assert!(help.stdout.lines().any(|line| line.trim_start().starts_with(command)), "{command}");
         let own = bench.stead(&[command, "--help"]);
-        assert_eq!((own.code, own.stderr.as_str()), (Some(0), ""));
+        assert_eq!((own.code, own.said().as_str()), (Some(0), ""));
         assert!(own.stdout.contains("<CONFIG>") && own.stdout.contains("--json"), "{}", own.stdout);
     }
     let nothing = bench.stead(&[]);

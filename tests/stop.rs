@@ -83,7 +83,7 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
     let with = |more: &[&str]| bench.stead(&[&["score", RUN, "--placement-of", "out", "--json"], more].concat());
     for (case, more) in [(0, &[][..]), (0, &["--case", "1"]), (2, &["--case", "3"])] {
         let scored = with(more);
-        assert!(scored.stderr.lines().all(|line| line.starts_with("note: the scored part")), "{}", scored.stderr);
+        assert!(scored.said().is_empty(), "{}", scored.stderr);
         assert_eq!(scored.code, Some(0));
         let (scored, case) = (scored.json(), &placed.json()["cases"][case]);
         assert_eq!((&scored["placement_exact"], &scored["interrupted"]), (&case["placement_exact"], &false.into()));
@@ -218,6 +218,49 @@ mod interrupt {
     }
 
     #[test]
+    fn finished_results_are_not_replaced_by_those_of_an_interrupted_run() {
+        let bench = small();
+        assert_eq!(bench.stead(&["place", RUN, "--out", "out"]).code, Some(0));
+        let finished = bench.tree("out");
+        bench.replace(RUN, "population = 16", "population = 200");
+        bench.replace(RUN, "generations = 1\n", "generations = 2000\n");
+        let again = |more: &[&str]| {
+            let arguments = [&["place", RUN, "--out", "out", "--threads", "2"], more].concat();
+            interrupted(started(&bench, &arguments), Duration::from_millis(1500))
+        };
+        let ended = again(&[]);
+        assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+        ended.assert_says(&[
+            "note: out has finished results and is left as it is; those of this run are in out.interrupted",
+        ]);
+        assert!(ended.stdout.contains("; results in out.interrupted\n"), "{}", ended.stdout);
+        assert_eq!(bench.tree("out"), finished);
+        assert_eq!(json_in(&bench, "out.interrupted/summary.json")["interrupted"], true);
+        assert_eq!(json_in(&bench, "out.interrupted/manifest.json")["results"][0]["interrupted"], true);
+
+        // Whoever goes on from them is told.
+        let said =
+            "is from a run of `stead place` that was interrupted: the best found by then, not the end of the search";
+        let scored = bench.stead(&["score", RUN, "--placement-of", "out.interrupted", "--json"]);
+        assert_eq!(scored.code, Some(0), "{}", scored.stderr);
+        scored.assert_says(&["note: out.interrupted/summary.json ", said]);
+        assert!(scored.json()["notes"].to_string().contains(said));
+        let program = ["export", RUN, "out.interrupted/best.csv", "--format", "csv", "--out", "p/PART"];
+        let exported = bench.stead(&program);
+        assert_eq!(exported.code, Some(0), "{}", exported.stderr);
+        exported.assert_says(&["note: out.interrupted/best.csv ", said]);
+
+        // A second one takes the place of the first, and with --keep-partial that of the finished ones.
+        assert_eq!(again(&[]).code, Some(130));
+        assert_eq!(bench.tree("out"), finished);
+        let ended = again(&["--keep-partial"]);
+        assert!(ended.code == Some(130) && ended.stdout.contains("; results in out\n"), "{}", ended.stdout);
+        assert_eq!(json_in(&bench, "out/summary.json")["interrupted"], true);
+        // Results of an interrupted run are not finished ones.
+        assert!(again(&[]).stdout.contains("; results in out\n"));
+    }
+
+    #[test]
     fn once_with_nothing_found_says_so_too() {
         let bench = Bench::new();
         bench.replace(RUN, "y_mm = [-2240.0, -1640.0]", "y_mm = [-9240.0, -8640.0]");
@@ -283,9 +326,7 @@ mod interrupt {
         let arguments = [&["score", RUN, "--out", "out", "--json"], &place[..]].concat();
         let ended = interrupted(started(&bench, &arguments), Duration::from_millis(400));
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-        let said = ended.stderr.lines().filter(|line| !line.starts_with("note: the scored part"));
-        let said: String = said.map(|line| format!("{line}\n")).collect();
-        assert_eq!(said, format!("{STOPPED}warning: interrupted: the deflection map is left out\n"));
+        assert_eq!(ended.said(), format!("{STOPPED}warning: interrupted: the deflection map is left out\n"));
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");

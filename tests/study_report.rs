@@ -3,6 +3,26 @@
 use crate::study::{STUDY, bench, run};
 
 #[test]
+fn a_study_of_arms_with_borrowed_stiffness_does_not_rank_their_stiffness() {
+    let bench = bench();
+    let text = bench.read(crate::common::RUN);
+    bench.write(crate::common::RUN, &format!("stiffness_like = \"KUKA KR500\"\n{text}"));
+    run(&bench, "out", &[]);
+    let ended = bench.stead(&["study", "report", STUDY, "--out", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for text in [ended.stdout, bench.read("out/study-report.json"), bench.read("out/report.html")] {
+        for part in ["borrowed stiffness: KUKA KR270-2 (stiffness of KUKA KR500)", "does not say how stiff the arm is"]
+        {
+            assert!(text.contains(part), "{part} in {text}");
+        }
+    }
+    bench.replace(crate::common::RUN, "stiffness_like = \"KUKA KR500\"", "stiffness_like = ' '");
+    let wrong = bench.stead(&["check", crate::common::RUN]);
+    assert_eq!(wrong.code, Some(2));
+    wrong.assert_says(&["stiffness_like: is blank", "; allowed: "]);
+}
+
+#[test]
 fn a_study_that_is_done_is_ranked_and_drawn() {
     let bench = bench();
     run(&bench, "out", &["--shard", "1/2"]);

@@ -30,7 +30,7 @@ fn bench(covariance: &str) -> Bench {
 
 fn score(bench: &Bench) -> Value {
     let ended = bench.stead(&[&["score", RUN], &PLACE[..], &["--json"]].concat());
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     ended.json()
 }
 

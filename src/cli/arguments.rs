@@ -132,6 +132,9 @@ pub(super) struct PlaceOptions {
     /// Leave no page for the browser, whatever the run file says
     #[arg(long)]
     pub no_page: bool,
+    /// If it is interrupted, let its results take the place of finished ones, instead of leaving them in <DIR>.interrupted
+    #[arg(long)]
+    pub keep_partial: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -298,6 +301,9 @@ pub(super) struct ScoreOptions {
     /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// If it is interrupted, let its results take the place of finished ones, instead of leaving them in <DIR>.interrupted
+    #[arg(long, requires = "out")]
+    pub keep_partial: bool,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub json: bool,

@@ -5,7 +5,7 @@ use super::{Failure, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
-use stead::{CorrectedPath, Error, ExportOptions, ProgramFormat, Run};
+use stead::{CorrectedPath, Error, ExportOptions, ProgramFormat, ReadBackOptions, Run};
 
 #[derive(Debug, Args)]
 pub(super) struct ExportCommand {
@@ -37,14 +37,20 @@ pub(super) struct ExportCommand {
     /// Most moves in a part
     #[arg(long, value_name = "N", default_value = "5000", allow_hyphen_values = true)]
     pub max_moves: usize,
+    /// KUKA, where an external axis carries the workpiece: number n of that mechanism at the controller, MACHINE_DEF[n]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub mechanism: Option<usize>,
+    /// ABB, where an external axis carries the workpiece: name of that mechanical unit at the controller, as STN1
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub unit: Option<String>,
     /// Statement that starts the spindle, instead of a comment
     #[arg(long, value_name = "TEXT")]
     pub spindle_on: Option<String>,
     /// Statement that stops the spindle, instead of a comment
     #[arg(long, value_name = "TEXT")]
     pub spindle_off: Option<String>,
-    /// Read this program back (its main file) and compare every pose with the plan, instead of writing one
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "blend_mm", "max_moves", "spindle_on", "spindle_off"])]
+    /// Read this program back (its main file) and compare every pose, feed and blending with the plan, instead of writing one
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off"])]
     pub check: Option<PathBuf>,
     /// Print one JSON document instead of a text
     #[arg(long)]
@@ -56,6 +62,7 @@ pub(super) const HELP: &str = "\
 Examples:
   stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
   stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
+  stead export my/table.toml results/table/best.csv --format rapid --unit STN1 --out my/program/TABLE
   stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
   stead export my/run.toml results/run/best.csv --check my/program/PART.src
 
@@ -64,13 +71,17 @@ Files written, none of which may be there yet:
   NAME.mod, NAME_01.mod, ..          rapid, likewise
   NAME.ls, NAME_01.ls, ..            fanuc, likewise
   NAME.csv                           csv: one row for each move
-The frames to enter at the controller are printed. Programs need [controller] and [root] in the robot file; csv does not.
+The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or --unit (rapid).
+Programs need [controller] and [root] in the robot file; csv does not.
 With surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has none is refused, or
-written with --allow-blocked-moves and the move marked NOT FREE. Without, collisions are not checked. Run a program slowly and without a cut first. --check writes nothing.
+written with --allow-blocked-moves and the move marked NOT FREE. Without, collisions are not checked. Run a program slowly and
+without a cut first. --check writes nothing.
 
 Exit codes:
-  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, and no move between segments hits
-  1  a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the plan, or it hits
+  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, feeds and blending too, and no move between
+     segments hits
+  1  a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the
+     plan, or it hits
   2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
 
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
@@ -105,6 +116,8 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         blend: options.blend_mm / 1e3,
         allow_blocked_moves: options.allow_blocked_moves,
         max_moves: options.max_moves,
+        mechanism: options.mechanism,
+        unit: options.unit.as_deref(),
         spindle_on: options.spindle_on.as_deref(),
         spindle_off: options.spindle_off.as_deref(),
         ..ExportOptions::new(format, &name)
@@ -121,11 +134,20 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
 }
 
 fn check(options: &ExportCommand, run: &Run, program: &Path) -> Result<(), Failure> {
-    if !(0.0..=1000.0).contains(&options.approach_mm) {
-        let problem = format!("--approach-mm: is out of range, found {}", options.approach_mm);
-        return Err(Error::Argument(format!("{problem}; allowed: a number from 0 to 1000")).into());
+    for (option, found, most) in
+        [("--approach-mm", options.approach_mm, 1000.0), ("--blend-mm", options.blend_mm, 100.0)]
+    {
+        if !(0.0..=most).contains(&found) {
+            let problem = format!("{option}: is out of range, found {found}");
+            return Err(Error::Argument(format!("{problem}; allowed: a number from 0 to {most}")).into());
+        }
     }
-    let checked = run.check_program(&options.plan, program, corrected(options), options.approach_mm / 1e3)?;
+    let exported = ReadBackOptions {
+        corrected: corrected(options),
+        approach: options.approach_mm / 1e3,
+        blend: options.blend_mm / 1e3,
+    };
+    let checked = run.check_program(&options.plan, program, &exported)?;
     if options.json {
         print_json(&checked)?;
     } else {

@@ -206,6 +206,18 @@ impl OutFolder {
     }
 }
 
+/// Says that a run that was interrupted has left its results beside finished ones, where that is so; returns the folder that they are in.
+fn left_in(asked: &Folder, written: &[PathBuf]) -> PathBuf {
+    let folder = written.first().and_then(|file| file.parent()).unwrap_or(asked.path());
+    if folder != asked.path() {
+        let (kept, left) = (asked.path().display(), folder.display());
+        say(&format!(
+            "note: {kept} has finished results and is left as it is; those of this run are in {left} (--keep-partial puts them in their place)"
+        ));
+    }
+    folder.to_owned()
+}
+
 /// Whether the files of a job that is done could be written.
 fn files_written<T>(written: Result<T, impl Display>) -> Result<(), Failure> {
     written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))

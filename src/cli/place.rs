@@ -2,7 +2,7 @@
 
 use super::arguments::PlaceOptions;
 use super::progress::Terminal;
-use super::{Failure, files_written, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
+use super::{Failure, files_written, left_in, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
 use stead::{Error, Run};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
@@ -19,7 +19,8 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.no_page {
         run = run.without_page();
     }
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let mut out = out_folder(options.out.as_deref(), &options.config)?;
+    out.folder = out.folder.keeping_partial(options.keep_partial);
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());
 
@@ -37,11 +38,13 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
-    let mut written = files_written(placements.write_in(&out.folder));
+    let files = placements.write_in(&out.folder);
+    let left = files.as_ref().map(|files| left_in(&out.folder, files).display().to_string()).unwrap_or_default();
+    let mut written = files_written(files);
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     if !options.json {
         let timing = placements.timing();
-        let folder = written.as_ref().map_or_else(|_| String::new(), |()| format!("; results in {}", out.shown()));
+        let folder = if left.is_empty() { left } else { format!("; results in {left}") };
         let text = format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads);
         written = written.and(print(text.as_bytes()));
     }

@@ -2,7 +2,7 @@
 
 use super::arguments::ScoreOptions;
 use super::progress::Terminal;
-use super::{Failure, files_written, on_threads, print, print_json, say_notes, say_warnings};
+use super::{Failure, files_written, left_in, on_threads, print, print_json, say_notes, say_warnings};
 use stead::{Error, Run};
 use stead_report::Folder;
 
@@ -14,6 +14,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     };
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
+    let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
     say_notes(run.notes());
     let outside_cell = run.outside_cell(&placement);
     say_notes(outside_cell.as_slice());
@@ -35,7 +36,9 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     // What was known before was said then.
     say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
     say_warnings(score.warnings());
-    let written = out.as_ref().map_or(Ok(()), |out| files_written(score.write_in(out)));
+    let written = out
+        .as_ref()
+        .map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));
     if options.json {
         print_json(&score)?;
     } else {

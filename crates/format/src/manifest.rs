@@ -32,6 +32,9 @@ pub struct ResultSet {
     pub version: String,
     /// Whether all files are in place. While they are not, they may be those of two runs.
     pub complete: bool,
+    /// Whether the run was interrupted: what it has left is what there was by then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub interrupted: bool,
     /// The files that the run has read.
     pub inputs: Vec<RunInput>,
     /// The files that it has written, in the order of their names.
@@ -172,6 +175,17 @@ impl ResultSet {
     }
 }
 
+/// A note on a file that the manifest beside it lists as left by a run that was interrupted.
+pub fn interruption_note(file: &Path) -> Option<String> {
+    let Ok(Found::Manifest(manifest)) = Manifest::find(file.parent().unwrap_or(Path::new(""))) else { return None };
+    let name = file.file_name()?.to_str()?;
+    let set = manifest.results.iter().find(|set| set.interrupted && set.file(name).is_some())?;
+    let (file, command) = (file.display(), &set.command);
+    Some(format!(
+        "{file} is from a run of `stead {command}` that was interrupted: the best found by then, not the end of the search"
+    ))
+}
+
 /// Refuses a file whose bytes are not those that the manifest beside it, if there is one, states of a run that came to its end.
 ///
 /// # Errors
@@ -221,7 +235,14 @@ mod tests {
 
     fn set(command: &str, complete: bool, files: &[(&str, &[u8])]) -> ResultSet {
         let files = files.iter().map(|(name, bytes)| ResultFile::of(name, bytes)).collect();
-        ResultSet { command: command.to_owned(), version: "1".to_owned(), complete, inputs: Vec::new(), files }
+        ResultSet {
+            command: command.to_owned(),
+            version: "1".to_owned(),
+            complete,
+            interrupted: false,
+            inputs: Vec::new(),
+            files,
+        }
     }
 
     fn folder_with(manifest: &[u8]) -> tempfile::TempDir {

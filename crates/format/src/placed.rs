@@ -1,7 +1,7 @@
 //! A placement out of the results of `stead place`: the exact one of a case, from `summary.json`.
 
 use crate::input::{InputError, InputFile};
-use crate::manifest::{self, Unlisted};
+use crate::manifest::{self, Unlisted, interruption_note};
 use serde_json::Value;
 use std::path::Path;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
@@ -24,7 +24,8 @@ pub fn read_placement_of(folder: &Path, case: u8, inputs: &[InputFile]) -> Resul
     read_case(folder, case, inputs).map(|(placement, _)| placement)
 }
 
-/// As [`read_placement_of`], with how part and external axes of the run's problem are set up for the case.
+/// As [`read_placement_of`], with how part and external axes of the run's problem are set up for the case, and a note where the search was
+/// interrupted.
 ///
 /// # Errors
 /// As [`read_placement_of`], and for a setup that is none of the problem.
@@ -33,7 +34,7 @@ pub fn read_setup_of(
     case: u8,
     inputs: &[InputFile],
     problem: &Problem,
-) -> Result<(Placement, Setup), InputError> {
+) -> Result<(Placement, Setup, Option<String>), InputError> {
     let (placement, entry) = read_case(folder, case, inputs)?;
     let error = |field: &str| {
         let problem = "is none of the run's".to_owned();
@@ -64,7 +65,8 @@ pub fn read_setup_of(
         });
         setup.positions = positions.ok_or_else(|| error("external_axes"))?;
     }
-    Ok((placement, setup))
+    let note = interruption_note(&folder.join(SUMMARY));
+    Ok((placement, setup, note))
 }
 
 /// The exact placement of a case, and its entry.

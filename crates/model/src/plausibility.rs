@@ -17,10 +17,17 @@ const LARGEST_FORCE: f64 = 1e5;
 /// A larger deflection looks wrong. m
 const LARGEST_DEFLECTION: f64 = 10e-3;
 
-/// What is to be said of an arm: joints of an odd stiffness, numbers that nobody has verified.
+/// What is to be said of an arm: joints of an odd stiffness, or of that of another arm, numbers that nobody has verified.
 pub fn arm(robot: &Robot) -> Vec<String> {
+    let borrowed = robot.stiffness_like().map(|other| {
+        format!(
+            "{}: the joint stiffness is borrowed from {other}, not measured on this arm: it compares placements of such an arm, and tells \
+             neither millimetres nor how stiff this arm is",
+            robot.name()
+        )
+    });
     let unverified = robot.unverified().iter().map(|what| format!("{}: not verified: {what}", robot.name()));
-    odd_stiffness(robot).into_iter().chain(unverified).collect()
+    odd_stiffness(robot).into_iter().chain(borrowed).chain(unverified).collect()
 }
 
 /// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
@@ -111,6 +118,18 @@ mod tests {
             compliances[2] = 1.0 / stiffness;
             assert_eq!(arm(&kr270().with_compliances(compliances).unwrap()).len() == 1, is_noted, "{stiffness}");
         }
+    }
+
+    #[test]
+    fn borrowed_stiffness_is_said_and_stands_in_the_name() {
+        let robot = kr270().with_stiffness_like("another arm");
+        assert!(robot.name().ends_with(" (stiffness of another arm)"));
+        assert_eq!(robot.stiffness_like(), Some("another arm"));
+        let notes = arm(&robot);
+        assert!(notes.len() == 1 && notes[0].contains("is borrowed from another arm"), "{notes:?}");
+        // A share of a range is still that of the other arm; compliances that are put in their place are not.
+        assert_eq!(robot.with_range_share(0.5).unwrap().name(), robot.name());
+        assert_eq!(robot.with_compliances([1e-6; 6]).unwrap().name(), kr270().name());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
-use stead_cell::Scene;
+use stead_cell::{Attachment, Scene, Shape};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::plausibility;
 use stead_model::robot::{
@@ -21,6 +21,9 @@ use stead_model::robot::{
 };
 use stead_model::task::{PathPoint, Task};
 use stead_numerics::scalar::Scalar;
+
+/// How every statement begins that collisions are not checked.
+pub const UNCHECKED: &str = "collisions were not checked";
 
 pub use super::cell::{Cell, Interval};
 
@@ -222,6 +225,20 @@ impl Problem {
         let has_moves = self.task.segments().len() > 1;
         let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
         plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).chain(of_tool).collect()
+    }
+
+    /// That collisions are not checked, where nothing stands around the robot, or nothing but shapes of the arm itself.
+    pub fn unchecked_collisions(&self) -> Option<String> {
+        let Some(scene) = self.scene.as_deref() else {
+            return Some(format!(
+                "{UNCHECKED}: nothing stands around the robot (surroundings, [[shape]] or [[keep_out]] of the run file)"
+            ));
+        };
+        let around = scene.surroundings();
+        let is_own = |shape: &Shape| matches!(shape.attached, Attachment::Link(_) | Attachment::Flange);
+        (around.zones().is_empty() && around.shapes().iter().all(is_own)).then(|| {
+            format!("{UNCHECKED} but between parts of the arm: nothing else is among the shapes, and nothing stands around the robot")
+        })
     }
 
     /// Flange frame in the base frame at path point `point` for a workpiece at a placement

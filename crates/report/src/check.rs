@@ -152,6 +152,7 @@ pub fn robot_json(robot: &Robot) -> Value {
         "wrist_reach_mm": MM_EXACT.number(robot.geometry().reach()),
         "controller": robot.controller().map(|controller| controller.kind.word()),
         "has_root": robot.controller().is_some_and(|controller| controller.root_from_base.is_some()),
+        "stiffness_like": robot.stiffness_like(),
         "unverified": robot.unverified(),
     })
 }

@@ -165,7 +165,8 @@ impl Assembly<'_> {
             place.map(|place| arm.values[place])
         };
         let start = &self.problem.robot;
-        start.with_compliances(std::array::from_fn(|joint| {
+        let is_whole = (0..6).all(|joint| value(joint, Quantity::Compliance).is_some());
+        let found = start.with_compliances(std::array::from_fn(|joint| {
             let Some(alone) = value(joint, Quantity::Compliance) else { return start.joints()[joint].compliance };
             match (self.problem.varying, value(joint, Quantity::SpringStiffness), value(joint, Quantity::FreeLength)) {
                 (Some((_, Law::Spring(geometry))), Some(spring_stiffness), Some(free_length)) => {
@@ -175,7 +176,12 @@ impl Assembly<'_> {
                 }
                 _ => Compliance::Constant(alone),
             }
-        }))
+        }))?;
+        // Joints that the readings do not tell of keep what they are given.
+        Ok(match start.stiffness_like() {
+            Some(other) if !is_whole => found.with_stiffness_like(other),
+            _ => found,
+        })
     }
 
     fn rows(&self, arm: &ArmFit) -> Vec<RowResult> {

@@ -91,7 +91,11 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let spindle_note = spindle.filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
     let odd = robots.iter().flat_map(plausibility::arm).chain(spindle_note.as_ref().and_then(plausibility::spindle));
     let known = range_note(&robots).into_iter().chain(asked.then(|| payload_note(&robots)).flatten());
-    let notes = known.chain(odd).collect();
+    let borrowed = robots.len() > 1 && robots.iter().any(|robot| robot.stiffness_like().is_some());
+    let ranked = borrowed.then(|| {
+        "some arms have a borrowed stiffness: the order of the robots does not rank how stiff those are".to_owned()
+    });
+    let notes = known.chain(odd).chain(ranked).collect();
     let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
     Ok(AssessRun { comparison, range_share: yields.range_share, force_history, published, inputs, notes })
 }

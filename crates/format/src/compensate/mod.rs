@@ -71,7 +71,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         (None, None) => None,
     };
     let has_reality = real.is_some();
-    let notes = run.problem.notes().into_iter().chain(plan.note).collect();
+    let notes = run.problem.notes().into_iter().chain(plan.notes).collect();
     let robot = run.problem.robot;
     let reality = match real {
         None => robot.clone(),

@@ -10,7 +10,8 @@ use stead_model::robot::Robot;
 use stead_model::task::PathPoint;
 
 /// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What neither says is
-/// filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task without forces, the forces.
+/// filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task without forces, the forces. Shapes of the
+/// links beside the robot file (`NAME-cell.toml`) are its surroundings.
 ///
 /// # Errors
 /// [`InputError`]: robot or task are wrong, or the run file is there already or cannot be written.
@@ -24,7 +25,21 @@ pub fn init_run(robot: &Path, task: &Path, out: &Path) -> Result<(), InputError>
     };
     let has_stiffness = says_stiffness(robot)?.unwrap_or(true);
     let names = [robot_name, relative(folder, task)];
-    write_new(out, &text(&arm, imported.path.points(), imported.wrenches.is_some(), &names, has_stiffness))
+    let mut text = text(&arm, imported.path.points(), imported.wrenches.is_some(), &names, has_stiffness);
+    if let Some(cell) = shapes_beside(robot) {
+        let name = toml::Value::from(relative(folder, &cell)).to_string();
+        let keys = format!(
+            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them"
+        );
+        text = text.replacen("\n\n[spindle]", &format!("\n{keys}\n\n[spindle]"), 1);
+    }
+    write_new(out, &text)
+}
+
+/// The shapes of the links that `stead import robot --collision` has written beside a robot file.
+fn shapes_beside(robot: &Path) -> Option<PathBuf> {
+    let cell = robot.with_file_name(format!("{}-cell.toml", robot.file_stem()?.to_string_lossy()));
+    (shipped::text(robot).is_none() && cell.is_file()).then_some(cell)
 }
 
 /// The name of a file seen from a folder, with forward slashes; the whole name where there is no way between them.
@@ -143,6 +158,42 @@ mod tests {
         assert!(x.min > 1.0 && x.max < run.problem.robot.geometry().reach() && z.min > 0.0);
         let message = init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap_err().to_string();
         assert!(message.contains("run.toml: is there already"), "{message}");
+    }
+
+    #[test]
+    fn shapes_beside_the_robot_are_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("part.csv"), include_str!("task.csv")).unwrap();
+        std::fs::write(at("arm.toml"), shipped::by_name("kuka-kr500").unwrap()).unwrap();
+        let made = |out: &str| {
+            std::fs::create_dir_all(at("runs")).unwrap();
+            init_run(&at("arm.toml"), &at("part.csv"), &at(out)).unwrap();
+            (std::fs::read_to_string(at(out)).unwrap(), read_run(&at(out)).unwrap())
+        };
+        let (text, run) = made("runs/without.toml");
+        assert!(!text.contains("\nsurroundings"));
+        assert!(run.notes.iter().any(|note| note.starts_with("collisions were not checked: nothing stands around")));
+        let shape = "[[shape]]\nname = 'forearm'\nattached = 'link_3'\ncapsule_mm = { radius = 80, length = 300 }\n";
+        std::fs::write(at("arm-cell.toml"), shape).unwrap();
+        let (text, run) = made("runs/with.toml");
+        assert!(text.contains("\nsurroundings = \"../arm-cell.toml\""), "{text}");
+        assert_eq!(run.problem.scene.as_ref().map(|scene| scene.surroundings().shapes().len()), Some(1));
+        // Nothing but the arm itself is among the shapes.
+        assert!(
+            run.notes.iter().any(|note| note.starts_with("collisions were not checked but between parts of the arm"))
+        );
+        // With a table in the cell it is not said.
+        let table =
+            "[[shape]]\nname = 'table'\nattached = 'base'\nbox_mm = [1000, 1000, 100]\nxyz_mm = [2000, 0, -500]\n";
+        std::fs::write(at("arm-cell.toml"), format!("{shape}{table}")).unwrap();
+        assert!(
+            !read_run(&at("runs/with.toml"))
+                .unwrap()
+                .notes
+                .iter()
+                .any(|note| note.contains("collisions were not checked"))
+        );
     }
 
     #[test]

@@ -22,7 +22,9 @@ use stead_placement::problem::Problem;
 pub(crate) fn plan_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<PlacedPlan, InputError> {
     manifest::check(file, bytes, Unlisted::Refused)?;
     let rows = rows::rows_from(file, bytes, problem)?;
-    stations::set_up(file, &rows, problem)
+    let mut plan = stations::set_up(file, &rows, problem)?;
+    plan.notes.extend(manifest::interruption_note(file));
+    Ok(plan)
 }
 
 /// As [`plan_from`], from a file named on the command line; with what it was, for the result to state.

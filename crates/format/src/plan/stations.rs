@@ -27,7 +27,7 @@ pub(crate) struct PlacedPlan {
     /// The free angle about the tool axis at every point. rad
     pub betas: Vec<f64>,
     /// What the user should know.
-    pub note: Option<String>,
+    pub notes: Vec<String>,
 }
 
 /// A position of a plan may miss where it should be by this much: its joint angles are printed to 1e-4 deg. m
@@ -96,7 +96,13 @@ fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan
         stations.push(station);
     }
     let setup = problem.setup.clone();
-    Ok(PlacedPlan { placement, setup, points: stations, betas: rows.iter().map(|row| row.beta).collect(), note })
+    Ok(PlacedPlan {
+        placement,
+        setup,
+        points: stations,
+        betas: rows.iter().map(|row| row.beta).collect(),
+        notes: note.into_iter().collect(),
+    })
 }
 
 fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {

@@ -36,7 +36,7 @@ fn a_plan_tells_its_placement() {
             assert!((found * 1e3 - printed).abs() < 2e-4, "{name} {found} {printed}");
         }
         assert!((found.yaw.to_degrees() - yaw).abs() < 1e-4, "{name}");
-        assert_eq!(placed.note, None);
+        assert!(placed.notes.is_empty());
         assert_eq!(placed.points.len(), 105);
         let spindle = &problem.spindle.flange_from_tool;
         for (station, row) in placed.points.iter().zip(&rows) {

@@ -33,6 +33,16 @@ pub enum ProgramError {
         /// The forms for the robot.
         allowed: String,
     },
+    /// What carries the workpiece is not stated, or is not what the form or the run takes.
+    #[error("{option}: {problem}; allowed: {allowed}")]
+    Carrier {
+        /// The option.
+        option: &'static str,
+        /// What is wrong.
+        problem: String,
+        /// What would be taken.
+        allowed: &'static str,
+    },
     /// A number is out of its range.
     #[error("{option}: is out of range, found {found}; allowed: {allowed}")]
     Range {

@@ -43,18 +43,25 @@ impl std::fmt::Display for OperatorFrame {
     }
 }
 
-/// The workpiece in the robot root and the tool on the flange.
+/// The workpiece in the robot root, or on the table that the program is coupled to; the tool on the flange; then that table.
 pub(super) fn operator_frames(kind: ControllerKind, frames: &Frames) -> Vec<OperatorFrame> {
-    let names = match kind {
-        ControllerKind::Kuka => ["$BASE", "$TOOL"],
-        ControllerKind::Abb => ["wobj", "tool"],
-        ControllerKind::Fanuc => ["UFRAME", "UTOOL"],
-        ControllerKind::Staubli => ["frame", "tool"],
+    let names = match (kind, frames.root_from_table) {
+        (ControllerKind::Kuka, _) => ["$BASE", "$TOOL", "flange"],
+        (ControllerKind::Abb, None) => ["wobj", "tool", ""],
+        (ControllerKind::Abb, Some(_)) => ["oframe", "tool", "uframe"],
+        (ControllerKind::Fanuc, _) => ["UFRAME", "UTOOL", ""],
+        (ControllerKind::Staubli, _) => ["frame", "tool", ""],
     };
-    let whats = ["workpiece in the robot root, mm", "tool centre point on the flange, mm"];
-    let poses = [frames.root_from_workpiece, frames.flange_from_tool];
-    let all = names.into_iter().zip(whats).zip(poses);
-    all.map(|((name, what), pose)| OperatorFrame {
+    let workpiece = match frames.table_from_workpiece() {
+        Some(on_table) => ("workpiece on the table of the mechanism, mm", on_table),
+        None => ("workpiece in the robot root, mm", frames.root_from_workpiece),
+    };
+    let tool = ("tool centre point on the flange, mm", frames.flange_from_tool);
+    let table = frames.root_from_table.map(|table| {
+        ("table of the mechanism in the robot root with its axes at zero, as the program takes it: compare it with the calibration, mm", table)
+    });
+    let all = names.into_iter().zip([workpiece, tool].into_iter().chain(table));
+    all.map(|(name, (what, pose))| OperatorFrame {
         name,
         what,
         xyz_mm: (pose.translation * 1e3).into(),

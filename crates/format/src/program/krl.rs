@@ -1,5 +1,6 @@
 //! Programs for KUKA's controllers, in KRL.
 
+use super::carrier::Carrier;
 use super::layout::{Layout, Lines, ProgramFile};
 use super::motion::{Move, MoveKind};
 use super::names::number;
@@ -43,9 +44,26 @@ fn head(layout: &Layout<'_>, name: &str) -> Lines {
     lines
 }
 
+/// The base of linear moves: it stands still in the robot root, or moves with a mechanism.
+fn base(layout: &Layout<'_>) -> String {
+    let braced = |pose: &Pose<f64>| format!("{{FRAME: {}}}", frame(pose, FRAME_DECIMALS));
+    match (layout.carrier, layout.frames.table_from_workpiece()) {
+        (Some(Carrier::Mechanism(n)), Some(on_table)) => {
+            format!("EK(MACHINE_DEF[{n}].ROOT,MACHINE_DEF[{n}].MECH_TYPE,{})", braced(&on_table))
+        }
+        _ => braced(&layout.frames.root_from_workpiece),
+    }
+}
+
 fn main(layout: &Layout<'_>) -> ProgramFile {
     let mut lines = head(layout, layout.name);
-    lines.line(format_args!("; $BASE={{{}}}", frame(&layout.frames.root_from_workpiece, FRAME_DECIMALS)));
+    lines.line(format_args!("; $BASE={}", base(layout)));
+    if let Some(table) = &layout.frames.root_from_table {
+        lines.line(
+            "; the flange of this mechanism with its axes at 0, in the robot root, as it is taken here: compare it",
+        );
+        lines.line(format_args!("; {{{}}}", frame(table, FRAME_DECIMALS)));
+    }
     lines.line(format_args!("; $TOOL={{{}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
     lines.line(layout.spindle_on.unwrap_or("; spindle on: stead export --spindle-on"));
     for index in 0..layout.parts.len() {
@@ -59,7 +77,7 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
 fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let name = layout.part_name(index);
     let mut lines = head(layout, &name);
-    lines.line(format_args!("$BASE={{FRAME: {}}}", frame(&layout.frames.root_from_workpiece, FRAME_DECIMALS)));
+    lines.line(format_args!("$BASE={}", base(layout)));
     lines.line(format_args!("$TOOL={{FRAME: {}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
     lines.line("$ADVANCE=5");
     lines.line(format_args!("$APO.CDIS={}", number(layout.blend * 1e3, 4)));

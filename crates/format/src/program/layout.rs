@@ -1,5 +1,6 @@
 //! What all writers need: the moves in their parts, the frames, and the texts around them.
 
+use super::carrier::Carrier;
 use super::motion::{Frames, Heading, Move, MoveKind};
 use super::names;
 use std::fmt::Write;
@@ -24,6 +25,8 @@ pub(super) struct Layout<'a> {
     pub moves: &'a [Move],
     pub parts: Vec<Range<usize>>,
     pub frames: Frames,
+    /// What moves the base, where anything does.
+    pub carrier: Option<Carrier<'a>>,
     /// Distance from a corner at which blending begins; 0 for exact stops. m
     pub blend: f64,
     /// Statements of the user's own.

@@ -4,6 +4,7 @@
 //! Between segments the moves are the free `ways`, where a run has surroundings. Linear poses are in the workpiece frame, so that positions are those of the task. The two frames of a program are where the
 //! workpiece stands in the controller's robot root, and where the tool is on the flange.
 
+mod carrier;
 pub mod check;
 mod corrected;
 mod error;
@@ -29,6 +30,7 @@ use crate::input::{InputError, InputFile};
 use crate::new_file::write_all_new;
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
+use carrier::Carrier;
 use corrected::corrected_targets;
 use layout::Layout;
 use motion::{Frames, Move, MoveKind, Target};
@@ -36,7 +38,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
-use stead_placement::problem::{Placement, Problem};
+use stead_placement::problem::{Placement, Problem, UNCHECKED};
 use ways::{Ends, Ways};
 
 /// The form of a program.
@@ -111,6 +113,10 @@ pub struct ExportOptions<'a> {
     pub blend: f64,
     /// Most moves in a part.
     pub max_moves: usize,
+    /// KUKA: the number n of `MACHINE_DEF[n]`, the mechanism that carries the workpiece.
+    pub mechanism: Option<usize>,
+    /// ABB: the mechanical unit that carries the workpiece.
+    pub unit: Option<&'a str>,
     /// Whether a program is made though moves between segments hit what stands around; they are marked in it.
     pub allow_blocked_moves: bool,
     /// The statement that starts the spindle.
@@ -127,8 +133,10 @@ impl<'a> ExportOptions<'a> {
             name,
             corrected: None,
             approach: Self::APPROACH,
-            blend: 1e-3,
+            blend: Self::BLEND,
             max_moves: 5000,
+            mechanism: None,
+            unit: None,
             allow_blocked_moves: false,
             spindle_on: None,
             spindle_off: None,
@@ -136,6 +144,8 @@ impl<'a> ExportOptions<'a> {
     }
     /// How far the tool is retracted where nothing is said. m
     pub const APPROACH: f64 = 0.05;
+    /// Where blending begins where nothing is said. m
+    pub const BLEND: f64 = 1e-3;
 }
 
 /// A program, not written to files yet.
@@ -149,7 +159,7 @@ pub struct Program {
     pub robot: String,
     /// Its files, the one to start first.
     pub files: Vec<ProgramFile>,
-    /// The frames to enter at the controller, where its root is known: workpiece, then tool.
+    /// The frames to enter at the controller, where its root is known: workpiece, tool, and the table where the program is coupled to one.
     pub frames: Vec<OperatorFrame>,
     /// How many segments it has.
     pub segments: usize,
@@ -202,14 +212,21 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     if !blocked.is_empty() && !options.allow_blocked_moves {
         return Err(ProgramError::Blocked { moves: blocked.join("; ") }.into());
     }
-    let moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
-    let frames = motion::frames(problem, &planned.placement);
+    let carrier = carrier::carrier(problem, options)?;
+    let mut moves = motion::moves(problem, &planned.placement, &planned.targets, (ends, &planned.ways))?;
+    let cell_from_workpiece = match options.format {
+        ProgramFormat::Fanuc => carrier::standing_still(problem, &planned.placement, &mut moves),
+        _ => motion::at_zero(problem, &planned.placement),
+    };
+    let table = carrier.and_then(|_| carrier::root_from_table(problem));
+    let frames = motion::frames(problem, &cell_from_workpiece, table);
     let parts = split::parts(&moves, options.max_moves);
     let mut notes = planned.notes;
     notes.extend(names::check(options.name, options.format, parts.len())?);
     notes.extend(format_note(options, &moves, frames.is_some()));
+    notes.extend(carrier::note(problem, carrier));
     let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
-    let files = files((run, problem), options, &planned.inputs, &moves, parts, frames)?;
+    let files = files((run, problem), options, &planned.inputs, &moves, parts, (frames, carrier))?;
     let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
     Ok(Program {
         format: options.format,
@@ -235,7 +252,7 @@ fn files(
     inputs: &[InputFile],
     moves: &[Move],
     parts: Vec<Range<usize>>,
-    frames: Option<Frames>,
+    (frames, carrier): (Option<Frames>, Option<Carrier<'_>>),
 ) -> Result<Vec<ProgramFile>, ProgramError> {
     let format = options.format;
     let (Some(frames), Some(_)) = (frames, format.controller()) else {
@@ -245,10 +262,11 @@ fn files(
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
     let layout = Layout {
         name: options.name,
-        origin: origin(run, inputs),
+        origin: origin(run, inputs, problem.unchecked_collisions().is_some()),
         moves,
         parts,
         frames,
+        carrier,
         blend: options.blend,
         spindle_on: on.as_deref(),
         spindle_off: off.as_deref(),
@@ -282,7 +300,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
     let mut inputs = run.inputs.clone();
     inputs.push(file);
     let ways = Ways::new(&problem, &plan, ends.approach);
-    let PlacedPlan { placement, points, note, .. } = &plan;
+    let PlacedPlan { placement, points, .. } = &plan;
     let planned: Vec<Target> = points
         .iter()
         .enumerate()
@@ -301,8 +319,7 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
         }
         None => (planned, 0),
     };
-    let notes = note.iter().cloned().collect();
-    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes })
+    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes: plan.notes })
 }
 
 /// Whether the options are in their ranges, and the form is one for the robot.
@@ -344,11 +361,12 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
         .into())
 }
 
-/// What the program is and what it was made of, for comments.
-fn origin(run: &Run, inputs: &[InputFile]) -> Vec<String> {
+/// What the program is, what it was made of and what it does not say, for comments.
+fn origin(run: &Run, inputs: &[InputFile], is_unchecked: bool) -> Vec<String> {
     let mut lines = vec![format!("written by stead {} for", env!("CARGO_PKG_VERSION"))];
     lines.push(names::comment(run.problem.robot.name(), 60));
     lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
+    lines.extend(is_unchecked.then(|| UNCHECKED.to_owned()));
     lines
 }
 

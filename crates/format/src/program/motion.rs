@@ -101,10 +101,20 @@ impl Move {
 /// The frames that a program is in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frames {
-    /// The workpiece in the controller's robot root, with all external axes at zero.
+    /// What linear poses are given in, in the controller's robot root: the workpiece with all external axes at zero, or where it stands
+    /// still.
     pub root_from_workpiece: Pose<f64>,
     /// The tool on the flange.
     pub flange_from_tool: Pose<f64>,
+    /// The table that carries the workpiece in the robot root, with all external axes at zero, where the program is coupled to it.
+    pub root_from_table: Option<Pose<f64>>,
+}
+
+impl Frames {
+    /// The workpiece on the table, where the program is coupled to one.
+    pub fn table_from_workpiece(&self) -> Option<Pose<f64>> {
+        self.root_from_table.map(|table| table.inverse().then(&self.root_from_workpiece))
+    }
 }
 
 /// A retracted point is gone to in this many steps, each of which the arm must reach.
@@ -112,17 +122,22 @@ const APPROACH_STEPS: i32 = 10;
 /// A joint that turns farther in one of these steps passes a singularity. rad
 const MAX_APPROACH_STEP: f64 = 0.5;
 
-/// The frames of a program, where the robot's root is known.
-pub(super) fn frames(problem: &Problem, placement: &Placement) -> Option<Frames> {
+/// The frames of a program with its poses given in this frame of the cell, where the robot's root is known.
+pub(super) fn frames(
+    problem: &Problem,
+    cell_from_workpiece: &Pose<f64>,
+    root_from_table: Option<Pose<f64>>,
+) -> Option<Frames> {
     let root_from_cell = problem.robot.controller_root_from_cell()?;
     Some(Frames {
-        root_from_workpiece: root_from_cell.then(&at_zero(problem, placement)),
+        root_from_workpiece: root_from_cell.then(cell_from_workpiece),
         flange_from_tool: problem.spindle.flange_from_tool,
+        root_from_table,
     })
 }
 
-/// The workpiece of the task file in the base frame with all external axes at zero.
-fn at_zero(problem: &Problem, placement: &Placement) -> Pose<f64> {
+/// The workpiece of the task file in the cell with all external axes at zero.
+pub(super) fn at_zero(problem: &Problem, placement: &Placement) -> Pose<f64> {
     let mut pose = placement.base_from_workpiece();
     if let Some(orientation) = problem.orientation() {
         pose.rotation *= orientation.rotation;

@@ -1,9 +1,11 @@
 //! Programs for ABB's controllers, in RAPID.
 
+use super::carrier::Carrier;
 use super::layout::{Layout, Lines, ProgramFile};
 use super::motion::{Move, MoveKind};
 use super::names::{MODULE, number};
 use nalgebra::{Matrix3, Vector3};
+use stead_model::robot::Pose;
 use stead_numerics::rotation::quaternion_from_rotation;
 
 /// Decimals of positions in mm: a tenth of a micrometre.
@@ -14,6 +16,8 @@ const QUATERNION_DECIMALS: usize = 9;
 const AXIS_DECIMALS: usize = 5;
 /// An external axis that is not there.
 const NO_AXIS: &str = "9E9";
+/// A frame that is where the one it is given in is.
+const STILL: &str = "[[0,0,0],[1,0,0,0]]";
 /// Speeds of reorientation, of linear and of rotating external axes, as in the predefined speed data.
 const OTHER_SPEEDS: &str = "500,5000,1000";
 
@@ -77,12 +81,27 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
         number(mass, 3),
         list(centre.map(|m| m * 1e3), 1)
     ));
-    let pose = &layout.frames.root_from_workpiece;
-    lines.line(format_args!(
-        "  PERS wobjdata {workpiece}:=[FALSE,TRUE,\"\",[{},{}],[[0,0,0],[1,0,0,0]]];",
-        position(&pose.translation),
-        orientation(&pose.rotation)
-    ));
+    let framed = |pose: &Pose<f64>| format!("[{},{}]", position(&pose.translation), orientation(&pose.rotation));
+    let coupled = match (layout.carrier, layout.frames.table_from_workpiece(), layout.frames.root_from_table) {
+        (Some(Carrier::Unit(unit)), Some(on_table), Some(table)) => Some((unit, on_table, table)),
+        _ => None,
+    };
+    match &coupled {
+        // The controller takes the user frame from the unit, whatever stands here.
+        Some((unit, on_table, table)) => {
+            lines
+                .line(format_args!("  ! the user frame of {unit} with its axes at 0, as it is taken here: compare it"));
+            lines.line(format_args!("  ! {}", framed(table)));
+            lines.line(format_args!(
+                "  PERS wobjdata {workpiece}:=[FALSE,FALSE,\"{unit}\",{STILL},{}];",
+                framed(on_table)
+            ));
+        }
+        None => lines.line(format_args!(
+            "  PERS wobjdata {workpiece}:=[FALSE,TRUE,\"\",{},{STILL}];",
+            framed(&layout.frames.root_from_workpiece)
+        )),
+    }
     let blend = number(layout.blend * 1e3, 3);
     let wide = number(layout.blend * 1.5e3, 3);
     let turn = number(layout.blend * 0.15e3, 3);
@@ -90,6 +109,9 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
     lines.line(format_args!("  CONST speeddata {speed}:=[200,30,200,30];"));
     lines.line(format_args!("  PROC {}()", layout.name));
     lines.line("    ConfL\\Off;");
+    if let Some((unit, ..)) = coupled {
+        lines.line(format_args!("    ActUnit {unit};"));
+    }
     lines.line(layout.spindle_on.map_or("    ! spindle on: stead export --spindle-on".to_owned(), statement));
     for index in 0..layout.parts.len() {
         lines.line(format_args!("    {};", layout.part_name(index)));

@@ -18,6 +18,8 @@ pub struct RobotFile {
     pub name: String,
     /// Where the numbers come from.
     pub source: String,
+    /// The arm whose joint stiffness the rows state, where it is not their own; every result says so.
+    pub stiffness_like: Option<String>,
     /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every run.
     pub unverified: Option<List<String>>,
     /// Largest payload by the data sheet.

@@ -119,6 +119,7 @@ fn made(
     }
     let robot = Robot::new(&file.name, arm.try_into().map_err(|_| not_six())?);
     let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)).map_err(|error| locate(at, &error))?;
+    let robot = with_stiffness_like(robot, file.stiffness_like.as_deref(), at)?;
     let robot = robot.with_unverified(file.unverified.as_ref().map_or_else(Vec::new, |list| list.0.clone()));
     let robot = with_controller(robot, file, at)?;
     let robot = match dynamics_from(joints, &rows)? {
@@ -128,6 +129,24 @@ fn made(
     match &file.covariance {
         Some(covariance) => with_covariance(robot, covariance, &at.key(COVARIANCE)),
         None => Ok(robot),
+    }
+}
+
+/// The key of robot and run files for the arm whose stiffness is taken.
+const STIFFNESS_LIKE: &str = "stiffness_like";
+
+/// The robot with a stiffness that is that of another arm, where a file says so.
+///
+/// # Errors
+/// [`InputError`] for a name that is none.
+pub(super) fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
+    match other {
+        None => Ok(robot),
+        Some(name) if !name.chars().any(char::is_control) => Ok(robot.with_stiffness_like(name)),
+        Some(_) => {
+            let rule = "the name of the other arm, a text on one line";
+            Err(at.key(STIFFNESS_LIKE).error("has a line break or another control in it", rule))
+        }
     }
 }
 

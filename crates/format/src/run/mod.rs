@@ -28,7 +28,7 @@ use crate::document::Document;
 use crate::field::FieldOverrides;
 use crate::input::{InputError, InputFile, input_file};
 use crate::mount::MountTable;
-use crate::robot::{moving_robot_from, robot_from};
+use crate::robot::{moving_robot_from, robot_from, with_stiffness_like};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
 use crate::surroundings::{CollisionTable, KeepOutTable, ShapeTable, SurroundingsFile, read_scene};
@@ -93,6 +93,8 @@ pub struct RunFile {
     pub forces: Option<ForcesTable>,
     /// What stands around the robot and on it, to be kept apart: a file of the tables below, relative to the folder of this one.
     pub surroundings: Option<String>,
+    /// The arm whose joint stiffness the robot file states, where it is not its own and the file does not say so; every result says so.
+    pub stiffness_like: Option<String>,
     /// Shapes that keep apart, beside those of `surroundings`.
     pub shape: Option<Vec<ShapeTable>>,
     /// Zones that points of the arm are kept out of, beside those of `surroundings`.
@@ -196,6 +198,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         Some(is_orthogonal) => moving_robot_from(&robot_source, is_orthogonal),
         None => robot_from(&robot_source),
     })?;
+    let robot = with_stiffness_like(robot, run.stiffness_like.as_deref(), &at)?;
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let robot = match &run.mount {
         Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
@@ -256,6 +259,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
+    notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     Ok(Run { problem, search, transfer, certificate, maps, page, inputs, reference, path_stability, notes })
 }

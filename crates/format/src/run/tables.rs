@@ -290,7 +290,7 @@ mod tests {
         };
         assert_eq!(run.search, expected);
         assert_eq!(run.transfer, TransferSettings { jerk_time: 0.2, blend: 2e-3, ..TransferSettings::default() });
-        assert!(run.reference.is_none() && run.notes.is_empty());
+        assert!(run.reference.is_none() && run.notes.len() == 1);
     }
 
     #[test]

@@ -28,6 +28,9 @@ pub(super) fn text(robot: &ImportedRobot, urdf: &Urdf, digest: &str, borrowed: O
     lines.line("");
     lines.line(format_args!("name = {}", Value::from(robot.name.clone())));
     lines.line(format_args!("source = {}", Value::from(source(&file, borrowed))));
+    if let Some(borrowed) = borrowed {
+        lines.line(format_args!("stiffness_like = {}", Value::from(one_line(&borrowed.arm))));
+    }
     for k in 0..6 {
         joint(&mut lines, robot, k, borrowed);
     }

@@ -80,10 +80,20 @@ pub struct Joint {
     pub compliance: Compliance,
 }
 
+/// Joint stiffness that is that of another arm.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct BorrowedStiffness {
+    /// The other arm.
+    of: String,
+    /// The name of the arm with the stiffness of the other.
+    name: String,
+}
+
 /// A checked six-axis arm with a spherical wrist.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
     name: String,
+    stiffness_like: Option<Box<BorrowedStiffness>>,
     joints: [Joint; 6],
     geometry: Geometry,
     rows: [Pose<f64>; 6],
@@ -193,6 +203,7 @@ impl Robot {
         let geometry = Geometry::new(&joints)?;
         Ok(Self {
             name: name.into(),
+            stiffness_like: None,
             rows: geometry.rows(&joints),
             joints,
             geometry,
@@ -205,9 +216,22 @@ impl Robot {
         })
     }
 
-    /// The name given by the robot file.
+    /// The name by which results call the arm: that of the robot file, with that of another arm where the joint stiffness is that one's.
     pub fn name(&self) -> &str {
-        &self.name
+        self.stiffness_like.as_ref().map_or(&self.name, |borrowed| &borrowed.name)
+    }
+
+    /// The arm whose joint stiffness this one is given, where it is not its own.
+    pub fn stiffness_like(&self) -> Option<&str> {
+        self.stiffness_like.as_ref().map(|borrowed| borrowed.of.as_str())
+    }
+
+    /// The same arm, with a joint stiffness that is that of another one.
+    #[must_use]
+    pub fn with_stiffness_like(mut self, other: &str) -> Self {
+        let name = format!("{} (stiffness of {other})", self.name);
+        self.stiffness_like = Some(Box::new(BorrowedStiffness { of: other.to_owned(), name }));
+        self
     }
 
     /// Which of its numbers nobody has checked against their source, each with what is known of them.

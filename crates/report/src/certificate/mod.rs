@@ -32,7 +32,7 @@ pub fn write_certificate(
     problem: &Problem,
     certificate: &Certificate,
     inputs: &[InputFile],
-    run: Files,
+    (run, is_interrupted): (Files, bool),
 ) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = certificate_files(problem, certificate, inputs)?;
     let mut all = run;
@@ -42,7 +42,9 @@ pub fn write_certificate(
     files.extend(find(PAGE));
     let summary = find(SUMMARY).map(|(_, bytes)| bytes).unwrap_or_default();
     let outdated = proofs(certificate).into_iter().filter(|(_, proof)| proof.is_err()).map(|(name, _)| name);
-    folder.results(PLACE, inputs).joining(SUMMARY, &summary).without(outdated).write(&files)
+    let beside = folder.beside_finished(PLACE, is_interrupted)?;
+    let folder = beside.as_ref().unwrap_or(folder);
+    folder.results(PLACE, inputs).interrupted(is_interrupted).joining(SUMMARY, &summary).without(outdated).write(&files)
 }
 
 /// The pictures of the proofs with what they show.

@@ -50,6 +50,10 @@ pub fn robot_file(text: &str, found: &Identified) -> Result<String, ReportError>
             }
         }
     }
+    if found.robot.stiffness_like().is_none() {
+        // What is measured is the arm's own.
+        document.remove("stiffness_like");
+    }
     document.remove(COVARIANCE);
     document.insert(COVARIANCE, Item::Table(covariance(found)));
     Ok(document.to_string())

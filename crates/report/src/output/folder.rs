@@ -19,6 +19,7 @@ const BETWEEN_ATTEMPTS: Duration = Duration::from_millis(50);
 pub struct Folder {
     path: PathBuf,
     lock: Lock,
+    keeps_partial: bool,
 }
 
 impl Folder {
@@ -45,7 +46,7 @@ impl Folder {
         // Gone again as soon as it is dropped.
         Staged::write(path, b"").map_err(fail)?;
         transaction::manifest_in(path)?;
-        Ok(Self { path: path.to_owned(), lock })
+        Ok(Self { path: path.to_owned(), lock, keeps_partial: false })
     }
 
     /// As [`Folder::create`], but waits for another run to let go of the folder, for so long.
@@ -70,6 +71,39 @@ impl Folder {
     /// The lock file, for whoever ends the process without dropping this.
     pub fn lock_file(&self) -> &Path {
         self.lock.path()
+    }
+
+    /// The same folder, in which results of an interrupted run take the place of those of a finished one.
+    #[must_use]
+    pub fn keeping_partial(mut self, keeps_partial: bool) -> Self {
+        self.keeps_partial = keeps_partial;
+        self
+    }
+
+    /// The folder for results of an interrupted run of a command where finished ones of that command are in this folder, which they shall
+    /// not replace: the one beside it, named with `.interrupted` behind. None where they belong here.
+    ///
+    /// # Errors
+    /// As [`Folder::create`].
+    pub fn beside_finished(&self, command: &str, is_interrupted: bool) -> Result<Option<Self>, ReportError> {
+        if !is_interrupted || self.keeps_partial {
+            return Ok(None);
+        }
+        let manifest = transaction::manifest_in(&self.path)?;
+        let is_finished = manifest.of(command).is_some_and(|set| set.complete && !set.interrupted);
+        is_finished.then(|| Self::create(&self.interrupted_path())).transpose()
+    }
+
+    /// Where [`beside_finished`](Self::beside_finished) is.
+    fn interrupted_path(&self) -> PathBuf {
+        // A path as `.` has no name of its own.
+        let path = match self.path.file_name() {
+            Some(_) => self.path.clone(),
+            None => self.path.canonicalize().unwrap_or_else(|_| self.path.clone()),
+        };
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(".interrupted");
+        path.with_file_name(name)
     }
 
     /// The results of a run of a command, in place of those of its last run here.

@@ -21,6 +21,7 @@ pub struct Transaction<'a> {
     form: Option<&'a str>,
     anchor: Option<(&'a str, &'a [u8])>,
     derived: Option<&'a str>,
+    interrupted: bool,
 }
 
 /// The manifest of a folder, or an empty one.
@@ -44,7 +45,16 @@ enum Step {
 
 impl<'a> Transaction<'a> {
     pub(super) fn new(folder: &'a Path, command: &'a str, inputs: &'a [InputFile]) -> Self {
-        Self { folder, command, inputs, outdated: Vec::new(), form: None, anchor: None, derived: None }
+        Self {
+            folder,
+            command,
+            inputs,
+            outdated: Vec::new(),
+            form: None,
+            anchor: None,
+            derived: None,
+            interrupted: false,
+        }
     }
 
     /// Removes these too, if they are there: results that would contradict these, in folders without a manifest.
@@ -65,6 +75,13 @@ impl<'a> Transaction<'a> {
     #[must_use]
     pub fn joining(mut self, name: &'a str, bytes: &'a [u8]) -> Self {
         self.anchor = Some((name, bytes));
+        self
+    }
+
+    /// States whether the run was interrupted.
+    #[must_use]
+    pub fn interrupted(mut self, interrupted: bool) -> Self {
+        self.interrupted = interrupted;
         self
     }
 
@@ -100,6 +117,7 @@ impl<'a> Transaction<'a> {
         if let (Some(_), Some(former)) = (self.anchor, &former_set) {
             // They join the results of that run.
             (set.version, set.inputs) = (former.version.clone(), former.inputs.clone());
+            set.interrupted |= former.interrupted;
         }
         let has_changed = former_set.as_ref().is_none_or(|former| former.files != set.files);
         let derived = self.derived.and_then(|command| former.of(command)).filter(|_| has_changed).cloned();
@@ -156,6 +174,7 @@ impl<'a> Transaction<'a> {
             command: self.command.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             complete: true,
+            interrupted: self.interrupted,
             inputs: self.inputs.iter().map(RunInput::from).collect(),
             files: entries,
         }

@@ -142,9 +142,11 @@ pub fn write_score(
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = score_files(problem, score, map, context)?;
+    let beside = folder.beside_finished(SCORE, score.interrupted)?;
+    let folder = beside.as_ref().unwrap_or(folder);
     let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
     let outdated = outdated.iter().copied().chain(problem.scene.is_none().then_some(SURROUNDINGS));
-    folder.results(SCORE, &context.inputs).without(outdated).write(&files)
+    folder.results(SCORE, &context.inputs).interrupted(score.interrupted).without(outdated).write(&files)
 }
 
 /// The files that [`write_score`] writes.
@@ -194,9 +196,11 @@ pub fn write_placement(
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let files = placement_files(problem, outcome, context)?;
+    let beside = folder.beside_finished(PLACE, outcome.interrupted)?;
+    let folder = beside.as_ref().unwrap_or(folder);
     let outdated = outcome.maps.is_none().then_some(MAPS).into_iter().flatten().flatten();
     let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
-    folder.results(PLACE, &context.inputs).without(outdated).write(&files)
+    folder.results(PLACE, &context.inputs).interrupted(outcome.interrupted).without(outdated).write(&files)
 }
 
 /// The files that [`write_placement`] writes.

@@ -29,7 +29,7 @@ pub fn study_json(name: &str, analysis: &Analysis, inputs: &[InputFile]) -> Valu
         })),
         "failures": failures(&analysis.failures),
     });
-    Document::new(inputs).with(entries)
+    Document::new(inputs).notes(&analysis.notes).with(entries)
 }
 
 /// What `stead study status --json` prints.

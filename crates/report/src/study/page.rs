@@ -30,8 +30,9 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
         }
         None => format!("No case has a value of {}.", measure.name),
     };
+    let lead = if analysis.notes.is_empty() { lead } else { format!("{lead} {}.", analysis.notes.join(". ")) };
     let mut page = Page::new(name, subtitle, lead, inputs)
-        .messages(&none, &none)
+        .messages(&none, &analysis.notes)
         .with(tiles(analysis))
         .with(ranking(analysis, pages));
     if let Some(front) = &analysis.front {

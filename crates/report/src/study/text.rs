@@ -30,6 +30,7 @@ pub fn study_text(name: &str, analysis: &Analysis) -> String {
         );
     }
     best(&mut text, analysis);
+    analysis.notes.iter().for_each(|note| line(&mut text, &format!("  note: {note}")));
     if !analysis.tasks.is_empty() {
         line(&mut text, "\nBest for each task:");
         text.push_str(&aligned(&task_rows(analysis), &[0, 2]));

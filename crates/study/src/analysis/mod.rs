@@ -107,6 +107,8 @@ pub struct Analysis {
     pub failures: Failures,
     /// Up to which relative difference figures are ties.
     pub noise: f64,
+    /// What it does not say, in sentences ([`Plan::notes`](crate::cases::Plan::notes)); the table alone does not tell.
+    pub notes: Vec<String>,
 }
 
 /// The cases of one task.
@@ -162,6 +164,7 @@ impl Analysis {
             },
             failures: failures(table),
             noise: question.noise,
+            notes: Vec::new(),
             effects,
             layouts,
         })

@@ -4,6 +4,7 @@ use super::StudyError;
 use super::row::result_columns;
 use super::table::{Cell, Column, Kind};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use stead_format::input::{InputError, sha256};
 use stead_format::study::{AxisValue, Study, StudyCase};
 
@@ -25,6 +26,8 @@ pub struct Plan {
     pub study: Study,
     /// The cases, in the order of their numbers.
     pub cases: Vec<PlannedCase>,
+    /// What its results do not say, in sentences.
+    pub notes: Vec<String>,
 }
 
 impl Plan {
@@ -43,11 +46,15 @@ impl Plan {
         }
         let read = |case: &StudyCase| {
             let read = study.case(case)?;
-            Ok(PlannedCase { case: case.clone(), id: read.id, task: read.task })
+            let arm = &read.run.problem.robot;
+            let arm = (arm.name().to_owned(), arm.stiffness_like().is_some());
+            Ok((PlannedCase { case: case.clone(), id: read.id, task: read.task }, arm))
         };
-        let cases: Vec<Result<PlannedCase, InputError>> = study.cases.par_iter().map(read).collect();
-        let cases = cases.into_iter().collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { study, cases })
+        let cases: Vec<Result<_, InputError>> = study.cases.par_iter().map(read).collect();
+        let (cases, arms): (Vec<PlannedCase>, BTreeSet<(String, bool)>) =
+            cases.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let notes = borrowed_stiffness(&arms).into_iter().collect();
+        Ok(Self { study, cases, notes })
     }
 
     /// The name of the study: that of its file.
@@ -94,6 +101,19 @@ impl Plan {
         cells.extend(values);
         cells
     }
+}
+
+/// What a comparison cannot say of arms, by their names, that have the stiffness of another one.
+fn borrowed_stiffness(arms: &BTreeSet<(String, bool)>) -> Option<String> {
+    let names: Vec<&str> = arms.iter().filter(|(_, is_borrowed)| *is_borrowed).map(|(name, _)| name.as_str()).collect();
+    let arms =
+        if arms.len() > 1 { "does not rank how stiff the arms are" } else { "does not say how stiff the arm is" };
+    (!names.is_empty()).then(|| {
+        format!(
+            "borrowed stiffness: {}. This study compares placements and where such arms reach; it {arms}, and predicts no millimetres",
+            names.join(", ")
+        )
+    })
 }
 
 /// The axis of the tasks has a column in any case.

@@ -27,6 +27,10 @@ pub(super) struct Expected {
     pub near: [f64; 6],
     /// Where the external axes are. mm and deg
     pub external: [Option<f64>; 6],
+    /// Speed of the tool, for moves on lines. mm/s
+    pub feed: f64,
+    /// Whether the next move may begin before this one has arrived.
+    pub is_blended: bool,
 }
 
 /// A frame of the model, in mm.
@@ -76,6 +80,7 @@ pub(super) fn moves(
             }
         }
     }
+    let feeds = feeds(problem);
     let mut moves = Vec::new();
     for (number, range) in problem.task.segments().iter().enumerate() {
         let at = |point: usize, is_joint: bool, by: f64| {
@@ -83,13 +88,24 @@ pub(super) fn moves(
             // The tool's z axis points to the workpiece.
             let tool = tool.of(&Frame::shift([0.0, 0.0, -by]));
             let external = external[point];
-            Expected { segment: number + 1, point, is_joint, is_retracted: by > 0.0, tool, near, external }
+            let is_inside = point > range.start && point + 1 < range.end;
+            Expected {
+                segment: number + 1,
+                point,
+                is_joint,
+                is_retracted: by > 0.0,
+                tool,
+                near,
+                external,
+                feed: feeds[point],
+                is_blended: is_inside && !is_joint && by == 0.0,
+            }
         };
         let has_approach = approach > 0.0;
         let via = |way: &Way, place: usize, point: usize| {
             let near = way.joints[place];
             let tool = stand.of(&flange(problem.robot.joints(), &near)).of(&mounted);
-            Expected { near, tool, is_retracted: true, ..at(point, !way.is_along_axis(place), 0.0) }
+            Expected { near, tool, is_retracted: true, is_blended: false, ..at(point, !way.is_along_axis(place), 0.0) }
         };
         let is_at_first = if let Some(way) = ways.free_to(number) {
             let end = way.joints.len() - 1;
@@ -111,6 +127,18 @@ pub(super) fn moves(
         }
     }
     Ok(moves)
+}
+
+/// The feed to each path point, in mm/s: what the task states at it, for the first of a segment what it states at the next, or the run's.
+fn feeds(problem: &Problem) -> Vec<f64> {
+    let path = problem.task.path();
+    let of_segment = |range: &std::ops::Range<usize>| {
+        let points: Vec<usize> = range.clone().collect();
+        let first = points.get(1).or(points.first()).copied();
+        first.into_iter().chain(points.into_iter().skip(1)).collect::<Vec<usize>>()
+    };
+    let asked = path.segments().iter().flat_map(of_segment);
+    asked.map(|point| path.feed(point).unwrap_or(problem.redundancy.feed) * 1e3).collect()
 }
 
 /// The tool at a path point in the workpiece frame: z against the tool axis, x at beta from the feed towards the left of it.

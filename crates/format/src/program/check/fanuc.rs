@@ -1,7 +1,7 @@
 //! TP programs: `J P[n]`, `L P[n]`, their positions, the frames in remarks, calls of parts.
 
 use super::geometry::{Frame, turned_xyz};
-use super::written::{DEEPEST, External, Goal, Moves, Source, external, frame_of, number};
+use super::written::{Base, DEEPEST, End, External, Goal, Moves, Pace, Source, Step, external, frame_of, number};
 use crate::input::InputError;
 use std::collections::BTreeMap;
 
@@ -98,18 +98,27 @@ fn goal(
     word: &str,
     positions: &BTreeMap<u32, Placed>,
     (remarks, numbers): (&Remarks, [Option<u32>; 2]),
-) -> Result<(Goal, External), InputError> {
+) -> Result<Step, InputError> {
     let wrong = |problem: &str| source.error(line, problem, statement);
     let inside = statement.split_once("P[").and_then(|(_, rest)| rest.split_once(']'));
-    let number = inside.and_then(|(number, _)| number.parse::<u32>().ok());
+    let index = inside.and_then(|(number, _)| number.parse::<u32>().ok());
     if ["Offset", "VOFFSET", "PTH", "INC"].iter().any(|option| statement.contains(option)) {
         return Err(wrong("has an option that moves the robot elsewhere"));
     }
-    let Some((position, external, of)) = number.and_then(|number| positions.get(&number)) else {
+    let Some((position, external, of)) = index.and_then(|index| positions.get(&index)) else {
         return Err(wrong("names no position of this program"));
     };
+    let words: Vec<&str> =
+        statement.split_once(']').map(|(_, rest)| rest.split_whitespace().collect()).unwrap_or_default();
+    let [speed, end] = words[..] else { return Err(wrong("is no move L P[n] .. mm/sec FINE or CNT..")) };
+    let end = match end.strip_prefix("CNT").map(number) {
+        None if end == "FINE" => End::Exact,
+        Some(Some(share)) => End::Share(share),
+        _ => return Err(wrong("ends in another way than FINE or CNT..")),
+    };
+    let pace = Pace { feed: speed.strip_suffix("mm/sec").and_then(number), end: Some(end) };
     match (word, position) {
-        ("J", Position::Angles(angles)) => Ok((Goal::Angles(*angles), *external)),
+        ("J", Position::Angles(angles)) if end == End::Exact => Ok((Goal::Angles(*angles), *external, pace)),
         ("L", Position::Pose(tool)) => {
             if numbers != of.map(Some) {
                 return Err(wrong("goes to a position of other frames than UFRAME_NUM and UTOOL_NUM"));
@@ -118,9 +127,12 @@ fn goal(
             let [Some(base), Some(mounted)] = frames else {
                 return Err(wrong("moves before the remarks state UFRAME and UTOOL"));
             };
-            Ok((Goal::Line { tool: *tool, frames: [base, mounted] }, *external))
+            if pace.feed.is_none() {
+                return Err(wrong("has no speed in mm/sec"));
+            }
+            Ok((Goal::Line { tool: *tool, base: Base::Still(base), mounted }, *external, pace))
         }
-        _ => Err(wrong("goes to a position of the other kind")),
+        _ => Err(wrong("goes to a position of the other kind, or is a joint move that does not stop")),
     }
 }
 

@@ -124,13 +124,36 @@ fn carried(axis: &ExternalAxis, position: f64) -> Frame {
     Frame::shift(point).of(&Frame::turned(turn)).of(&Frame::shift(point.map(|mm| -mm)))
 }
 
+/// What external axes at positions in mm and deg do to the robot, or to the workpiece.
+fn moved(axes: &[ExternalAxis], positions: &[Option<f64>; 6], what: Carried) -> Frame {
+    let own = axes.iter().zip(positions).filter(|(axis, _)| axis.carries == what);
+    own.fold(Frame::turned(IDENTITY), |frame, (axis, position)| frame.of(&carried(axis, position.unwrap_or(0.0))))
+}
+
 /// The workpiece as the robot sees it with external axes at positions in mm and deg: what carries the robot moves it the other way.
 pub(super) fn seen(axes: &[ExternalAxis], positions: &[Option<f64>; 6]) -> Frame {
-    let of = |what: Carried| {
-        let own = axes.iter().zip(positions).filter(|(axis, _)| axis.carries == what);
-        own.fold(Frame::turned(IDENTITY), |frame, (axis, position)| frame.of(&carried(axis, position.unwrap_or(0.0))))
-    };
-    of(Carried::Robot).inverted().of(&of(Carried::Workpiece))
+    floor_seen(axes, positions).of(&moved(axes, positions, Carried::Workpiece))
+}
+
+/// What stands on the floor, as the robot sees it.
+pub(super) fn floor_seen(axes: &[ExternalAxis], positions: &[Option<f64>; 6]) -> Frame {
+    moved(axes, positions, Carried::Robot).inverted()
+}
+
+/// The table of the axes that carry the workpiece, with all of them at zero, for a robot root in the same frame: the origin on the last
+/// axis, z along it, x as near to x of the root as z allows, or to y of the root where z is less than about 25 deg from its x.
+pub(super) fn table(axes: &[ExternalAxis], root: &Frame) -> Option<Frame> {
+    let axis = axes.iter().rev().find(|axis| axis.carries == Carried::Workpiece)?;
+    let z: [f64; 3] = axis.direction.into();
+    let column = |k: usize| root.turn.map(|row| row[k]);
+    let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+    let near = if dot(&z, &column(0)).abs() > 0.9 { column(1) } else { column(0) };
+    let y = cross(&z, &near);
+    let size = length(&y);
+    let y = y.map(|part| part / size);
+    let x = cross(&y, &z);
+    let turn = std::array::from_fn(|row| [x[row], y[row], z[row]]);
+    Some(Frame { turn, origin: <[f64; 3]>::from(axis.point).map(|m| m * 1e3) })
 }
 
 /// The angles of the rows (rad) for those of a controller (deg).

@@ -2,7 +2,7 @@
 //!
 //! Nothing is shared with the writers: the languages are parsed anew, and frames, angles and forward kinematics are those of
 //! `geometry`. Joint moves go through the rows of the robot and the controller's signs and offsets; linear moves through the frames
-//! that the program states. Either way the flange is found first, and then the tool of the run on it, so that a wrong tool frame in the
+//! that the program states, as the controller takes them: a base that is coupled to no mechanism stands still, whatever external axes do. Either way the flange is found first, and then the tool of the run on it, so that a wrong tool frame in the
 //! program is found, too.
 
 mod expected;
@@ -14,22 +14,48 @@ mod rapid;
 mod table;
 mod written;
 
-use super::{CorrectedPath, ProgramFormat, corrected::corrected_targets, motion::Target, ways::Ways};
+use super::{CorrectedPath, ExportOptions, ProgramFormat, corrected::corrected_targets, motion::Target, ways::Ways};
 use crate::input::{InputError, InputFile, input_file};
 use crate::plan::read_plan;
 use crate::run::Run;
 use expected::{Expected, frame, workpiece};
-use geometry::{Frame, apart, flange, of_rows, seen};
+use geometry::{Frame, apart, flange, floor_seen, of_rows, seen, table as table_at_zero};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Controller, Pose, Robot};
-use written::{Goal, Source, Written};
+use written::{Base, End, Goal, Source, Written};
 
 /// How far the tool may be off. mm
 pub const POSITION_MM: f64 = 0.01;
 /// How far the tool may be turned. deg
 pub const ANGLE_DEG: f64 = 0.01;
+
+/// How far the feed may be off where the form holds decimals. mm/s
+const FEED_MM_PER_S: f64 = 2e-3;
+/// How far it may be off on a Fanuc, which holds whole mm/s from 1 on. mm/s
+const WHOLE_FEED: f64 = 0.5 + 1e-9;
+/// The share of the speed at which moves of a Fanuc are blended. %
+const FANUC_SHARE: f64 = 10.0;
+/// How far the distance may be off at which blending begins. mm
+const BLEND_MM: f64 = 1e-3;
+
+/// How a program was exported, which cannot be read from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReadBackOptions<'a> {
+    /// The corrected path that it follows.
+    pub corrected: Option<CorrectedPath<'a>>,
+    /// How far the tool is retracted along its axis before and after a segment; 0 for not at all. m
+    pub approach: f64,
+    /// Distance from a corner at which blending begins; 0 for exact stops. m
+    pub blend: f64,
+}
+
+impl Default for ReadBackOptions<'_> {
+    fn default() -> Self {
+        Self { corrected: None, approach: ExportOptions::APPROACH, blend: ExportOptions::BLEND }
+    }
+}
 
 /// A move of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -110,9 +136,9 @@ pub fn check(
     run: &Run,
     plan: &Path,
     program: &Path,
-    corrected: Option<CorrectedPath<'_>>,
-    approach: f64,
+    options: &ReadBackOptions<'_>,
 ) -> Result<ProgramCheck, InputError> {
+    let ReadBackOptions { corrected, approach, blend } = *options;
     let source = Source::read(program)?;
     let format = format_of(program)?;
     let (plan, plan_file) = read_plan(plan, &run.problem)?;
@@ -148,6 +174,8 @@ pub fn check(
         stand: frame(&robot.cell_from_base()),
         placed: workpiece(&plan.placement).of(&frame(&lying)),
         axes: &problem.external_axes,
+        format,
+        blend: blend * 1e3,
     };
     let mut result = arm.compared(&source, &written.all, &expected)?;
     result.hits = free::hits(&problem, &plan.placement, &ways, &written.all, &expected);
@@ -176,6 +204,9 @@ struct Arm<'a> {
     /// The workpiece of the task file in the cell frame, with all external axes at zero.
     placed: Frame,
     axes: &'a [ExternalAxis],
+    format: ProgramFormat,
+    /// Where blending begins. mm
+    blend: f64,
 }
 
 impl Arm<'_> {
@@ -196,9 +227,10 @@ impl Arm<'_> {
             hits: Vec::new(),
             inputs: Vec::new(),
         };
-        for (one, wanted) in written.iter().zip(expected) {
+        for (number, (one, wanted)) in written.iter().zip(expected).enumerate() {
             if check.mismatch.is_none() {
-                check.mismatch = self.mismatch(one, wanted);
+                let ends_part = written.get(number + 1).is_none_or(|next| next.file != one.file);
+                check.mismatch = self.mismatch(one, wanted).or_else(|| self.other_pace(one, wanted, ends_part));
             }
             for tool in self.tools(one)? {
                 let (mm, deg) = apart(&tool, &wanted.tool);
@@ -235,6 +267,35 @@ impl Arm<'_> {
         Some(format!("{place}: axis {} is a turn away from the plan at point {}", far + 1, wanted.point))
     }
 
+    /// In what the feed of a move or its end is another than the plan's. A part may end with an exact stop.
+    fn other_pace(&self, one: &Written, wanted: &Expected, ends_part: bool) -> Option<String> {
+        let place = format!("{}:{}", one.file.display(), one.line);
+        let allowed = match self.format {
+            ProgramFormat::Fanuc => WHOLE_FEED.max(1.0 - wanted.feed),
+            _ => FEED_MM_PER_S,
+        };
+        if let Some(feed) = one.pace.feed.filter(|feed| (feed - wanted.feed).abs() > allowed || feed.is_nan()) {
+            let (asked, point) = (wanted.feed, wanted.point);
+            return Some(format!(
+                "{place}: the feed is {feed} mm/s, and at point {point} the plan asks for {asked:.4}"
+            ));
+        }
+        let end = one.pace.end?;
+        let asked = match self.format {
+            _ if !wanted.is_blended || self.blend == 0.0 => End::Exact,
+            ProgramFormat::Fanuc => End::Share(FANUC_SHARE),
+            _ => End::Within(self.blend),
+        };
+        let is_same = match (end, asked) {
+            (End::Within(found), End::Within(asked)) => (found - asked).abs() <= BLEND_MM,
+            (End::Exact, _) if ends_part => true,
+            _ => end == asked,
+        };
+        (!is_same).then(|| {
+            format!("{place}: the move {end}, where the program of the plan {asked}, at point {}", wanted.point)
+        })
+    }
+
     /// Where a move brings the tool of the run, in the cell frame, by each way in which the program says it.
     fn tools(&self, one: &Written) -> Result<Vec<Frame>, InputError> {
         let unknown = |what: &str| {
@@ -253,16 +314,25 @@ impl Arm<'_> {
                 tools.extend(angles.as_ref().map(by_angles).transpose()?);
                 Ok(tools)
             }
-            Goal::Line { tool, frames: [base, mounted] } => {
+            Goal::Line { tool, base, mounted } => {
                 let root = self.controller.and_then(|controller| controller.root_from_base);
                 let root = frame(&root.ok_or_else(|| unknown("[root]"))?);
-                let flange = seen(self.axes, &one.external)
-                    .of(&self.stand)
-                    .of(&root.inverted())
-                    .of(base)
-                    .of(tool)
-                    .of(&mounted.inverted());
-                Ok(vec![flange.of(&self.mounted)])
+                let cell_from_root = self.stand.of(&root.inverted());
+                let base = match base {
+                    Base::Still(base) => floor_seen(self.axes, &one.external).of(&cell_from_root).of(base),
+                    Base::OnTable(base) => {
+                        let table = table_at_zero(self.axes, &cell_from_root).ok_or_else(|| {
+                            InputError::new(
+                                &one.file,
+                                "couples its base to axes that carry the workpiece, and the run has none",
+                            )
+                            .at_line(one.line)
+                            .allowed("a program of this run")
+                        })?;
+                        seen(self.axes, &one.external).of(&table).of(base)
+                    }
+                };
+                Ok(vec![base.of(tool).of(&mounted.inverted()).of(&self.mounted)])
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The table of moves.
 
 use super::geometry::{Frame, apart, turned_by_quaternion, turned_xyz};
-use super::written::{Goal, Moves, Source, frame_of};
+use super::written::{Goal, Moves, Pace, Source, frame_of};
 use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
 
@@ -23,6 +23,7 @@ pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
     let [a, b, c] = try_each(["a_deg", "b_deg", "c_deg"], column)?;
     let quaternion = try_each(["q_w", "q_x", "q_y", "q_z"], column)?;
     let axes = try_each(["a1_deg", "a2_deg", "a3_deg", "a4_deg", "a5_deg", "a6_deg"], column)?;
+    let feed = column("feed_mm_per_s")?;
     let external: [Option<usize>; 6] = std::array::from_fn(|axis| {
         ["mm", "deg"].into_iter().find_map(|unit| table.column(&format!("e{}_{unit}", axis + 1)))
     });
@@ -45,7 +46,8 @@ pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
             _ => return Err(row.fail(kind, "no such move", "joint, linear")),
         };
         let external = try_each(external, |column| column.map(|column| row.number(column)).transpose())?;
-        moves.push(source, row.line(), (Goal::Row { tool, angles, is_joint }, external))?;
+        let feed = if is_joint { None } else { Some(row.number(feed)?) };
+        moves.push(source, row.line(), (Goal::Row { tool, angles, is_joint }, external, Pace { feed, end: None }))?;
     }
     Ok(moves)
 }

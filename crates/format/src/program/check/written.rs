@@ -14,7 +14,50 @@ pub(super) struct Written {
     pub goal: Goal,
     /// Where the external axes go that the move names, in mm and deg.
     pub external: External,
+    pub pace: Pace,
 }
+
+/// How fast a move is, and how it ends.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Pace {
+    /// Speed of the tool, for moves on lines. mm/s
+    pub feed: Option<f64>,
+    /// How it ends, where the program says.
+    pub end: Option<End>,
+}
+
+/// How a move ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    /// With a stop.
+    Exact,
+    /// The next move begins within this distance. mm
+    Within(f64),
+    /// The next move begins at this share of the speed, in percent.
+    Share(f64),
+}
+
+impl std::fmt::Display for End {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Exact => write!(f, "stops exactly"),
+            Self::Within(mm) => write!(f, "is blended within {mm} mm"),
+            Self::Share(percent) => write!(f, "is blended by CNT{percent}"),
+        }
+    }
+}
+
+/// What linear poses are given in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Base {
+    /// A frame in the robot root: it stands still, wherever external axes bring the workpiece.
+    Still(Frame),
+    /// A frame on the table that the external axes carry.
+    OnTable(Frame),
+}
+
+/// A move without its place in the file.
+pub(super) type Step = (Goal, External, Pace);
 
 /// Positions of external axes E1 to E6, in mm and deg.
 pub(super) type External = [Option<f64>; 6];
@@ -29,8 +72,8 @@ pub(super) fn external(entries: &mut BTreeMap<String, f64>) -> External {
 pub(super) enum Goal {
     /// All joints at once to angles of the controller. deg
     Angles([f64; 6]),
-    /// On a line to the tool in the workpiece frame; the frames are the workpiece in the robot root and the tool on the flange.
-    Line { tool: Frame, frames: [Frame; 2] },
+    /// On a line to the tool in a base, with this tool on the flange.
+    Line { tool: Frame, base: Base, mounted: Frame },
     /// As a table has a move: the tool in the workpiece frame, and angles of the controller where they are known.
     Row { tool: Frame, angles: Option<[f64; 6]>, is_joint: bool },
 }
@@ -119,12 +162,12 @@ impl Moves {
     ///
     /// # Errors
     /// [`InputError`] where there are more than anyone has.
-    pub fn push(&mut self, source: &Source, line: usize, goal: (Goal, External)) -> Result<(), InputError> {
-        let (goal, external) = goal;
+    pub fn push(&mut self, source: &Source, line: usize, step: Step) -> Result<(), InputError> {
+        let (goal, external, pace) = step;
         if self.all.len() >= MOST {
             return Err(source.error(line, format!("is beyond {MOST} moves"), ""));
         }
-        self.all.push(Written { file: source.file.clone(), line, goal, external });
+        self.all.push(Written { file: source.file.clone(), line, goal, external, pace });
         Ok(())
     }
 }

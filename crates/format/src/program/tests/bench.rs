@@ -1,7 +1,7 @@
 //! A run and a plan on an arm imported from a URDF fixture.
 
 use crate::plan::axis_column;
-use crate::program::check::{ProgramCheck, check};
+use crate::program::check::{ProgramCheck, ReadBackOptions, check};
 use crate::program::{ExportError, ExportOptions, Program, ProgramFormat, export};
 use crate::urdf::{ImportOptions, ImportedRobot, import_robot_text};
 use crate::{Run, read_run};
@@ -113,7 +113,7 @@ impl Bench {
     }
 
     pub fn check(&self, main: &Path) -> Result<ProgramCheck, crate::input::InputError> {
-        check(&self.run, &self.plan, main, None, ExportOptions::APPROACH)
+        check(&self.run, &self.plan, main, &ReadBackOptions::default())
     }
 }
 

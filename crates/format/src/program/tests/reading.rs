@@ -1,5 +1,6 @@
 //! Programs read back: the sound ones are sound, and no change of a number or a line is overlooked.
 
+use super::super::check::{ReadBackOptions, check};
 use super::super::{ExportOptions, ProgramFormat};
 use super::bench::{ARMS, Bench};
 use proptest::prelude::*;
@@ -28,6 +29,57 @@ fn programs_are_those_of_their_plan() {
         assert!(bench.check(&bench.written(&table, "t")).unwrap().is_sound());
         assert_eq!(bench.format, format);
     }
+}
+
+#[test]
+fn other_feeds_and_other_ends_of_moves_are_found() {
+    let changes: [(&str, &[(&str, &str)]); 3] = [
+        (
+            "kuka",
+            &[
+                ("$VEL.CP=0.066667", "$VEL.CP=0.060000"),
+                ("$APO.CDIS=1.0000", "$APO.CDIS=1.1000"),
+                ("} C_DIS\n", "}\n"),
+                ("}\nLIN {X 33.333", "} C_DIS\nLIN {X 33.333"),
+            ],
+        ),
+        (
+            "abb",
+            &[
+                ("[66.667,500", "[66.067,500"),
+                (",z_PART,", ",fine,"),
+                ("],fine,t_PART\\WObj:=w_PART;\n    MoveL [[33", "],z_PART,t_PART\\WObj:=w_PART;\n    MoveL [[33"),
+                ("zonedata z_PART:=[FALSE,1.000,", "zonedata z_PART:=[FALSE,1.100,"),
+            ],
+        ),
+        (
+            "fanuc",
+            &[("67mm/sec", "68mm/sec"), ("CNT10", "CNT11"), ("CNT10", "FINE"), ("67mm/sec FINE", "67mm/sec CNT10")],
+        ),
+    ];
+    for (arm, changes) in changes {
+        let bench = Bench::new(arm);
+        let program = bench.export(&bench.options()).unwrap();
+        for (number, (from, to)) in changes.iter().enumerate() {
+            let mut changed = program.clone();
+            let file = changed.files.iter_mut().rfind(|file| file.text.contains(from));
+            let file = file.unwrap_or_else(|| panic!("{from} in {program:?}"));
+            file.text = file.text.replacen(from, to, 1);
+            let found = bench.check(&bench.written(&changed, &format!("p{number}"))).unwrap();
+            assert!(found.mismatch.is_some() && !found.is_sound(), "{arm}: {from} -> {to}");
+        }
+    }
+    // As it was exported: with exact stops, or read back with another distance.
+    let bench = Bench::new("kuka");
+    let main = bench.written(&bench.export(&ExportOptions { blend: 0.0, ..bench.options() }).unwrap(), "exact");
+    assert!(!bench.check(&main).unwrap().is_sound());
+    let exact = ReadBackOptions { blend: 0.0, ..ReadBackOptions::default() };
+    assert!(check(&bench.run, &bench.plan, &main, &exact).unwrap().is_sound());
+    let table = bench.export(&ExportOptions::new(ProgramFormat::Csv, "T")).unwrap();
+    let slower = table.files[0].text.replacen(",66.6670", ",66.0000", 1);
+    let main = bench.written(&table, "t");
+    std::fs::write(&main, slower).unwrap();
+    assert!(bench.check(&main).unwrap().mismatch.unwrap().contains("the feed is 66 mm/s"));
 }
 
 /// Programs of all forms with their main files.

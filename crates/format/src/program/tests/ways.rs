@@ -1,7 +1,7 @@
 //! Programs of runs with surroundings: ways between segments in every form, with external axes too, read back.
 
 use super::bench::{ARMS, Bench};
-use super::external_axes::TABLES;
+use super::external_axes::{TABLES, options, positions};
 use crate::program::{ExportOptions, ProgramFormat};
 
 const SPINDLE: &str = "[[shape]]
@@ -26,11 +26,20 @@ fn zones() -> Vec<String> {
 fn programs_among_surroundings_are_read_back_with_what_hits() {
     for (name, _, format) in ARMS {
         for (zone, axes) in zones().iter().flat_map(|zone| [(zone, ""), (zone, TABLES)]) {
-            let positions = |point: usize| vec![0.01 * point as f64 - 0.04, 0.1 - 0.02 * point as f64];
-            let positions = |point: usize| if axes.is_empty() { Vec::new() } else { positions(point) };
-            let bench = Bench::with(name, &format!("{SPINDLE}{zone}{axes}"), positions);
+            let of_axes = positions(name);
+            let at = |point: usize| if axes.is_empty() { Vec::new() } else { of_axes(point) };
+            let bench = Bench::with(name, &format!("{SPINDLE}{zone}{axes}"), at);
             for (format, folder) in [(format, "maker"), (ProgramFormat::Csv, "table")] {
-                let program = bench.export(&ExportOptions { format, ..bench.options() }).unwrap();
+                let plain = ExportOptions { format, allow_blocked_moves: true, ..bench.options() };
+                let asked = if axes.is_empty() {
+                    plain
+                } else {
+                    ExportOptions { allow_blocked_moves: true, ..options(&bench, format) }
+                };
+                let program = bench.export(&asked).unwrap();
+                let is_said = program.files.iter().any(|file| file.text.contains("collisions were not checked"));
+                let is_around = !zone.is_empty();
+                assert_eq!(is_said, !is_around && format != ProgramFormat::Csv, "{name} {format:?}");
                 let found = bench.check(&bench.written(&program, folder)).unwrap();
                 assert!(found.is_sound(), "{name} {format:?} {zone}: {found:?}");
                 assert_eq!(found.hits.len(), program.warnings.len(), "{name} {format:?} {zone}: {found:?}");
@@ -46,9 +55,8 @@ fn programs_among_surroundings_are_read_back_with_what_hits() {
 
 #[test]
 fn external_axes_stay_on_the_way_out_and_stand_right_on_the_way_in() {
-    let positions = |point: usize| vec![0.01 * point as f64 - 0.04, 0.1 - 0.02 * point as f64];
-    let bench = Bench::with("kuka", &format!("{SPINDLE}{TABLES}"), positions);
-    let program = bench.export(&bench.options()).unwrap();
+    let bench = Bench::with("kuka", &format!("{SPINDLE}{TABLES}"), positions("kuka"));
+    let program = bench.export(&options(&bench, ProgramFormat::Krl)).unwrap();
     let lines: Vec<&str> = program.files[1].text.lines().collect();
     let at = lines.iter().position(|line| *line == "; segment 2, by a free way").unwrap();
     // Point 3 ends segment 1, point 4 begins segment 2.

@@ -29,6 +29,7 @@ fn a_krl_program_moves_jointly_to_each_segment_and_then_on_lines() {
     {
         assert!(main.contains(part), "{part} in {main}");
     }
+    assert!(main.contains("\n; collisions were not checked\n"), "{main}");
     let part = text(&program, "PART_01.src");
     for wanted in [
         "$BASE={FRAME: X ",

@@ -210,7 +210,7 @@ impl Robot {
     }
 
     /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well the
-    /// old ones were known ([`Robot::uncertainty`]) says nothing of them, and is left out.
+    /// old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out.
     ///
     /// # Errors
     /// [`RobotError`] for a compliance that [`Robot::new`] refuses.
@@ -219,7 +219,7 @@ impl Robot {
         for (joint, compliance) in joints.iter_mut().zip(compliances) {
             joint.compliance = compliance.into();
         }
-        let robot = Self::new(self.name(), joints)?.with_data_sheet(*self.data_sheet())?;
+        let robot = Self::new(&self.name, joints)?.with_data_sheet(*self.data_sheet())?;
         let robot = robot.mounted(&self.cell_from_base());
         Ok(match self.dynamics() {
             Some(dynamics) => robot.with_dynamics(*dynamics),
@@ -232,13 +232,17 @@ impl Robot {
     /// # Errors
     /// [`RobotError`] where that is no compliance, for a share that is not from 0 to 1.
     pub fn with_range_share(&self, share: f64) -> Result<Self, RobotError> {
-        self.with_compliances(self.joints().clone().map(|joint| match joint.compliance {
+        let robot = self.with_compliances(self.joints().clone().map(|joint| match joint.compliance {
             Compliance::Range { at_min, at_max } => {
                 let (least, most) = (at_min.min(at_max), at_min.max(at_max));
                 Compliance::Constant(least + share * (most - least))
             }
             law => law,
-        }))
+        }))?;
+        Ok(match self.stiffness_like() {
+            Some(other) => robot.with_stiffness_like(other),
+            None => robot,
+        })
     }
 }
 
