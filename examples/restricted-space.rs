@@ -153,7 +153,7 @@ fn study(folder: &Path, mesh: &Path, (name, depth, height): (&str, f64, f64)) ->
     println!(
         "{name}: {} points at depth {depth} and height {height} mm of the box, which stands at {BOX:?} mm, turned by {:.1} deg",
         LINE.0,
-        2.0 * Q4.asin().to_degrees()
+        2.0 * libm::asin(Q4).to_degrees()
     );
     println!(
         "{free_points} of {} points looked at have a free state; {free} of {reached} states within the limits of the joints are free",

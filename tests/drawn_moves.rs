@@ -27,7 +27,7 @@ fn drawn(file: &[u8]) -> Vec<Joints> {
         let turns = numbers(&animation["samplers"][channel["sampler"].as_u64().unwrap() as usize]["output"]);
         let mut last = 0.0;
         let unwound = turns.chunks(4).map(|turn| {
-            let change = 2.0 * turn[2].atan2(turn[3]) - last;
+            let change = 2.0 * libm::atan2(turn[2], turn[3]) - last;
             last += change - TAU * (change / TAU).round();
             last
         });

@@ -248,19 +248,22 @@ fn among_surroundings_the_moves_between_segments_are_free_ways() {
 }
 
 #[test]
-fn a_move_without_a_free_way_is_a_warning_a_comment_and_found() {
+fn a_move_without_a_free_way_is_refused_or_a_warning_a_comment_and_found() {
     let bench = among(
         "[[keep_out]]\nname = 'lid'\npoints = ['tool']\nhalf_space = { xyz_mm = [0, 0, 600], normal = [0, 0, 1] }\n",
     );
-    let ended = export(&bench, &[]);
+    let wanted = |a, b| {
+        format!("NOT FREE: the move from segment {a} to segment {b} hits (tool and lid), and no free way was found")
+    };
+    let refused = export(&bench, &[]);
+    assert_eq!((refused.code, refused.stdout.as_str()), (Some(1), ""), "{}", refused.stderr);
+    refused.assert_says(&[&wanted(2, 3), "--allow-blocked-moves"]);
+    assert!(!bench.path("p").exists());
+
+    let ended = export(&bench, &["--allow-blocked-moves"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let warnings: Vec<&str> = ended.stderr.lines().filter(|line| line.starts_with("warning: ")).collect();
-    let wanted = |a, b| {
-        format!(
-            "warning: the move from segment {a} to segment {b} hits: tool and lid; no free way was found, and the program goes straight over"
-        )
-    };
-    assert_eq!(warnings, [wanted(2, 3), wanted(4, 5)]);
+    assert_eq!(warnings, [wanted(2, 3), wanted(4, 5)].map(|line| format!("warning: {line}")));
     let part = bench.read("p/PART_01.src");
     assert!(part.contains("; segment 3\n; NOT FREE: this move hits\n; - tool\n; - lid\n; start: "), "{part}");
     assert!(part.contains("; segment 4, by a free way\n"), "{part}");
@@ -269,7 +272,8 @@ fn a_move_without_a_free_way_is_a_warning_a_comment_and_found() {
     assert!(read.stdout.contains(" hits: tool and lid (segment 3)\n"), "{}", read.stdout);
     read.assert_says(&["error: p/PART.src: 2 moves hit what stands around; allowed: "]);
 
-    let table = bench.stead(&["export", RUN, PLAN, "--format", "csv", "--out", "t/PART", "--json"]);
+    let table =
+        bench.stead(&["export", RUN, PLAN, "--format", "csv", "--out", "t/PART", "--json", "--allow-blocked-moves"]);
     assert_eq!(table.json()["warnings"].as_array().unwrap().len(), 2);
     let text = bench.read("t/PART.csv");
     assert!(text.lines().next().unwrap().ends_with(",hits"), "{text}");

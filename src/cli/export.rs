@@ -28,7 +28,7 @@ pub(super) struct ExportCommand {
     /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not at all
     #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
     pub approach_mm: f64,
-    /// Write the program though no free way was found for some moves between segments: they hit, and are marked NOT FREE in it
+    /// Write moves between segments that hit too, marked NOT FREE, instead of refusing the program
     #[arg(long)]
     pub allow_blocked_moves: bool,
     /// Distance from a corner at which blending begins; 0 for exact stops
