@@ -42,7 +42,9 @@ fn programs_among_surroundings_are_read_back_with_what_hits() {
                 assert_eq!(is_said, !is_around && format != ProgramFormat::Csv, "{name} {format:?}");
                 let found = bench.check(&bench.written(&program, folder)).unwrap();
                 assert!(found.is_sound(), "{name} {format:?} {zone}: {found:?}");
-                assert_eq!(found.hits.len(), program.warnings.len(), "{name} {format:?} {zone}: {found:?}");
+                // Others tell of lines out of the cut that are short.
+                let blocked = program.warnings.iter().filter(|warning| warning.to_string().starts_with("NOT FREE: "));
+                assert_eq!(found.hits.len(), blocked.count(), "{name} {format:?} {zone}: {found:?}");
                 assert!(found.hits.iter().all(|hit| !zone.is_empty() && hit.pair == "tool and hood"));
                 let marked = program.files.iter().any(|file| {
                     file.text.contains("NOT FREE: this move hits") || file.text.contains(",\"tool and hood\"")
