@@ -152,3 +152,40 @@ fn an_imported_path_is_placed_with_stated_forces() {
     let mean = case["mean_mm"].as_f64().unwrap();
     assert!((mean / (scores.iter().sum::<f64>() / 10.0) - 1.0).abs() < 1e-4, "{mean} {scores:?}");
 }
+
+#[test]
+fn holes_are_drilled_or_left_out_and_tool_axes_from_below_are_noted() {
+    let bench = bench();
+    let drilled = PROGRAM.replace(
+        "COOLNT/OFF\n",
+        "CYCLE/DRILL,RAPTO,3.,FEDTO,-9.,MMPM,240.\nGOTO/10.,10.,0.\nGOTO/20.,10.,0.\nCYCLE/OFF\n",
+    );
+    bench.write("slot.cls", &drilled);
+    let ended = bench.stead(&IMPORT);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["holes of drilling cycles taken as a plunge"]);
+    assert!(ended.stdout.contains(": 4 segments, "), "{}", ended.stdout);
+    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    let ended = bench.stead(&[&IMPORT[..], &["--skip-cycles"]].concat());
+    ended.assert_says(&["2 holes left out (--skip-cycles): 10, 10, 0 mm (line 22); 20, 10, 0 mm (line 23)"]);
+    assert!(ended.stdout.contains(": 2 segments, "), "{}", ended.stdout);
+    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+
+    bench.write("slot.cls", &PROGRAM.replace("0.,0.,1.", "0.,0.,-1."));
+    let ended = bench.stead(&IMPORT);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["tool axes point downwards in the frame of the part", "is their sign right?"]);
+
+    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    for (words, parts) in [
+        ("MODE/INCR", ["slot.cls:20: MODE: may move the tool", "straight moves"]),
+        ("CALSUB/5", ["slot.cls:20: CALSUB: may move the tool", "straight moves"]),
+        ("CYCLE/CSINK,5", ["slot.cls:20: CYCLE: a cycle whose moves are not known", "--skip-cycles"]),
+    ] {
+        bench.write("slot.cls", &PROGRAM.replace("COOLNT/OFF", words));
+        let refused = bench.stead(&IMPORT);
+        assert_eq!(refused.code, Some(2));
+        refused.assert_says(&parts);
+        assert!(!bench.path("new/task.csv").exists());
+    }
+}

@@ -26,7 +26,7 @@ type Change = fn(&Bench);
 
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
-    let cases: [(Change, &str); 7] = [
+    let cases: [(Change, &str); 12] = [
         (
             |bench| {
                 bench.replace(ROBOT, "= 3.32", "= 332e3");
@@ -45,8 +45,37 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
             },
             "the tool points from its centre point back to the flange",
         ),
-        (|bench| scale_task(bench, 1e-3, 1.0), "the tool path is 1.00 mm long in all"),
+        (|bench| scale_task(bench, 1e-3, 1.0), "the tool path is no wider than "),
         (|bench| scale_task(bench, 1.0, 2e3), "forces go up to "),
+        (|bench| scale_task(bench, 1.0, 1e-4), "forces go up to 0."),
+        (|bench| scale_task(bench, 1.0, 0.0), "all forces are zero"),
+        (
+            |bench| {
+                bench.replace(RUN, "feed_mm_per_s = ", "feed_mm_per_s = 1200.0 # ");
+            },
+            "feeds go up to 1200 mm/s: are they in mm/s, not mm/min?",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "characteristic_length_mm = ", "characteristic_length_mm = 0.682 # ");
+            },
+            "constraints.characteristic_length_mm is 0.682: is it in mm?",
+        ),
+        (
+            |bench| {
+                let text = bench.read(TASK);
+                let turned = text.lines().map(|line| {
+                    let fields: Vec<&str> = line.split(',').collect();
+                    let flipped = |(k, field): (usize, &&str)| match (k, field.parse::<f64>()) {
+                        (7..=9, Ok(value)) => (-value).to_string(),
+                        _ => (*field).to_owned(),
+                    };
+                    fields.iter().enumerate().map(flipped).collect::<Vec<_>>().join(",") + "\n"
+                });
+                bench.write(TASK, &turned.collect::<String>());
+            },
+            " tool axes point downwards in the cell, so that the spindle would be below the part",
+        ),
         (
             |bench| {
                 for (axis, ends) in [("x_mm", "[-0.3, 0.3]"), ("y_mm", "[-1.64, -1.0]"), ("z_mm", "[-0.5, -0.2]")] {

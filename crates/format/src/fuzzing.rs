@@ -78,6 +78,7 @@ impl Reader {
         let format = if self == Self::Gcode { CamFormat::Gcode } else { CamFormat::Cldata };
         let gcode = self == Self::Gcode;
         ReadSettings {
+            skip_cycles: false,
             format: Some(format),
             units: (gcode && kind.is_multiple_of(3)).then_some(LengthUnit::Millimetre),
             machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),

@@ -2,6 +2,7 @@
 
 use crate::robot::{Robot, Spindle};
 use crate::task::ToolPath;
+use nalgebra::Vector3;
 use stead_numerics::digits::figures;
 
 /// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N m/rad
@@ -10,8 +11,18 @@ const KNOWN_STIFFNESSES: [f64; 2] = [2.9e4, 9.1e6];
 const BEYOND: f64 = 100.0;
 /// A tool centre point nearer to the flange looks wrong. m
 const SHORTEST_SPINDLE: f64 = 1e-3;
-/// A shorter path looks wrong. m
-const SHORTEST_PATH: f64 = 5e-3;
+/// A path that is no wider in any direction looks wrong. m
+const SMALLEST_PATH: f64 = 5e-3;
+/// A faster feed looks wrong. m/s
+const FASTEST_FEED: f64 = 1.0;
+/// Of forces none of which is larger the unit looks wrong. N
+const SMALLEST_FORCE: f64 = 1.0;
+/// A shorter characteristic length looks wrong. m
+const SHORTEST_CHARACTERISTIC_LENGTH: f64 = 10e-3;
+/// Ranges of joints beyond these look wrong: radians for degrees, or degrees for radians. deg
+const RANGES_DEG: [f64; 2] = [7.0, 1000.0];
+/// Tool axes that point down by more than this, the sine of the angle below the horizontal, come from below.
+const FROM_BELOW: f64 = 0.1;
 /// A larger force looks wrong. N
 const LARGEST_FORCE: f64 = 1e5;
 /// A larger deflection looks wrong. m
@@ -27,7 +38,7 @@ pub fn arm(robot: &Robot) -> Vec<String> {
         )
     });
     let unverified = robot.unverified().iter().map(|what| format!("{}: not verified: {what}", robot.name()));
-    odd_stiffness(robot).into_iter().chain(borrowed).chain(unverified).collect()
+    odd_stiffness(robot).into_iter().chain(joint_ranges(robot)).chain(borrowed).chain(unverified).collect()
 }
 
 /// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
@@ -66,16 +77,66 @@ pub fn spindle(spindle: &Spindle) -> Option<String> {
     })
 }
 
-/// A path of hardly any length.
-pub fn path(path: &ToolPath) -> Option<String> {
-    let length: f64 = (0..path.segments().len()).map(|segment| path.segment_length(segment)).sum();
-    (path.points().len() > 1 && length < SHORTEST_PATH)
-        .then(|| format!("the tool path is {} mm long in all: are its places in mm?", figures(length * 1e3)))
+/// Joints that hardly turn, or turn many times about.
+pub fn joint_ranges(robot: &Robot) -> Option<String> {
+    let [least, most] = RANGES_DEG;
+    let range = |joint: &crate::robot::Joint| (joint.max - joint.min).to_degrees();
+    let odd: Vec<String> = (robot.joints().iter().enumerate())
+        .filter(|(_, joint)| !(least..=most).contains(&range(joint)))
+        .map(|(number, joint)| format!("joint {} by {} deg", number + 1, figures(range(joint))))
+        .collect();
+    (!odd.is_empty()).then(|| {
+        format!("{}: can turn {}: are the limits of its joints in the right unit?", robot.name(), odd.join(", "))
+    })
 }
 
-/// A force (N) that hardly any tool bears.
+/// A path of hardly any extent.
+pub fn path(path: &ToolPath) -> Option<String> {
+    let points = path.points();
+    let along = |k: usize| {
+        let values = || points.iter().map(|point| point.position[k]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    let extent = (0..3).map(along).fold(0.0, f64::max);
+    (points.len() > 1 && extent < SMALLEST_PATH).then(|| {
+        format!("the tool path is no wider than {} mm in any direction: are its places in mm?", figures(extent * 1e3))
+    })
+}
+
+/// A feed (m/s) that hardly any cut has.
+pub fn feed(highest: f64) -> Option<String> {
+    (highest > FASTEST_FEED && highest.is_finite())
+        .then(|| format!("feeds go up to {} mm/s: are they in mm/s, not mm/min?", figures(highest * 1e3)))
+}
+
+/// A force (N) that hardly any tool bears, or that hardly deflects anything.
 pub fn force(largest: f64) -> Option<String> {
-    (largest > LARGEST_FORCE).then(|| format!("forces go up to {} N: are they in N?", figures(largest)))
+    if largest == 0.0 {
+        return Some("all forces are zero: nothing deflects, and every placement is as good as any other".to_owned());
+    }
+    (largest > LARGEST_FORCE || largest < SMALLEST_FORCE)
+        .then(|| format!("forces go up to {} N: are they in N?", figures(largest)))
+}
+
+/// A characteristic length (m) that hardly any arm has.
+pub fn characteristic_length(length: f64) -> Option<String> {
+    (length < SHORTEST_CHARACTERISTIC_LENGTH)
+        .then(|| format!("constraints.characteristic_length_mm is {}: is it in mm?", figures(length * 1e3)))
+}
+
+/// Tool axes most of which point downwards, in a frame whose z axis is up: the spindle would be below the part.
+pub fn tool_axes<'a>(axes: impl Iterator<Item = &'a Vector3<f64>>, frame: &str) -> Option<String> {
+    let (mut count, mut below) = (0, 0);
+    for axis in axes {
+        count += 1;
+        below += usize::from(axis.z < -FROM_BELOW);
+    }
+    (2 * below > count).then(|| {
+        format!(
+            "{below} of {count} tool axes point downwards {frame}, so that the spindle would be below the part: tool axes point from the \
+             workpiece to the spindle; is their sign right?"
+        )
+    })
 }
 
 /// A deflection (m) that no part survives.
@@ -94,7 +155,7 @@ mod tests {
     use crate::robot::testing::{kr270, spindle as mounted};
     use crate::task::PathPoint;
     use crate::task::testing::five_segments;
-    use nalgebra::{Vector3, vector};
+    use nalgebra::vector;
 
     #[test]
     fn what_is_usual_is_not_noted() {
@@ -152,13 +213,48 @@ mod tests {
     }
 
     #[test]
+    fn joints_that_hardly_turn_or_turn_many_times_are_named() {
+        let with = |range: f64| {
+            let mut joints = kr270().joints().clone();
+            joints[3].min = 0.1;
+            joints[3].max = 0.1 + range.to_radians();
+            joint_ranges(&Robot::new("arm", joints).unwrap())
+        };
+        assert_eq!((with(7.1), with(999.0)), (None, None));
+        assert_eq!(
+            with(6.3).unwrap(),
+            "arm: can turn joint 4 by 6.30 deg: are the limits of its joints in the right unit?"
+        );
+        assert!(with(1001.0).unwrap().contains("joint 4 by 1001 deg"));
+    }
+
+    #[test]
+    fn tool_axes_from_below_are_noted() {
+        let [up, level, down] = [vector![0.0, 0.0, 1.0], vector![1.0, 0.0, 0.0], vector![0.0, 0.6, -0.8]];
+        let note = |axes: &[Vector3<f64>]| tool_axes(axes.iter(), "in the cell");
+        assert_eq!((note(&[up, down]), note(&[level; 3]), note(&[])), (None, None, None));
+        let said = note(&[up, down, down]).unwrap();
+        assert!(said.starts_with("2 of 3 tool axes point downwards in the cell, so that the spindle"), "{said}");
+    }
+
+    #[test]
     fn short_paths_large_forces_and_large_deflections_are_noted() {
         let [place, axis, feed] = [Vector3::zeros(), Vector3::z(), Vector3::x()];
         let point = |x: f64| (1, PathPoint { position: place + feed * x, axis, feed });
-        let along = |length: f64| path(&ToolPath::new([point(0.0), point(length)]).unwrap());
-        assert_eq!(along(5.1e-3), None);
-        assert_eq!(along(4e-4).unwrap(), "the tool path is 0.400 mm long in all: are its places in mm?");
+        let along = |xs: &[f64]| path(&ToolPath::new(xs.iter().map(|x| point(*x))).unwrap());
+        assert_eq!(along(&[0.0, 5.1e-3]), None);
+        let short = "the tool path is no wider than 0.400 mm in any direction: are its places in mm?";
+        assert_eq!(along(&[0.0, 4e-4]).unwrap(), short);
+        // There and back many times is no wider.
+        let there_and_back: Vec<f64> = (0..40).map(|k| f64::from(k % 2) * 4e-4).collect();
+        assert_eq!(along(&there_and_back).unwrap(), short);
         assert!(force(2e5).unwrap().starts_with("forces go up to 200000 N"));
+        assert_eq!(force(0.9).unwrap(), "forces go up to 0.900 N: are they in N?");
+        assert!(force(0.0).unwrap().starts_with("all forces are zero"));
+        assert_eq!((force(1.1), super::feed(0.99), super::feed(f64::INFINITY)), (None, None, None));
+        assert_eq!(super::feed(20.0).unwrap(), "feeds go up to 20000 mm/s: are they in mm/s, not mm/min?");
+        assert_eq!(characteristic_length(0.0101), None);
+        assert!(characteristic_length(0.000682).unwrap().contains("characteristic_length_mm is 0.682"));
         assert!(deflection(0.037).unwrap().starts_with("the tool deflects by up to 37.0 mm"));
         assert_eq!(deflection(f64::NAN), None);
     }

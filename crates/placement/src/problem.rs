@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 use stead_cell::{Attachment, Scene, Shape};
-use stead_model::external_axis::ExternalAxis;
+use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::plausibility;
 use stead_model::robot::{
     Pose, Posture, Robot, Spindle,
@@ -219,12 +219,35 @@ impl Problem {
         let parts = [
             plausibility::spindle(&self.spindle),
             plausibility::path(self.task.path()),
-            plausibility::force(self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)),
+            plausibility::force(self.largest_force()),
+            plausibility::feed((0..self.task.segments().len()).map(|k| self.programmed_feed(k)).fold(0.0, f64::max)),
+            plausibility::characteristic_length(self.constraints.characteristic_length),
+            self.tool_axes_from_below(),
             self.cell.note(),
         ];
         let has_moves = self.task.segments().len() > 1;
         let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
         plausibility::arm(&self.robot).into_iter().chain(parts.into_iter().flatten()).chain(of_tool).collect()
+    }
+
+    /// The largest force along the path. N
+    pub(crate) fn largest_force(&self) -> f64 {
+        self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)
+    }
+
+    /// That most tool axes point downwards in the cell however the part lies; not where a turntable may tilt it.
+    fn tool_axes_from_below(&self) -> Option<String> {
+        let tilts = |axis: &ExternalAxis| axis.kind == AxisKind::Turntable && axis.direction.z.abs() < 1.0 - 1e-9;
+        if self.external_axes.iter().any(tilts) {
+            return None;
+        }
+        let note = |task: &Task| plausibility::tool_axes(task.points().iter().map(|point| &point.axis), "in the cell");
+        let mut notes = self.orientations.iter().map(|orientation| note(&orientation.task));
+        match notes.next() {
+            None => note(&self.task),
+            // Any orientation that is right will do.
+            Some(first) => notes.fold(first, |last, next| last.and(next)),
+        }
     }
 
     /// That collisions are not checked, where nothing stands around the robot, or nothing but shapes of the arm itself.

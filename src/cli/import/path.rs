@@ -35,6 +35,9 @@ pub(in super::super) struct PathOptions {
     /// Where the rotary axes meet, for G-code without it: in the workpiece frame, or for a head from the tool tip upright
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true, conflicts_with = "tcp")]
     pub pivot_mm: Option<[f64; 3]>,
+    /// Leave out the holes of drilling cycles, and list them
+    #[arg(long)]
+    pub skip_cycles: bool,
     /// Print segments, points, length, extents, tilt, feeds, and what was changed and why
     #[arg(long)]
     pub report: bool,
@@ -47,6 +50,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
         machine: options.machine,
         pivot: options.pivot_mm.map(|mm| mm.map(|mm| mm / 1e3).into()),
         tool_centre_point: options.tcp,
+        skip_cycles: options.skip_cycles,
         resampling: Resampling { chord: options.chord_mm / 1e3, step: options.step_mm / 1e3 },
     };
     let path = import_path(&options.program, &settings).map_err(stead::Error::from)?;

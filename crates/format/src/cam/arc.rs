@@ -33,9 +33,26 @@ pub(super) enum ArcError {
 impl Arc {
     /// The radius at the start. m
     pub fn radius(&self) -> Option<f64> {
-        let axis = Unit::try_new(self.axis, 1e-9)?;
-        let arm = self.start - self.centre;
-        Some((arm - axis.into_inner() * arm.dot(&axis)).norm())
+        Unit::try_new(self.axis, 1e-9).map(|_| self.arm(self.start).norm())
+    }
+
+    /// The part of a turn from start to end, a whole one where they are one above the other. rad
+    pub fn turn(&self) -> f64 {
+        let [from, to] = [self.start, self.end].map(|point| self.arm(point));
+        let axis = self.axis.normalize();
+        let turn = libm::atan2(axis.dot(&from.cross(&to)), from.dot(&to)).rem_euclid(TAU);
+        if turn < FULL || TAU - turn < FULL { TAU } else { turn }
+    }
+
+    /// The directions in which it sets out and arrives, without what it rises.
+    pub fn tangents(&self) -> [Vector3<f64>; 2] {
+        [self.start, self.end].map(|point| self.axis.cross(&self.arm(point)).try_normalize(1e-12).unwrap_or_default())
+    }
+
+    /// From the axis to a point.
+    fn arm(&self, point: Vector3<f64>) -> Vector3<f64> {
+        let (axis, arm) = (self.axis.normalize(), point - self.centre);
+        arm - axis * arm.dot(&axis)
     }
 
     /// How far the end is from the plane of the start, along the axis. m
@@ -46,17 +63,12 @@ impl Arc {
     /// The points after the start up to the end, which is the last, so many that neither the chord error nor the step is passed.
     pub fn points(&self, resampling: &Resampling) -> Result<Vec<Vector3<f64>>, ArcError> {
         let axis = Unit::try_new(self.axis, 1e-9).ok_or(ArcError::Axis)?;
-        let across = |point: Vector3<f64>| {
-            let arm = point - self.centre;
-            arm - axis.into_inner() * arm.dot(&axis)
-        };
-        let (from, to) = (across(self.start), across(self.end));
+        let (from, to) = (self.arm(self.start), self.arm(self.end));
         let radius = from.norm();
         if radius < 1e-9 || (radius - to.norm()).abs() > MISSED {
             return Err(ArcError::Radius(radius, to.norm()));
         }
-        let turn = libm::atan2(axis.dot(&from.cross(&to)), from.dot(&to)).rem_euclid(TAU);
-        let turn = if turn < FULL || TAU - turn < FULL { TAU } else { turn } + TAU * f64::from(self.more_turns);
+        let turn = self.turn() + TAU * f64::from(self.more_turns);
         let part = 2.0 * libm::acos((1.0 - resampling.chord / radius).clamp(-1.0, 1.0));
         let part = part.min(resampling.step / radius).clamp(1e-4, PI / 4.0);
         let count = (turn / part).ceil().max(1.0) as usize;

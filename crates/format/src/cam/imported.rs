@@ -8,6 +8,7 @@ use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
 use std::path::Path;
+use stead_model::plausibility;
 
 /// The points of a program, ready to be written as a task file.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,9 +76,20 @@ impl ImportedPath {
             1 => text.clone(),
             count => format!("{text} ({count} times)"),
         }));
+        if !program.holes_left_out.is_empty() {
+            let place = |(place, line): &(Vector3<f64>, usize)| {
+                let [x, y, z] = [place.x, place.y, place.z].map(|value| rounded(value * 1e3));
+                format!("{x}, {y}, {z} mm (line {line})")
+            };
+            let places: Vec<String> = program.holes_left_out.iter().map(place).collect();
+            notes.push(format!("{} holes left out (--skip-cycles): {}", places.len(), places.join("; ")));
+        }
         if !program.passed_over.is_empty() {
             notes.push(format!("words passed over: {}", counted(&program.passed_over)));
         }
+        let points = || segments.iter().flatten();
+        notes.extend(plausibility::tool_axes(points().map(|point| &point.axis), "in the frame of the part"));
+        notes.extend(plausibility::feed(points().filter_map(|point| point.feed).fold(0.0, f64::max)));
         if !has_feeds {
             notes.push("no feed in the program: no column feed_mm_per_s".to_owned());
         }

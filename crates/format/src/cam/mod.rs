@@ -75,6 +75,8 @@ pub struct ReadSettings {
     pub pivot: Option<Vector3<f64>>,
     /// Whether tool centre point control is on though the program has no G43.4.
     pub tool_centre_point: bool,
+    /// Whether the holes of drilling cycles are left out.
+    pub skip_cycles: bool,
     /// How densely points are taken.
     pub resampling: Resampling,
 }
@@ -105,6 +107,8 @@ pub struct Program {
     pub tools: Vec<String>,
     /// What was made of the program that is not plain, with how often.
     pub notes: BTreeMap<String, usize>,
+    /// Holes of drilling cycles that were left out: places in the workpiece frame (m), with the line.
+    pub holes_left_out: Vec<(Vector3<f64>, usize)>,
     /// Words that do not move the tool and were passed over, with how often.
     pub passed_over: BTreeMap<String, usize>,
 }

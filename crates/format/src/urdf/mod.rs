@@ -41,6 +41,7 @@ use home::controller_at;
 use read::{Kind, Limit, Urdf};
 use rows::Rows;
 use std::path::{Path, PathBuf};
+use stead_model::plausibility;
 use stead_model::robot::{Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
 use stiffness::Borrowed;
 use tree::{Chain, Tree};
@@ -145,7 +146,10 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         link_from_base: rows.link_from_base,
         flange_from_tip: rows.flange_from_tip,
         deviation,
-        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref()),
+        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref())
+            .into_iter()
+            .chain(plausibility::joint_ranges(&robot))
+            .collect(),
         controller: None,
         bodies: bodies.as_ref().ok().copied(),
         link_shapes: None,

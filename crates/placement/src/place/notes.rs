@@ -11,7 +11,7 @@ use stead_numerics::message::Warning;
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
 pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
-    (mean <= CANCELLATION && problem.criterion == Criterion::default()).then(|| {
+    (mean <= CANCELLATION && problem.largest_force() > 0.0 && problem.criterion == Criterion::default()).then(|| {
         let message = "the best plan cancels the deflection to nothing, which no real force will; \
                        criterion.force_uncertainty makes the score the worst case over force errors";
         Warning::new("cancellation", message)

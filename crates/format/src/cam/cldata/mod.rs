@@ -1,8 +1,10 @@
 //! CLDATA: cutter locations in text, the words of APT (ISO 4343) as NX, SolidWorks CAM and others write them.
 //!
 //! Positions are in the frame of the last `MSYS` or `CSYS`, the tool axis is modal, `RAPID` is for the next `GOTO` alone, and `CIRCLE`
-//! makes it an arc: turning as a right-handed screw along its axis, which NX documents as clockwise seen along it.
+//! makes it an arc. With 11 numbers, as NX writes them, it turns as a left-handed screw along its axis; with 6 (SolidWorks CAM) and 7
+//! (Creo), as a right-handed one.
 
+mod cycle;
 mod reader;
 mod statement;
 mod words;
@@ -22,7 +24,7 @@ use std::path::Path;
 /// has, a tool axis without length, an arc that misses its end, a word that moves the tool in a way that is not known.
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
     let unit = unit_of(file, text, settings.units)?;
-    let mut reader = Reader::new(file, unit, settings.resampling);
+    let mut reader = Reader::new(file, unit, settings);
     let mut statements = Statements::new(text);
     let mut statement = Statement::default();
     while statements.next_into(&mut statement) {

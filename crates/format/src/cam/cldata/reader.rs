@@ -1,11 +1,13 @@
 //! The modal state of CLDATA, statement by statement.
 
 use super::super::arc::{Arc, ArcError, MISSED};
-use super::super::{LARGEST, LengthUnit, Move, Program, Resampling};
-use super::statement::Statement;
-use super::words::moves_unknown;
+use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings, Resampling};
+use super::cycle::{Cycle, FORMS};
+use super::statement::{Minor, Statement};
+use super::words::is_harmless;
 use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 /// Directions of a frame may be this far from unit length and right angles: digits as printed.
@@ -19,7 +21,23 @@ struct Pending {
     centre: Vector3<f64>,
     axis: Vector3<f64>,
     radius: Option<f64>,
+    /// Whole turns of a helix.
+    turns: Option<u32>,
     line: usize,
+}
+
+/// Moves that meet at more than this turn back. cos
+const TURNED_BACK: f64 = -0.9;
+/// The most turns of a helix.
+const MOST_TURNS: f64 = 1000.0;
+
+/// Units of feed, for messages.
+const FEED_UNITS: &str = "MMPM, IPM, MMPR, IPR, PERMIN or PERREV";
+
+/// What becomes of the points that follow.
+enum Holes {
+    Drilled(Cycle),
+    LeftOut,
 }
 
 /// Reads statements into moves.
@@ -38,15 +56,21 @@ pub(super) struct Reader<'a> {
     is_rapid: bool,
     is_after_change: bool,
     pending: Option<Pending>,
+    holes: Option<Holes>,
+    skips_cycles: bool,
+    /// Direction in which the last cutting move has arrived.
+    arrived: Option<Vector3<f64>>,
+    /// The line of the last arc, where it set out against the move before it.
+    against: Option<usize>,
     is_ended: bool,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(file: &'a Path, unit: LengthUnit, resampling: Resampling) -> Self {
+    pub fn new(file: &'a Path, unit: LengthUnit, settings: &ReadSettings) -> Self {
         Self {
             file,
             unit,
-            resampling,
+            resampling: settings.resampling,
             program: Program::default(),
             rotation: Matrix3::identity(),
             origin: Vector3::zeros(),
@@ -56,6 +80,10 @@ impl<'a> Reader<'a> {
             is_rapid: false,
             is_after_change: true,
             pending: None,
+            holes: None,
+            skips_cycles: settings.skip_cycles,
+            arrived: None,
+            against: None,
             is_ended: false,
         }
     }
@@ -77,6 +105,7 @@ impl<'a> Reader<'a> {
                 self.is_after_change = true;
                 self.goto(statement)?;
             }
+            "GOHOME" => self.go_home(statement)?,
             "RAPID" => self.is_rapid = true,
             "CIRCLE" => self.circle(statement)?,
             "FEDRAT" => self.fedrat(statement)?,
@@ -88,9 +117,15 @@ impl<'a> Reader<'a> {
                 self.program.note("CUTCOM: the points are taken as those of the tool centre");
             }
             "CUTCOM" => {}
-            "CYCLE" if statement.has("OFF") => {}
+            "CYCLE" => self.cycle(statement)?,
+            "MODE" if ["ABSOL", "ABS"].iter().any(|word| statement.has(word)) => {}
+            "TRNTYP" if statement.numbers().all(|number| number == 0.0) => {}
+            "TRNTYP" => {
+                let allowed = "TRNTYP without an origin: let the CAM system write positions in the frame of the part";
+                return Err(self.fail(statement, "an origin other than 0,0,0", allowed));
+            }
             "TOOL PATH" => self.is_after_change = true,
-            "LOAD" | "LOADTL" => self.tool(statement),
+            "LOAD" | "LOADTL" | "TOOLNO" | "TURRET" | "UNLOAD" => self.tool(statement),
             "TLDATA" | "CUTTER" => {
                 self.numbers(statement, |count| count > 0, "numbers of the tool")?;
                 self.tool(statement);
@@ -100,14 +135,19 @@ impl<'a> Reader<'a> {
                 self.is_ended = true;
                 return Ok(false);
             }
-            word if word == "CYCLE" || moves_unknown(word) => {
+            word if is_harmless(word) => {
+                if word == "INSERT" {
+                    self.program.note("INSERT: text for the post-processor, whatever it does");
+                }
+                *self.program.passed_over.entry(word.to_owned()).or_default() += 1;
+            }
+            _ => {
                 return Err(self.fail(
                     statement,
-                    "moves the tool, or what positions count from, in a way that is not known here",
-                    "GOTO, RAPID, CIRCLE and FROM: let the CAM system write straight moves and arcs",
+                    "may move the tool, or what its positions count from, in a way that is not known here",
+                    "GOTO, RAPID, CIRCLE, FROM and drilling cycles: let the CAM system write straight moves and arcs",
                 ));
             }
-            _ => *self.program.passed_over.entry(word).or_default() += 1,
         }
         Ok(true)
     }
@@ -146,10 +186,38 @@ impl<'a> Reader<'a> {
         };
         if let Some(pending) = self.pending.take() {
             self.arc(statement, &pending, end)?;
+        } else if let (Some(holes), false) = (&self.holes, statement.word.eq_ignore_ascii_case("FROM")) {
+            match holes {
+                Holes::Drilled(cycle) => {
+                    let unit = self.unit.metres();
+                    let above = |height: f64| end.position + end.axis * (height * unit);
+                    let feed = match &cycle.feed {
+                        Some((value, word)) => Some(self.feed_in(statement, *value, word)?),
+                        None => self.feed,
+                    };
+                    self.program.moves.extend([
+                        Move { position: above(cycle.clear), is_rapid: true, ..end },
+                        Move { position: above(-cycle.depth), is_rapid: false, feed, ..end },
+                        Move { position: above(cycle.retract), is_rapid: true, ..end },
+                    ]);
+                    self.program.note("holes of drilling cycles taken as a plunge and a rapid retract, not scored");
+                    (self.is_rapid, self.is_after_change) = (false, false);
+                }
+                Holes::LeftOut => {
+                    self.program.holes_left_out.push((end.position, statement.line));
+                    self.is_after_change = true;
+                }
+            }
+            (self.arrived, self.against) = (None, None);
+            return Ok(());
         } else {
             if self.is_after_change && !self.is_rapid && !self.program.moves.is_empty() && statement.word != "FROM" {
                 self.program.note("first moves of a tool or tool path, taken as rapid ones though RAPID is not there");
             }
+            let way = self.program.moves.last().map(|last| end.position - last.position);
+            let way = way.filter(|_| !end.is_rapid).and_then(|way| way.try_normalize(1e-9));
+            self.goes_on(way)?;
+            self.arrived = way;
             self.program.moves.push(end);
         }
         (self.is_rapid, self.is_after_change) = (false, false);
@@ -166,7 +234,7 @@ impl<'a> Reader<'a> {
         }
         let Pending { centre, axis, radius, .. } = *pending;
         let (from, last) = (start.axis, start.position);
-        let arc = Arc { start: last, end: end.position, centre, axis, more_turns: 0 };
+        let mut arc = Arc { start: last, end: end.position, centre, axis, more_turns: 0 };
         let millimetres = |length: f64| format!("{:.4} mm", length * 1e3);
         if let (Some(stated), Some(found)) = (radius, arc.radius())
             && (stated - found).abs() > MISSED
@@ -175,7 +243,19 @@ impl<'a> Reader<'a> {
                 format!("the arc misses its start: radius {}, stated {}", millimetres(found), millimetres(stated));
             return Err(self.fail(statement, &problem, "the same radius within 0.05 mm"));
         }
-        if arc.rise().abs() > MISSED {
+        let [out, back] = if axis.norm() > 1e-9 { arc.tangents() } else { [Vector3::zeros(); 2] };
+        if let (Some(turns), true) = (pending.turns, axis.norm() > 1e-9) {
+            let turn = arc.turn();
+            let off = arc.radius().unwrap_or(0.0) * turn.min(TAU - turn);
+            if off > MISSED {
+                return Err(self.fail(
+                    statement,
+                    &format!("a helix whose end is {} beside its start, along the turn", millimetres(off)),
+                    "whole turns behind TIMES: let the CAM system write straight moves",
+                ));
+            }
+            arc.more_turns = if turn < PI { turns } else { turns - 1 };
+        } else if arc.rise().abs() > MISSED {
             let problem =
                 format!("the arc misses its end, which is {} out of its plane", millimetres(arc.rise().abs()));
             return Err(self.fail(statement, &problem, "an end in the plane of the arc within 0.05 mm"));
@@ -191,6 +271,9 @@ impl<'a> Reader<'a> {
                 self.fail(statement, &problem, "the same radius, above 0, within 0.05 mm")
             }
         })?;
+        self.goes_on(Some(out))?;
+        self.against = self.arrived.filter(|way| way.dot(&out) < TURNED_BACK).map(|_| pending.line);
+        self.arrived = Some(back);
         let count = points.len() as f64;
         self.program.moves.extend(points.into_iter().zip(1..).map(|(position, place): (_, u32)| {
             let share = f64::from(place) / count;
@@ -200,15 +283,72 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn circle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        if statement.words().next().is_some() {
-            return Err(self.fail(statement, "an arc with words, as a helix has", "CIRCLE with 6 or 11 numbers alone"));
+    /// Refuses an arc that sets out against the move before it and arrives against the one behind it, which sets out along a direction:
+    /// it would be turned the other way.
+    fn goes_on(&mut self, way: Option<Vector3<f64>>) -> Result<(), InputError> {
+        let turns_back = |before: Vector3<f64>| way.is_some_and(|way| before.dot(&way) < TURNED_BACK);
+        match self.against.take() {
+            Some(line) if self.arrived.is_some_and(turns_back) => Err(self.fail_at(
+                line,
+                "CIRCLE",
+                "the arc sets out against the move before it and arrives against the one behind it: read the other way round?",
+                "arcs with 11 numbers left-handed about their axis, with 6 or 7 right-handed; or straight moves",
+            )),
+            _ => Ok(()),
         }
-        let given = self.numbers(statement, |count| count == 6 || count == 11, "6 or 11 finite numbers")?;
+    }
+
+    /// A rapid move home, or to where nothing is known of.
+    fn go_home(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        if statement.numbers().next().is_some() {
+            self.is_rapid = true;
+            self.goto(statement)?;
+        }
+        self.is_after_change = true;
+        Ok(())
+    }
+
+    fn cycle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        self.holes = if statement.has("OFF") || statement.has("END") {
+            None
+        } else if self.skips_cycles {
+            Some(Holes::LeftOut)
+        } else {
+            let cycle = Cycle::of(statement);
+            let problem = "a cycle whose moves are not known here";
+            Some(Holes::Drilled(cycle.ok_or_else(|| self.fail(statement, problem, FORMS))?))
+        };
+        Ok(())
+    }
+
+    fn circle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        const ALLOWED: &str = "6 or 11 finite numbers, or 7 with the radius; behind 11 TIMES and a number of turns";
+        let mut given = self.numbers(statement, |_| true, ALLOWED)?;
+        let words: Vec<&str> = statement.words().collect();
+        let turns = match (&words[..], &statement.minors[..]) {
+            ([], _) => None,
+            ([word], [.., Minor::Word(_), Minor::Number(turns, _)])
+                if word.eq_ignore_ascii_case("TIMES")
+                    && turns.fract() == 0.0
+                    && (1.0..=MOST_TURNS).contains(turns)
+                    && given.len() == 12 =>
+            {
+                given.pop();
+                Some(*turns as u32)
+            }
+            _ => return Err(self.fail(statement, "an arc with words that are not known here", ALLOWED)),
+        };
+        // NX writes 11 numbers and turns as a left-handed screw along the axis.
+        let hand = match given.len() {
+            11 => -1.0,
+            6 | 7 => 1.0,
+            count => return Err(self.fail(statement, &format!("{count} numbers that can be read"), ALLOWED)),
+        };
         self.pending = Some(Pending {
             centre: self.place(Vector3::new(given[0], given[1], given[2])),
-            axis: self.rotation * Vector3::new(given[3], given[4], given[5]),
+            axis: self.rotation * Vector3::new(given[3], given[4], given[5]) * hand,
             radius: given.get(6).map(|radius| radius * self.unit.metres()),
+            turns,
             line: statement.line,
         });
         Ok(())
@@ -220,35 +360,38 @@ impl<'a> Reader<'a> {
         if value <= 0.0 {
             return Err(self.fail(statement, "not a feed", "a feed above 0"));
         }
-        let mut per_revolution = false;
-        let mut unit = self.unit;
-        for word in statement.words() {
-            let word = word.to_ascii_uppercase();
-            (unit, per_revolution) = match &word[..] {
-                "MMPM" => (LengthUnit::Millimetre, false),
-                "IPM" => (LengthUnit::Inch, false),
-                "MMPR" => (LengthUnit::Millimetre, true),
-                "IPR" => (LengthUnit::Inch, true),
-                "PERMIN" => (self.unit, false),
-                "PERREV" => (self.unit, true),
-                _ => {
-                    return Err(self.fail(statement, "not a unit of feed", "MMPM, IPM, MMPR, IPR, PERMIN or PERREV"));
-                }
-            };
-        }
-        let length = value * unit.metres();
-        self.feed = Some(match (per_revolution, self.spindle) {
-            (false, _) => length / 60.0,
-            (true, Some(speed)) => length * speed,
-            (true, None) => {
-                return Err(self.fail(
-                    statement,
-                    "a feed per revolution without a spindle speed",
-                    "SPINDL with RPM before",
-                ));
+        let words: Vec<&str> = statement.words().collect();
+        let word = match words[..] {
+            [] => {
+                self.program.note(format!("FEDRAT without a unit, taken in {} per minute", self.unit.word()));
+                "PERMIN"
             }
-        });
+            [word] => word,
+            _ => return Err(self.fail(statement, "not one unit of feed", FEED_UNITS)),
+        };
+        self.feed = Some(self.feed_in(statement, value, word)?);
         Ok(())
+    }
+
+    /// A feed in the unit of a word. m/s
+    fn feed_in(&self, statement: &Statement<'_>, value: f64, word: &str) -> Result<f64, InputError> {
+        let (unit, per_revolution) = match &word.to_ascii_uppercase()[..] {
+            "MMPM" => (LengthUnit::Millimetre, false),
+            "IPM" => (LengthUnit::Inch, false),
+            "MMPR" => (LengthUnit::Millimetre, true),
+            "IPR" => (LengthUnit::Inch, true),
+            "PERMIN" => (self.unit, false),
+            "PERREV" => (self.unit, true),
+            _ => return Err(self.fail(statement, "not a unit of feed", FEED_UNITS)),
+        };
+        let length = value * unit.metres();
+        match (per_revolution, self.spindle) {
+            (false, _) => Ok(length / 60.0),
+            (true, Some(speed)) => Ok(length * speed),
+            (true, None) => {
+                Err(self.fail(statement, "a feed per revolution without a spindle speed", "SPINDL with RPM before"))
+            }
+        }
     }
 
     fn spindl(&mut self, statement: &Statement<'_>) {
@@ -321,8 +464,8 @@ impl<'a> Reader<'a> {
         if numbers.iter().any(|number| !number.is_finite() || number.abs() > largest) {
             return Err(self.fail(statement, "not finite numbers of a usual size", allowed));
         }
-        let has_words =
-            is_one_of(statement.word, &["GOTO", "FROM", "MSYS", "CSYS"]) && statement.words().next().is_some();
+        let has_words = is_one_of(statement.word, &["GOTO", "FROM", "GOHOME", "MSYS", "CSYS"])
+            && statement.words().next().is_some();
         if !is_right(numbers.len()) || has_words {
             let problem = format!("{} numbers that can be read", numbers.len());
             return Err(self.fail(statement, &problem, allowed));

@@ -64,20 +64,39 @@ const FREE_TEXT: [&str; 5] = ["PARTNO", "PPRINT", "INSERT", "REMARK", "TPRINT"];
 pub(super) struct Statements<'a> {
     lines: Lines<'a>,
     line: usize,
+    /// What stands behind a semicolon.
+    rest: Option<&'a str>,
 }
 
 impl<'a> Statements<'a> {
     pub fn new(text: &'a str) -> Self {
-        Self { lines: text.lines(), line: 0 }
+        Self { lines: text.lines(), line: 0, rest: None }
+    }
+
+    /// The rest of a line behind a semicolon, or the next line, without comment.
+    fn next_part(&mut self) -> Option<&'a str> {
+        if let Some(rest) = self.rest.take() {
+            return Some(rest.trim());
+        }
+        let line = self.lines.next()?;
+        self.line += 1;
+        Some(line.find("$$").map_or(line, |comment| &line[..comment]).trim())
     }
 
     /// Reads the next statement into one that is used again; whether there was one.
     pub fn next_into(&mut self, statement: &mut Statement<'a>) -> bool {
         statement.minors.clear();
         let mut is_continued = false;
-        for line in self.lines.by_ref() {
-            self.line += 1;
-            let line = line.find("$$").map_or(line, |comment| &line[..comment]).trim();
+        while let Some(line) = self.next_part() {
+            let line = if is_continued { line } else { without_label(line) };
+            let is_free = !is_continued && is_free_text(line);
+            let line = match line.split_once(';') {
+                Some((first, rest)) if !is_free => {
+                    self.rest = Some(rest);
+                    first.trim()
+                }
+                _ => line,
+            };
             let (body, goes_on) = match line.strip_suffix('$') {
                 Some(body) => (body.trim_end(), true),
                 None => (line, false),
@@ -88,7 +107,7 @@ impl<'a> Statements<'a> {
             let mut rest = body;
             if !is_continued {
                 let end = body.find(['/', ',']).unwrap_or(body.len());
-                let free = FREE_TEXT.iter().any(|word| starts_with(body, word));
+                let free = is_free;
                 let end = if free { body.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(body.len()) } else { end };
                 statement.word = body[..end].trim_end();
                 statement.line = self.line;
@@ -101,6 +120,20 @@ impl<'a> Statements<'a> {
             is_continued = true;
         }
         is_continued
+    }
+}
+
+fn is_free_text(text: &str) -> bool {
+    FREE_TEXT.iter().any(|word| starts_with(text, word))
+}
+
+/// A statement without the label before it, as in `A1) GOTO/1,2,3`.
+fn without_label(text: &str) -> &str {
+    match text.split_once(')') {
+        Some((label, rest)) if !label.is_empty() && label.chars().all(|c| c.is_ascii_alphanumeric()) => {
+            rest.trim_start()
+        }
+        _ => text,
     }
 }
 

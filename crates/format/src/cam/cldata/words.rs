@@ -6,11 +6,12 @@ const TELLING: [&str; 20] = [
     "MULTAX", "CUTCOM", "MSYS", "CSYS", "END", "PPRINT", "MACHIN", "COOLNT",
 ];
 
-/// Words that move the tool, or change what positions mean, in a way that the reader does not know.
-const MOVING: [&str; 31] = [
-    "GODLTA", "GOHOME", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "GO", "NURBS", "KNOT", "CNTRL",
-    "SPLINE", "HELIX", "THREAD", "POCKET", "PMILL", "SMILL", "TLAXIS", "TRANS", "TRACUT", "COPY", "ORIGIN", "ROTATE",
-    "ROTABL", "ROTHED", "CALL", "MACRO", "LOOPST", "JUMPTO", "IF",
+/// Words that leave the path of the tool as it is: texts, pictures, auxiliary functions, tolerances of what is computed already.
+const HARMLESS: [&str; 38] = [
+    "AIR", "ARCSLP", "AUTOPS", "AUXFUN", "BREAK", "CLAMP", "CLEARP", "CLPRNT", "COOLNT", "DELAY", "DISPLY", "END",
+    "HEADER", "INSERT", "INTOL", "ISN", "LEADER", "LETTER", "LINTOL", "MACHIN", "MCHTOL", "NOPOST", "OPSTOP", "OUTTOL",
+    "PAINT", "PARTNO", "PLABEL", "PPLOT", "PPRINT", "PROGRM", "REMARK", "REWIND", "SELCTL", "SELECT", "SEQNO", "STOP",
+    "TOLER", "TPRINT",
 ];
 
 /// Whether a word is one of CLDATA.
@@ -18,7 +19,7 @@ pub(crate) fn is_known(word: &str) -> bool {
     TELLING.contains(&word)
 }
 
-/// Whether a word, in upper case, moves the tool in a way that is not known.
-pub(super) fn moves_unknown(word: &str) -> bool {
-    MOVING.contains(&word) || word.contains('=')
+/// Whether a word, in upper case, leaves the path of the tool as it is.
+pub(super) fn is_harmless(word: &str) -> bool {
+    HARMLESS.contains(&word)
 }

@@ -11,6 +11,8 @@ pub(super) type Word = (char, f64);
 pub(super) enum Motion {
     Rapid,
     Line,
+    /// A hole at each position, by a canned cycle.
+    Cycle,
     /// Seen against the normal of the plane.
     Clockwise,
     CounterClockwise,

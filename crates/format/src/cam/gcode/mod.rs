@@ -39,6 +39,9 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
                 .found(format!("'{}'", text.trim()))
                 .allowed("G-code words, as X-1.5, and comments in ( ) or behind ;"));
         }
+        if line.trim_start().starts_with('/') && !words.is_empty() {
+            reader.note_block_delete();
+        }
         if !reader.take(number, &words)? {
             break;
         }

@@ -11,6 +11,9 @@ use std::path::Path;
 /// No rotary axis is programmed beyond this. deg
 const LARGEST_ANGLE: f64 = 3.6e4;
 
+/// Canned cycles for holes.
+const CYCLES: [i64; 12] = [73, 74, 76, 81, 82, 83, 84, 85, 86, 87, 88, 89];
+
 /// The letters that a block may have.
 const LETTERS: &str = "GXYZABCIJKRFSTMNOHDP";
 
@@ -23,7 +26,8 @@ pub(super) struct Modes {
     pub is_incremental: bool,
     is_inverse_time: bool,
     is_controlled: bool,
-    offset: Option<u32>,
+    /// Work offset, with its number of an extended set.
+    offset: Option<(u32, Option<u32>)>,
 }
 
 /// Reads blocks into moves.
@@ -35,6 +39,7 @@ pub(super) struct Reader<'a> {
     pub state: State,
     /// As programmed, without its unit.
     feed: Option<f64>,
+    is_after_change: bool,
     /// Whether the tool was turned without and with tool centre point control.
     has_turned: [bool; 2],
 }
@@ -51,13 +56,27 @@ impl<'a> Reader<'a> {
             offset: None,
         };
         let state = State { position: [None; 3], angles: [0.0; 3] };
-        Self { file, settings, program: Program::default(), modes, state, feed: None, has_turned: [false; 2] }
+        Self {
+            file,
+            settings,
+            program: Program::default(),
+            modes,
+            state,
+            feed: None,
+            is_after_change: false,
+            has_turned: [false; 2],
+        }
     }
 
     /// Takes a block; false after the one that ends the program.
     pub fn take(&mut self, line: usize, words: &[Word]) -> Result<bool, InputError> {
         let block = Block { file: self.file, line, words };
+        let is_of_cycle = |word: &Word| word.0 == 'G' && CYCLES.contains(&(word.1 as i64));
+        let in_cycle = self.modes.motion == Some(Motion::Cycle) || words.iter().any(is_of_cycle);
         for (place, (letter, value)) in words.iter().enumerate() {
+            if in_cycle && "QL".contains(*letter) {
+                continue;
+            }
             if !LETTERS.contains(*letter) {
                 return Err(self.fail(line, (*letter, *value), "a letter that is not known here", LETTERS));
             }
@@ -65,11 +84,23 @@ impl<'a> Reader<'a> {
                 return Err(self.fail(line, (*letter, *value), "is there twice in a block", "each letter once"));
             }
         }
+        if let Some(word) = words.iter().find(|word| word.0 == 'M' && [97.0, 98.0, 99.0, 198.0].contains(&word.1)) {
+            let problem = "a subprogram, whose cuts would be missing";
+            return Err(self.fail(
+                line,
+                *word,
+                problem,
+                "one program with all cuts in it: post it without subprograms",
+            ));
+        }
+        if words.contains(&('M', 6.0)) {
+            self.is_after_change = true;
+        }
         let (mut is_home, mut is_dwell) = (false, false);
         let mut motions = 0;
         for word in words.iter().filter(|(letter, _)| *letter == 'G') {
             let before = self.modes.motion;
-            match self.code(line, *word)? {
+            match self.code(line, *word, block.get('P'))? {
                 Code::Motion(motion) => {
                     motions += 1;
                     if motions > 1 && before != Some(motion) {
@@ -116,7 +147,7 @@ impl<'a> Reader<'a> {
     }
 
     /// What a G code does; modes are set.
-    fn code(&mut self, line: usize, word: Word) -> Result<Code, InputError> {
+    fn code(&mut self, line: usize, word: Word, number: Option<f64>) -> Result<Code, InputError> {
         let tenths = (word.1 * 10.0).round();
         let is_code = (tenths - word.1 * 10.0).abs() < 1e-6 && (0.0..1e4).contains(&tenths);
         let modes = &mut self.modes;
@@ -133,19 +164,51 @@ impl<'a> Reader<'a> {
             280 | 300 | 530 => return Ok(Code::Home),
             434 => modes.is_controlled = true,
             490 => modes.is_controlled = self.settings.tool_centre_point,
-            540..=590 if tenths % 10.0 == 0.0 => {
-                let offset = (tenths / 10.0) as u32;
+            541 if number.is_none() => {
+                return Err(self.fail(line, word, "G54.1 without the number of its offset", "G54.1 with P"));
+            }
+            540..=590 if tenths % 10.0 == 0.0 || tenths == 541.0 => {
+                let offset = ((tenths / 10.0) as u32, number.map(|number| number as u32));
                 if modes.offset.is_some_and(|before| before != offset) {
                     let problem = "a second work offset, and how the two lie to each other is not in the file";
-                    return Err(self.fail(line, word, problem, "one of G54 to G59 for the whole program"));
+                    return Err(self.fail(
+                        line,
+                        word,
+                        problem,
+                        "one of G54 to G59, or one G54 P, for the whole program",
+                    ));
                 }
                 modes.offset = Some(offset);
+            }
+            800 => {
+                if modes.motion == Some(Motion::Cycle) {
+                    modes.motion = None;
+                }
+            }
+            code if code % 10 == 0 && CYCLES.contains(&(code / 10)) => {
+                if self.settings.skip_cycles {
+                    return Ok(Code::Motion(Motion::Cycle));
+                }
+                let allowed = "--skip-cycles, which leaves all holes out and lists them, or straight moves: post without canned cycles";
+                return Err(self.fail(line, word, "a canned cycle", allowed));
+            }
+            410 | 420 | 411 | 421 => {
+                let allowed = "G40: let the CAM system write the path of the tool centre";
+                return Err(self.fail(
+                    line,
+                    word,
+                    "cutter compensation: the path is not that of the tool centre",
+                    allowed,
+                ));
+            }
+            650 | 660 | 661 | 670 => {
+                return Err(self.fail(line, word, "a macro call", "straight moves and arcs: post without macros"));
             }
             900 => modes.is_incremental = false,
             910 => modes.is_incremental = true,
             930 => modes.is_inverse_time = true,
             940 => modes.is_inverse_time = false,
-            90 | 50 | 51 | 400 | 430 | 500 | 610 | 611 | 640 | 690 | 800 | 911 | 970 | 980 | 990 => {}
+            90 | 50 | 51 | 400 | 430 | 500 | 610 | 611 | 640 | 690 | 911 | 970 | 980 | 990 => {}
             _ => {
                 let allowed = "G0-G4, G17-G19, G20, G21, G28, G30, G40, G43, G43.4, G49, G53-G59, G61, G64, G69, G80, G90, G91, G93, \
                                G94, G97-G99";
@@ -177,6 +240,20 @@ impl<'a> Reader<'a> {
             return Err(self.fail(block.line, first, "a position before any of G0 to G3", "G0, G1, G2 or G3 before"));
         };
         let metres = self.unit(block.line, first)?.metres();
+        if motion == Motion::Cycle {
+            return self.leave_out_hole(block, metres);
+        }
+        let motion = match motion {
+            Motion::Line if self.is_after_change && !self.program.moves.is_empty() => {
+                self.program.note("first moves of a tool, taken as rapid ones though G0 is not there");
+                Motion::Rapid
+            }
+            Motion::Clockwise | Motion::CounterClockwise if self.is_after_change => {
+                return Err(self.fail(block.line, first, "an arc right after a tool change", "G0 to its start before"));
+            }
+            other => other,
+        };
+        self.is_after_change = false;
         let is_arc = matches!(motion, Motion::Clockwise | Motion::CounterClockwise);
         if !is_arc && let Some(word) = block.words.iter().find(|(letter, _)| "IJKR".contains(*letter)) {
             return Err(self.fail(
@@ -217,6 +294,25 @@ impl<'a> Reader<'a> {
         self.program.moves[first_move..].iter_mut().for_each(|one| one.feed = feed);
         self.state = end;
         Ok(())
+    }
+
+    /// Takes a hole of a canned cycle, which is left out; how deep the tool is then is not known.
+    fn leave_out_hole(&mut self, block: &Block<'_>, metres: f64) -> Result<(), InputError> {
+        let words: Vec<Word> = block.words.iter().copied().filter(|(letter, _)| "XYABC".contains(*letter)).collect();
+        let has_cycle = block.words.iter().any(|word| word.0 == 'G' && CYCLES.contains(&(word.1 as i64)));
+        let mut at = self.target(&Block { words: &words, ..*block }, metres)?;
+        if !words.is_empty() || has_cycle {
+            let place = at.position.map(|value| value.unwrap_or(0.0));
+            self.program.holes_left_out.push((Vector3::from(place), block.line));
+        }
+        at.position[2] = None;
+        self.state = at;
+        Ok(())
+    }
+
+    /// Notes a block that the operator can have left out.
+    pub fn note_block_delete(&mut self) {
+        self.program.note("blocks behind / (block delete): taken");
     }
 
     /// Where a block leads to.

@@ -70,14 +70,18 @@ fn each_broken_statement_names_line_word_value_and_what_is_allowed() {
         ("MSYS/0,0,0,0,0,0,0,1,0", "MSYS", ["no rotation", "right angles"]),
         ("MSYS/0,0,0,1,0,0,1,0,0", "MSYS", ["no rotation", "right angles"]),
         ("CSYS/1,0,0,0,0,1,0,0,0,0,-1,0", "CSYS", ["no rotation", "right-handed"]),
-        ("CIRCLE/0,0,0,0,0,1,5", "CIRCLE", ["7 numbers", "6 or 11"]),
-        ("CIRCLE/0,0,0,0,0,1,5,0,0,0,0,TIMES,2", "CIRCLE", ["with words", "6 or 11"]),
+        ("CIRCLE/0,0,0,0,0,1,5,0", "CIRCLE", ["8 numbers", "6 or 11"]),
+        ("MODE/INCR", "MODE", ["may move the tool", "'INCR'"]),
+        ("RETRCT", "RETRCT", ["may move the tool", "'RETRCT'"]),
+        ("XFORM/1", "XFORM", ["may move the tool", "straight moves"]),
+        ("TRNTYP/WORLD,0,0,5", "TRNTYP", ["an origin other", "frame of the part"]),
+        ("CIRCLE/0,0,0,0,0,1,5,0,0,0,0,TIMES,2.5", "CIRCLE", ["with words", "6 or 11"]),
         ("CIRCLE/0,0,0,0,0,1\nRAPID", "CIRCLE", ["not followed by its end", "a GOTO behind"]),
         ("TLDATA/MILL,nan", "TLDATA", ["not finite", "'MILL,nan'"]),
-        ("NURBS/1,2", "NURBS", ["moves the tool", "GOTO, RAPID, CIRCLE and FROM"]),
-        ("CYCLE/DRILL,5", "CYCLE", ["moves the tool", "'DRILL,5'"]),
-        ("GODLTA/0,0,5", "GODLTA", ["moves the tool", "straight moves"]),
-        ("P1=POINT/0,0,0", "P1=POINT", ["moves the tool", "straight moves"]),
+        ("NURBS/1,2", "NURBS", ["may move the tool", "GOTO, RAPID, CIRCLE, FROM"]),
+        ("CYCLE/DRILL,5", "CYCLE", ["a cycle whose moves are not known", "'DRILL,5'"]),
+        ("GODLTA/0,0,5", "GODLTA", ["may move the tool", "straight moves"]),
+        ("P1=POINT/0,0,0", "P1=POINT", ["may move the tool", "straight moves"]),
     ] {
         refused(&line(text), &settings(), &format!(":4: {word}"), &parts);
     }
@@ -91,7 +95,7 @@ fn arcs_that_miss_are_refused_at_their_end() {
         ("CIRCLE/5,0,0,0,0,1", "5,5,1", "1.0000 mm out of its plane"),
         ("CIRCLE/5,0,0,0,0,0", "5,5,0", "axis of the arc has no length"),
         ("CIRCLE/0,0,0,0,0,1", "5,5,0", "radius 0.0000 mm at its start"),
-        ("CIRCLE/5,0,0,0,0,1,4,0,0,0,0", "5,5,0", "misses its start: radius 5.0000 mm, stated 4.0000 mm"),
+        ("CIRCLE/5,0,0,0,0,-1,4,0,0,0,0", "5,5,0", "misses its start: radius 5.0000 mm, stated 4.0000 mm"),
     ] {
         refused(&arc(circle, goto), &settings(), ":5: GOTO", &[part]);
     }
@@ -105,4 +109,99 @@ fn arcs_that_miss_are_refused_at_their_end() {
 fn a_file_that_is_cut_short_is_read_and_said_to_be() {
     let read = program("UNITS/MM\nGOTO/0,0,0\nGOTO/9,0,0\n", &settings()).unwrap();
     assert!(read.notes.keys().any(|note| note.contains("cut short")));
+}
+
+/// The places of the arc of a program with this end, in millimetres.
+fn arc_of(circle: &str, goto: &str) -> Vec<Vector3<f64>> {
+    let text = format!("UNITS/MM\nFEDRAT/600,MMPM\nGOTO/10,0,0\n{circle}\nGOTO/{goto}\nFINI\n");
+    let read = program(&text, &settings()).unwrap_or_else(|e| panic!("{e}"));
+    read.moves.iter().filter(|one| one.is_arc).map(|one| one.position * 1e3).collect()
+}
+
+#[test]
+fn arcs_of_nx_are_left_handed_and_those_of_solidworks_and_creo_right_handed() {
+    let length = |points: &[Vector3<f64>]| {
+        points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() + (points[0].x - 10.0).hypot(points[0].y)
+    };
+    let quarter = std::f64::consts::PI * 5.0;
+    for (circle, quarters) in [
+        ("CIRCLE/0,0,0,0,0,1", 1.0),
+        ("CIRCLE/0,0,0,0,0,1,10", 1.0),
+        ("CIRCLE/0,0,0,0,0,1,10,.06,.5,20,0", 3.0),
+        ("CIRCLE/0,0,0,0,0,-1,10,.06,.5,20,0", 1.0),
+        ("CIRCLE/0,0,0,0,0,-1,10", 3.0),
+    ] {
+        let points = arc_of(circle, "0,10,0");
+        assert!((length(&points) / (quarter * quarters) - 1.0).abs() < 2e-3, "{circle}: {}", length(&points));
+    }
+    let helix = arc_of("CIRCLE/0,0,0,0,0,-1,10,.06,.5,20,0,TIMES,3", "10,0,-6");
+    assert!((length(&helix) / (quarter * 12.0) - 1.0).abs() < 2e-3, "{}", length(&helix));
+    assert!(helix.iter().all(|place| ((place.x.hypot(place.y)) - 10.0).abs() < 1e-9));
+    let halfway = helix[helix.len() / 2 - 1];
+    assert!((halfway.z + 3.0).abs() < 0.1, "{halfway}");
+    let beside = "UNITS/MM\nFEDRAT/600\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,-1,10,0,0,0,0,TIMES,2\nGOTO/0,10,-6\nFINI\n";
+    refused(beside, &settings(), ":5: GOTO", &["a helix whose end is", "whole turns behind TIMES"]);
+}
+
+#[test]
+fn an_arc_that_turns_back_at_both_ends_is_refused_with_its_line() {
+    let path = |axis: &str| {
+        format!(
+            "UNITS/MM\nFEDRAT/600\nGOTO/-20,-10,0\nGOTO/0,-10,0\nCIRCLE/0,0,0,0,0,{axis}\nGOTO/10,0,0\nGOTO/10,20,0\nFINI\n"
+        )
+    };
+    assert!(program(&path("1"), &settings()).is_ok());
+    refused(&path("-1"), &settings(), ":5: CIRCLE", &["arrives against", "left-handed"]);
+}
+
+#[test]
+fn labels_and_semicolons_keep_their_moves() {
+    let text = "UNITS/MM\nFEDRAT/600,MMPM\nA1) GOTO/0,0,0\nRAPID; GOTO/5,0,0\n10) GOTO/9,0,0; GOTO/9,5,0\nPPRINT a; b) c\nFINI\n";
+    let read = program(text, &settings()).unwrap();
+    let places: Vec<_> =
+        read.moves.iter().map(|one| ((one.position.xy() * 1e3).map(f64::round).into(), one.is_rapid)).collect();
+    let expected: Vec<([f64; 2], bool)> =
+        vec![([0.0, 0.0], true), ([5.0, 0.0], true), ([9.0, 0.0], false), ([9.0, 5.0], false)];
+    assert_eq!(places, expected);
+    assert_eq!(read.passed_over.keys().collect::<Vec<_>>(), ["PPRINT"]);
+}
+
+#[test]
+fn drilling_cycles_are_plunges_that_are_not_scored_or_left_out_and_listed() {
+    let path = |cycle: &str| {
+        format!(
+            "UNITS/MM\nFEDRAT/600,MMPM\nGOTO/0,0,5\nGOTO/0,0,0\nGOTO/50,0,0\nRAPID\nGOTO/50,0,30\n{cycle}\nGOTO/20,10,0\n\
+             GOTO/30,10,0,0,0.6,0.8\nCYCLE/OFF\nGOHOME/0,0,90\nFINI\n"
+        )
+    };
+    for cycle in [
+        "CYCLE/DRILL,RAPTO,3.0,FEDTO,-20.0,RTRCTO,AUTO,MMPM,240.0",
+        "CYCLE/DRILL,DEPTH,20,MMPM,240,CLEAR,3,DWELL,2",
+        "CYCLE/DRILL,20,MMPM,240,3",
+        "CYCLE/DRILL,DEEP,STEP,2,FEDTO,-20,RAPTO,3,MMPM,240",
+    ] {
+        let read = program(&path(cycle), &settings()).unwrap_or_else(|e| panic!("{cycle}: {e}"));
+        let cutting: Vec<&Move> = read.moves.iter().filter(|one| !one.is_rapid).collect();
+        assert_eq!(cutting.len(), 4, "{cycle}");
+        assert!((cutting[2].position * 1e3 - Vector3::new(20.0, 10.0, -20.0)).norm() < 1e-9, "{cycle}");
+        assert!((cutting[3].position * 1e3 - Vector3::new(30.0, 10.0 - 12.0, -16.0)).norm() < 1e-9, "{cycle}");
+        assert!((cutting[2].feed.unwrap() - 4e-3).abs() < 1e-12, "{cycle}");
+        let (task, imported) = task(&path(cycle), &settings());
+        assert_eq!(task.path.segments().len(), 3, "{cycle}");
+        assert!(task.path.segments()[1..].iter().flat_map(Clone::clone).all(|point| !task.path.is_scored(point)));
+        assert!(imported.notes().iter().any(|note| note.starts_with("holes of drilling cycles")), "{imported}");
+        let skip = ReadSettings { skip_cycles: true, ..settings() };
+        let (task, imported) = super::task(&path(cycle), &skip);
+        assert_eq!(task.path.segments().len(), 1);
+        let said = imported.notes().join("\n");
+        assert!(
+            said.contains("2 holes left out (--skip-cycles): 20, 10, 0 mm (line 9); 30, 10, 0 mm (line 10)"),
+            "{said}"
+        );
+    }
+    for cycle in
+        ["CYCLE/DRILL,126,85,1,MMPR", "CYCLE/CSINK,DIAMET,5", "CYCLE/DRILL,FEDTO,5,RAPTO,3", "CYCLE/DRILL,DEPTH,5"]
+    {
+        refused(&path(cycle), &settings(), ":8: CYCLE", &["a cycle whose moves", "--skip-cycles"]);
+    }
 }

@@ -106,8 +106,15 @@ fn each_broken_block_names_line_word_value_and_what_is_allowed() {
         ("G1 X99999999", "X", ["usual size", "100 m"]),
         ("G1 F0 X5", "F", ["not a feed", "above 0"]),
         ("G93 G1 X5", "X", ["G93 without a feed", "F with each"]),
-        ("G83 X5 R2 Z-9", "G", ["not known here", "G0-G4"]),
-        ("G41 D1", "G", ["not known here", "'G41'"]),
+        ("G83 X5 R2 Z-9", "G", ["a canned cycle", "'G83'"]),
+        ("G41 D1", "G", ["cutter compensation", "'G41'"]),
+        ("G81 X5 Z-3 R2", "G", ["a canned cycle", "--skip-cycles"]),
+        ("G65 P9000", "G", ["a macro call", "'G65'"]),
+        ("M98 P100", "M", ["a subprogram", "'M98'"]),
+        ("M97 P100", "M", ["a subprogram", "without subprograms"]),
+        ("M99", "M", ["a subprogram", "'M99'"]),
+        ("G54 P1\nG54 P2", "G", ["second work offset", "one G54 P"]),
+        ("G54.1", "G", ["without the number", "G54.1 with P"]),
         ("G1 X5 A3", "A", ["machine that is not named", "--machine table-ac"]),
         ("G1 X5 (open", "", ["not a letter", "( )"]),
     ] {
@@ -134,5 +141,22 @@ fn other_languages_are_refused_by_name() {
     ] {
         let message = import_bytes(Path::new("f"), text.as_bytes(), &settings()).map(drop).unwrap_err().to_string();
         assert!(message.contains(name) && message.contains("is not read"), "{message}");
+    }
+}
+
+#[test]
+fn tool_changes_end_segments_block_delete_is_said_and_holes_are_left_out() {
+    let text = "G21 G90 G94\nT1 M6\nG0 X0 Y0 Z5\nG1 Z0 F600\nG1 X50\n/G1 Y20\nT2 M6\nG1 X0\nG1 Y40\nG0 Z9\n\
+                G83 X10 Y10 Z-5 R2 Q1 F100\nX20\nG80\nG0 X0 Y0 Z9\nM30\n";
+    refused(text, &settings(), ":11: G", &["a canned cycle", "'G83'"]);
+    let (read, path) = task(text, &ReadSettings { skip_cycles: true, ..settings() });
+    assert_eq!(read.path.segments().len(), 2);
+    let said = path.notes().join("\n");
+    for part in [
+        "block delete",
+        "first moves of a tool",
+        "2 holes left out (--skip-cycles): 10, 10, 9 mm (line 11); 20, 10, 0 mm",
+    ] {
+        assert!(said.contains(part), "{part} in {said}");
     }
 }
