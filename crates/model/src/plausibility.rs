@@ -114,7 +114,7 @@ pub fn force(largest: f64) -> Option<String> {
     if largest == 0.0 {
         return Some("all forces are zero: nothing deflects, and every placement is as good as any other".to_owned());
     }
-    (largest > LARGEST_FORCE || largest < SMALLEST_FORCE)
+    (!(SMALLEST_FORCE..=LARGEST_FORCE).contains(&largest))
         .then(|| format!("forces go up to {} N: are they in N?", figures(largest)))
 }
 

@@ -314,6 +314,7 @@ impl<'a> Reader<'a> {
         } else if self.skips_cycles {
             Some(Holes::LeftOut)
         } else {
+            self.numbers(statement, |_| true, FORMS)?;
             let cycle = Cycle::of(statement);
             let problem = "a cycle whose moves are not known here";
             Some(Holes::Drilled(cycle.ok_or_else(|| self.fail(statement, problem, FORMS))?))

@@ -121,7 +121,7 @@ fn arc_of(circle: &str, goto: &str) -> Vec<Vector3<f64>> {
 #[test]
 fn arcs_of_nx_are_left_handed_and_those_of_solidworks_and_creo_right_handed() {
     let length = |points: &[Vector3<f64>]| {
-        points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() + (points[0].x - 10.0).hypot(points[0].y)
+        points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() + (points[0] - Vector3::x() * 10.0).norm()
     };
     let quarter = std::f64::consts::PI * 5.0;
     for (circle, quarters) in [
@@ -136,7 +136,7 @@ fn arcs_of_nx_are_left_handed_and_those_of_solidworks_and_creo_right_handed() {
     }
     let helix = arc_of("CIRCLE/0,0,0,0,0,-1,10,.06,.5,20,0,TIMES,3", "10,0,-6");
     assert!((length(&helix) / (quarter * 12.0) - 1.0).abs() < 2e-3, "{}", length(&helix));
-    assert!(helix.iter().all(|place| ((place.x.hypot(place.y)) - 10.0).abs() < 1e-9));
+    assert!(helix.iter().all(|place| (place.xy().norm() - 10.0).abs() < 1e-9));
     let halfway = helix[helix.len() / 2 - 1];
     assert!((halfway.z + 3.0).abs() < 0.1, "{halfway}");
     let beside = "UNITS/MM\nFEDRAT/600\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,-1,10,0,0,0,0,TIMES,2\nGOTO/0,10,-6\nFINI\n";
@@ -203,5 +203,8 @@ fn drilling_cycles_are_plunges_that_are_not_scored_or_left_out_and_listed() {
         ["CYCLE/DRILL,126,85,1,MMPR", "CYCLE/CSINK,DIAMET,5", "CYCLE/DRILL,FEDTO,5,RAPTO,3", "CYCLE/DRILL,DEPTH,5"]
     {
         refused(&path(cycle), &settings(), ":8: CYCLE", &["a cycle whose moves", "--skip-cycles"]);
+    }
+    for cycle in ["CYCLE/DRILL,FEDTO,-5,RAPTO,1e300", "CYCLE/DRILL,FEDTO,-nan,RAPTO,3"] {
+        refused(&path(cycle), &settings(), ":8: CYCLE", &["not finite numbers of a usual size", "--skip-cycles"]);
     }
 }
