@@ -36,14 +36,14 @@ words!(MillingDirection: "conventional" => MillingDirection::Conventional, "clim
 words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "none" => None);
 
 /// The cutter: its geometry, its sense of rotation and the coefficients of its forces. Which of the optional keys are needed
-/// depends on what is computed: forces along a path need `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
+/// depends on what is computed: all forces need `teeth`, those along a path `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
 /// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ToolTable {
     /// Diameter of the cutter.
     pub cutter_diameter_mm: Mm<Positive>,
-    /// Number of teeth.
-    pub teeth: Whole<1, 100>,
+    /// Number of teeth: needed where forces are computed.
+    pub teeth: Option<Whole<1, 100>>,
     /// Sense of rotation seen from the spindle; clockwise where left out.
     pub rotation: Option<Word<Rotation>>,
     /// Angle at which each tooth follows the tooth before it, in the order in which they pass, 360 in all: the second number is that

@@ -60,11 +60,12 @@ pub(crate) struct Zone {
 }
 
 impl Zone {
-    /// How deep a point is in it, below zero where it is outside. m
+    /// How deep a point is in it; outside, its distance below zero. m
     pub(crate) fn depth(&self, point: &Vector3<f64>) -> f64 {
         if let Some((pose, half)) = &self.edges {
-            let local = (pose.inverse() * Point3::from(*point)).coords;
-            return (half - local.abs()).min();
+            let inside = half - (pose.inverse() * Point3::from(*point)).coords.abs();
+            let beyond = inside.map(|depth| depth.min(0.0)).norm();
+            return if beyond > 0.0 { -beyond } else { inside.min() };
         }
         self.half_space.map_or(f64::NEG_INFINITY, |[at, into]| (point - at).dot(&into))
     }

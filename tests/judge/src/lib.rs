@@ -8,6 +8,7 @@
 
 mod arm;
 mod cell;
+pub mod cover;
 mod moves;
 mod path;
 mod plan;
@@ -16,6 +17,7 @@ mod score;
 mod solid;
 mod values;
 mod verdict;
+pub mod write;
 
 pub use verdict::Verdict;
 

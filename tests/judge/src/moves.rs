@@ -247,7 +247,7 @@ fn free(
             let nearest = cell.nearest(&cell.bodies, &cell.pairs, &here, cell.clearance.max(1e-3));
             let distance = nearest.as_ref().map_or(f64::INFINITY, |(distance, _)| *distance);
             let names = nearest.map_or(String::new(), |(_, pair)| pair.map(|body| cell.bodies[body].name.as_str()).join(" and "));
-            verdict.within("clearance along a line (m)", || at(&format!("{} {names}", ["line out", "line in"][which])), cell.clearance, distance + SHAPE_SLACK);
+            verdict.within("clearance along a line (m)", || at(&format!("{} {names}", ["line out", "line in"][which])), 0.9 * cell.clearance, distance + SHAPE_SLACK);
             if let Some((depth, zone)) = cell.zone_depth(&here) {
                 verdict.within("zone along a line (m)", || at(&zone), depth, 1e-5);
             }
@@ -275,7 +275,7 @@ fn free(
             let here: Vec<f64> = positions[0].iter().zip(positions[1]).map(|(p, q)| p + (q - p) * moved).collect();
             let stand = cell.at(&plan.placement, &joints, &here);
             let (distance, names) = with_tool.nearest(cell, &stand);
-            verdict.within("clearance of a joint move (m)", || at(&format!("move {place} at {share:.3}: {names}")), cell.clearance, distance + SHAPE_SLACK);
+            verdict.within("clearance of a joint move (m)", || at(&format!("move {place} at {share:.3}: {names}")), 0.9 * cell.clearance, distance + SHAPE_SLACK);
             if let Some((depth, zone)) = cell.zone_depth(&stand) {
                 verdict.within("zone on a joint move (m)", || at(&format!("move {place} at {share:.3}: {zone}")), depth, 1e-4);
             }

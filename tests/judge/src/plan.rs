@@ -286,19 +286,23 @@ impl Plan<'_> {
             return;
         }
         let row = &self.rows[i];
-        if let Some((depth, which)) = cell.zone_depth(stand) {
-            verdict.within("zone kept out of (m)", || format!("{} {which}", self.at(i)), depth, 1e-5);
-        }
-        if cell.pairs.is_empty() {
-            return;
+        let zone = cell.zone_depth(stand);
+        if let Some((depth, which)) = &zone {
+            verdict.within("zone kept out of (m)", || format!("{} {which}", self.at(i)), *depth, 1e-5);
         }
         let nearest = cell.nearest(&cell.bodies, &cell.pairs, stand, 1.0);
         let pair = |pair: &[usize; 2]| pair.map(|body| cell.bodies[body].name.as_str()).join(" and ");
         let told = || {
             let words = nearest.as_ref().map_or("nothing within 1 m".to_owned(), |(_, which)| pair(which));
-            format!("{} (stated {}, computed {words})", self.at(i), row.nearest)
+            format!("{} (stated {}, computed {words}, zone {zone:?})", self.at(i), row.nearest)
         };
-        match (nearest.as_ref().map(|(distance, _)| *distance), row.clearance) {
+        let of_zone = zone.as_ref().map(|(depth, _)| (-depth).max(0.0)).filter(|distance| *distance < 1.0);
+        // The pair with the least room: what is left beyond the clearance, of which a zone needs none.
+        let least = match (nearest.as_ref().map(|(distance, _)| *distance), of_zone) {
+            (Some(shapes), Some(zone)) => Some(if shapes - cell.clearance < zone { shapes } else { zone }),
+            (shapes, zone) => shapes.or(zone),
+        };
+        match (least, row.clearance) {
             (Some(found), Some(stated)) => verdict.close("stated clearance (m)", told, stated, found, SHAPE_SLACK),
             (found, stated) => {
                 let is_edge = found.or(stated).is_none_or(|distance| distance > 1.0 - 1e-3);

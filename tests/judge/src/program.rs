@@ -260,7 +260,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
         let turn = angle_between(&tool.rotation.to_rotation_matrix(), &cell.tool.rotation.to_rotation_matrix());
         verdict.within("tool of a program (rad)", || name.clone(), turn, 3e-8);
     }
-    let mut next = 0;
+    let mut next = 0_usize;
     let mut joints: Option<[f64; 6]> = None;
     let mut last: Option<(Isometry3<f64>, Vec<f64>)> = None;
     for step in &program.moves {
@@ -315,7 +315,10 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             let slack = if cell.axes[k].is_rail { 1e-7 } else { 2e-6 };
             verdict.close("external axis of a program", at, *position, plan.rows[i].positions[k], slack);
         }
-        let feed = cell.points[i].speed.or(cell.setting("redundancy", "feed_mm_per_s").map(|feed| feed * 1e-3)).unwrap_or(f64::NAN);
+        // The feed of the first point of a segment has no effect; the line to it has that of the cut that follows.
+        let is_first = i == 0 || cell.points[i - 1].segment != cell.points[i].segment;
+        let fed = if is_first && cell.points.get(i + 1).is_some_and(|next| next.segment == cell.points[i].segment) { i + 1 } else { i };
+        let feed = cell.points[fed].speed.or(cell.setting("redundancy", "feed_mm_per_s").map(|feed| feed * 1e-3)).unwrap_or(f64::NAN);
         let least = if program.feed_slack > 1e-4 { feed.max(1e-3) } else { feed };
         verdict.close("feed of a program (m/s)", at, step.feed, least, program.feed_slack);
         // The arm, followed from where it is.

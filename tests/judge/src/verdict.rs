@@ -10,6 +10,8 @@ pub struct Verdict {
     pub checks: BTreeMap<&'static str, usize>,
     /// One line each; of each kind the first twenty.
     pub disagreements: Vec<String>,
+    /// Why a program was not written, where it was asked for.
+    pub not_exported: Vec<String>,
     told: BTreeMap<&'static str, usize>,
 }
 
@@ -44,6 +46,7 @@ impl Verdict {
             *self.checks.entry(kind).or_insert(0) += count;
         }
         self.disagreements.extend(other.disagreements);
+        self.not_exported.extend(other.not_exported);
     }
 }
 

@@ -16,7 +16,7 @@ impl Cutting<'_> {
     /// [`InputError`] with file, line and field: lists that do not fit the teeth, numbers that make no cutter.
     pub(super) fn cutter(&self, coefficients: Coefficients, source: &str) -> Result<Cutter, InputError> {
         let (tool, at) = (self.tool, &self.tool_at);
-        let count = tool.teeth.count();
+        let count = self.count()?;
         let radius = tool.cutter_diameter_mm.written() / 2e3;
         let turn = "pitches from one tooth to the next in deg that make 360";
         let pitches = self.one_each("pitch_deg", &tool.pitch_deg, turn)?;
@@ -42,6 +42,11 @@ impl Cutting<'_> {
         })
     }
 
+    /// The number of teeth.
+    fn count(&self) -> Result<usize, InputError> {
+        Ok(self.tool_at.require("teeth", self.tool.teeth)?.count())
+    }
+
     /// Numbers in SI units, one for each tooth.
     fn one_each<U: Unit>(
         &self,
@@ -49,7 +54,7 @@ impl Cutting<'_> {
         list: &Option<List<Quantity<U>>>,
         what: &str,
     ) -> Result<Option<Vec<f64>>, InputError> {
-        let count = self.tool.teeth.count();
+        let count = self.count()?;
         match list {
             Some(list) if list.0.len() != count => {
                 let problem = format!("has {} numbers for {count} teeth", list.0.len());
