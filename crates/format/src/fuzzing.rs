@@ -158,6 +158,7 @@ mod tests {
     const LONGEST: Duration = Duration::from_secs(2);
 
     /// Runs a reader on so many fixtures with mutations; prints how many were taken and how long the slowest took.
+    #[expect(clippy::print_stdout, reason = "the figures of a long run")]
     fn run(reader: Reader, fixtures: &[&[u8]], runs: usize) {
         let mut random = ChaCha8Rng::seed_from_u64(16);
         let (mut taken, mut slowest) = (0, Duration::ZERO);
