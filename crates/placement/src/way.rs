@@ -112,6 +112,13 @@ struct Line {
     short: Option<ShortLine>,
 }
 
+impl Line {
+    /// How long it is where it should have a length. m
+    fn length(&self, wanted: f64) -> f64 {
+        self.short.as_ref().map_or(wanted, |short| short.length)
+    }
+}
+
 /// The move from the end of one segment's plan to the start of the next; `None` where there is no scene.
 pub fn way(problem: &Problem, placement: &Placement, plans: [&SegmentPlan; 2], number: usize) -> Option<Way> {
     let space = Space::new(problem, placement)?;
@@ -121,12 +128,18 @@ pub fn way(problem: &Problem, placement: &Placement, plans: [&SegmentPlan; 2], n
     let are_axes_moved = problem.axis_positions(end.point) != problem.axis_positions(start.point);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them on any other.
     let points = (end.point, start.point);
-    let short_lines = [end, start].map(|at| space.line(at, retract).short);
+    let lowest = [end, start].map(|at| space.line(at, retract));
+    let short_lines = lowest.each_ref().map(|line| line.short.clone());
     let is_too_short = |line: &Line| line.joints.len() < 2;
     let mut blocked = None;
     let mut lines: Vec<[Line; 2]> = Vec::new();
     for lift in LIFTS {
-        let pair = [end, start].map(|at| space.line(at, retract + lift));
+        // A higher line is looked at in other steps, and may so end a little before the lowest one: then that is taken.
+        let raised = |k: usize| {
+            let line = space.line([end, start][k], retract + lift);
+            if line.length(retract + lift) < lowest[k].length(retract) { lowest[k].clone() } else { line }
+        };
+        let pair = [raised(0), raised(1)];
         // A line that a shorter one has ended already leads no farther.
         if lines.last().is_some_and(|known| *known == pair || (lift > 0.0 && pair.iter().all(is_too_short))) {
             break;

@@ -1,0 +1,403 @@
+//! A plan, point by point: poses, limits, steps, deflections, scores, distances; and what it comes to.
+
+use crate::cell::{Cell, Placement, Stand};
+use crate::path::Point;
+use crate::score::{Criterion, Loaded};
+use crate::values::{Answer, angle_between, section};
+use crate::verdict::Verdict;
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Vector3};
+use serde_json::Value;
+use std::path::Path;
+
+/// A row of a plan file, in SI units and rad.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub segment: usize,
+    pub place: Vector3<f64>,
+    pub beta: f64,
+    pub posture: usize,
+    pub turns: [f64; 3],
+    pub joints: [f64; 6],
+    pub inverse_condition: f64,
+    pub force: Vector3<f64>,
+    pub deflection: Vector3<f64>,
+    /// Normal, feed, axial, score, total.
+    pub parts: [f64; 5],
+    /// Of the external axes.
+    pub positions: Vec<f64>,
+    pub clearance: Option<f64>,
+    pub nearest: String,
+}
+
+/// Half of the last printed digit of angles (rad) and lengths (m).
+const HALF_ANGLE: f64 = 0.5e-4 * std::f64::consts::PI / 180.0;
+const HALF_LENGTH: f64 = 0.5e-7;
+
+/// A plan file.
+pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
+    let told = |error: String| format!("{}: {error}", file.display());
+    let mut reader = csv::Reader::from_path(file).map_err(|error| told(error.to_string()))?;
+    let names: Vec<String> = reader.headers().map_err(|error| told(error.to_string()))?.iter().map(str::to_owned).collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| told(error.to_string()))?;
+        let cell_of = |name: &str| names.iter().position(|known| known == name).and_then(|column| record.get(column));
+        let maybe = |name: &str| cell_of(name).and_then(|text| text.parse::<f64>().ok());
+        let value = |name: &str| maybe(name).ok_or_else(|| told(format!("no number in {name}")));
+        let three = |stem: &str, unit: &str, scale: f64| {
+            Ok::<_, String>(Vector3::new(value(&format!("{stem}x{unit}"))?, value(&format!("{stem}y{unit}"))?, value(&format!("{stem}z{unit}"))?) * scale)
+        };
+        let mut joints = [0.0; 6];
+        for (j, joint) in joints.iter_mut().enumerate() {
+            *joint = value(&format!("theta{}_deg", j + 1))?.to_radians();
+        }
+        let mut positions = Vec::new();
+        for (k, axis) in cell.axes.iter().enumerate() {
+            positions.push(match axis.is_rail {
+                true => value(&format!("e{}_mm", k + 1))? * 1e-3,
+                false => value(&format!("e{}_deg", k + 1))?.to_radians(),
+            });
+        }
+        let part = |name: &str| value(name).map(|mm| mm * 1e-3);
+        rows.push(Row {
+            segment: value("segment")? as usize,
+            place: three("", "_mm", 1e-3)?,
+            beta: value("beta_deg")?.to_radians(),
+            posture: value("posture")? as usize,
+            turns: [value("turn_1")?, value("turn_4")?, value("turn_6")?],
+            joints,
+            inverse_condition: value("inverse_condition")?,
+            force: three("force_", "_n", 1.0)?,
+            deflection: three("deflection_", "_mm", 1e-3)?,
+            parts: [part("normal_mm")?, part("feed_mm")?, part("axial_mm")?, part("score_mm")?, part("total_mm")?],
+            positions,
+            clearance: maybe("clearance_mm").map(|mm| mm * 1e-3),
+            nearest: cell_of("nearest_pair").unwrap_or_default().to_owned(),
+        });
+    }
+    Ok(rows)
+}
+
+/// A plan at its placement.
+pub(crate) struct Plan<'a> {
+    pub cell: &'a Cell,
+    pub placement: Placement,
+    pub rows: Vec<Row>,
+    pub name: String,
+}
+
+impl Plan<'_> {
+    pub(crate) fn stand(&self, i: usize) -> Stand {
+        let row = &self.rows[i];
+        self.cell.at(&self.placement, &row.joints, &row.positions)
+    }
+
+    fn point(&self, i: usize) -> &Point {
+        &self.cell.points[i]
+    }
+
+    fn at(&self, i: usize) -> String {
+        format!("{} point {i}", self.name)
+    }
+
+    /// By how much the printed digits of the angles can be off at the tool centre point. m
+    fn slack(&self, stand: &Stand) -> f64 {
+        let tool = stand.tool.translation.vector;
+        let arm: f64 = (1..7).map(|k| (tool - stand.frames[k].translation.vector).norm() * HALF_ANGLE).sum();
+        let axes: f64 = self.cell.axes.iter().map(|axis| if axis.is_rail { HALF_LENGTH } else { (tool - axis.point).norm() * HALF_ANGLE }).sum();
+        arm + axes + 2.0 * HALF_LENGTH
+    }
+
+    /// Tool frame in the frame of the part that the task and beta ask for.
+    pub(crate) fn wanted(&self, i: usize) -> Isometry3<f64> {
+        let (point, beta) = (self.point(i), self.rows[i].beta);
+        let x = point.axes.column(0) * beta.cos() + point.axes.column(1) * beta.sin();
+        let z = -point.axes.column(2);
+        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z.into_owned()]));
+        crate::values::placed(&rotation, &point.place)
+    }
+
+    fn is_in_place(&self, i: usize) -> bool {
+        (self.point(i).place - self.point(i - 1).place).norm() < 1e-9
+    }
+
+    /// Whether the point and the one before it are of one segment.
+    fn follows(&self, i: usize) -> bool {
+        i > 0 && self.point(i).segment == self.point(i - 1).segment
+    }
+
+    pub(crate) fn judge(&self, verdict: &mut Verdict, case: &Value) {
+        verdict.holds("points of the plan", || self.name.clone(), self.rows.len() == self.cell.points.len());
+        if self.rows.len() != self.cell.points.len() {
+            return;
+        }
+        let criterion = Criterion::read(self.cell);
+        let mut scores = Vec::with_capacity(self.rows.len());
+        for i in 0..self.rows.len() {
+            let stand = self.stand(i);
+            self.pose(verdict, i, &stand);
+            self.limits(verdict, i, &stand);
+            self.posture(verdict, i, &stand);
+            scores.push(self.load(verdict, i, &stand, &criterion));
+            if self.follows(i) {
+                self.step(verdict, i);
+            }
+            self.clear(verdict, i, &stand);
+        }
+        self.axes(verdict);
+        self.cell_bounds(verdict);
+        self.figures(verdict, case, &criterion, &scores);
+        if !self.cell.pairs.is_empty() || !self.cell.zones.is_empty() {
+            (1..self.rows.len()).filter(|i| self.follows(*i)).for_each(|i| self.between(verdict, i));
+        }
+    }
+
+    fn pose(&self, verdict: &mut Verdict, i: usize, stand: &Stand) {
+        let slack = self.slack(stand);
+        let wanted = stand.part * self.wanted(i);
+        let off = (wanted.translation.vector - stand.tool.translation.vector).norm();
+        verdict.within("position of the tool (m)", || self.at(i), off, slack);
+        let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &stand.tool.rotation.to_rotation_matrix());
+        verdict.within("orientation of the tool (rad)", || self.at(i), turn, (8.0 + self.cell.axes.len() as f64) * HALF_ANGLE);
+        let seen = (stand.carrier.inverse() * Point3::from(wanted.translation.vector)).coords;
+        verdict.within("stated position (m)", || self.at(i), (seen - self.rows[i].place).amax(), slack);
+        verdict.holds("stated segment", || self.at(i), self.rows[i].segment == self.point(i).segment);
+    }
+
+    fn limits(&self, verdict: &mut Verdict, i: usize, stand: &Stand) {
+        let of = |key: &str| self.cell.setting("constraints", key);
+        let margin = of("joint_margin_deg").unwrap_or(0.0).to_radians();
+        for (j, row) in self.cell.arm.rows.iter().enumerate() {
+            let angle = self.rows[i].joints[j];
+            let beyond = (row.min + margin - angle).max(angle - row.max + margin);
+            verdict.within("joint limit (rad)", || format!("{} joint {}", self.at(i), j + 1), beyond, 1.01 * HALF_ANGLE);
+        }
+        let tool = stand.tool.translation.vector;
+        let length = of("characteristic_length_mm").unwrap_or(f64::NAN) * 1e-3;
+        let condition = self.cell.arm.inverse_condition(&stand.frames, &tool, length);
+        verdict.close("inverse condition", || self.at(i), self.rows[i].inverse_condition, condition, 1e-5);
+        verdict.within("least inverse condition", || self.at(i), of("min_inverse_condition").unwrap_or(0.0), condition + 1e-5);
+        if let Some(least) = of("min_base_distance_mm") {
+            let base = stand.frames[0];
+            let seen = base.inverse() * Point3::from(tool);
+            let first = self.cell.arm.frames(&Isometry3::identity(), &[0.0; 6])[1];
+            let away = seen.coords - first.translation.vector;
+            let axis = first.rotation * Vector3::z();
+            let distance = (away - axis * away.dot(&axis)).norm();
+            verdict.within("distance from axis 1 (m)", || self.at(i), least * 1e-3, distance + self.slack(stand));
+        }
+        if let Some(most) = of("max_deflection_mm") {
+            verdict.within("largest score (m)", || self.at(i), self.rows[i].parts[3], most * 1e-3 + 1e-9);
+        }
+    }
+
+    fn posture(&self, verdict: &mut Verdict, i: usize, stand: &Stand) {
+        let row = &self.rows[i];
+        let wrist = Point3::from(self.cell.arm.wrist(&stand.frames));
+        let is_back = (stand.frames[1].inverse() * wrist).x < 0.0;
+        // From axis 3 to the wrist, in the frame of row 2, whose x axis runs along the upper arm.
+        let forearm = stand.frames[2].inverse() * (wrist - stand.frames[3].translation.vector).coords;
+        let elbow = forearm.y.atan2(forearm.x);
+        let number = 1 + 4 * usize::from(is_back) + 2 * usize::from(elbow <= 0.0) + usize::from(row.joints[4] < 0.0);
+        verdict.holds("posture", || format!("{}: stated {}, computed {number}", self.at(i), row.posture), number == row.posture);
+        let table = section(&self.cell.run, "postures");
+        if let Some(allowed) = table.and_then(|table| crate::values::list(table, "allowed")) {
+            verdict.holds("allowed posture", || self.at(i), allowed.contains(&(row.posture as f64)));
+        }
+        let is_one = table.and_then(|table| crate::values::text(table, "changes")) == Some("never");
+        if i > 0 && (is_one || self.follows(i)) {
+            verdict.holds("one posture", || self.at(i), row.posture == self.rows[i - 1].posture);
+        }
+        for (k, j) in [0, 3, 5].into_iter().enumerate() {
+            let turns = (row.joints[j] / std::f64::consts::TAU).abs().fract();
+            let is_edge = (turns - 0.5).abs() < 1e-6;
+            let found = (row.joints[j] / std::f64::consts::TAU).round();
+            verdict.holds("turns", || format!("{} joint {}", self.at(i), j + 1), is_edge || found == row.turns[k]);
+        }
+    }
+
+    /// The load, what it does, and what the criterion makes of it. m
+    fn load(&self, verdict: &mut Verdict, i: usize, stand: &Stand, criterion: &Criterion) -> f64 {
+        let (row, point) = (&self.rows[i], self.point(i));
+        let part = stand.part.rotation.to_rotation_matrix();
+        let carrier = stand.carrier.rotation.inverse();
+        let force = part * point.force;
+        let size = force.norm();
+        verdict.within("force (N)", || self.at(i), (carrier * force - row.force).amax(), 0.6e-4 + 1e-6 * size);
+        let at = stand.tool.translation.vector;
+        let moment = part * point.moment;
+        let moved = self.cell.arm.deflection(&stand.frames, &row.joints, &at, &force, &moment);
+        let slack = 0.6e-10 + 3e-5 * moved.norm();
+        verdict.within("deflection (m)", || self.at(i), (carrier * moved - row.deflection).amax(), slack);
+        let axes = part.matrix() * point.axes;
+        let stated = row.parts;
+        for (k, column, word) in [(0, 1, "wall"), (1, 0, "feed"), (2, 2, "axis")] {
+            let found = axes.column(column).dot(&moved);
+            verdict.close("part of the deflection (m)", || format!("{} {word}", self.at(i)), stated[k], found, slack);
+        }
+        verdict.close("total deflection (m)", || self.at(i), stated[4], moved.norm(), slack);
+        let normal = point.normal.map(|normal| part * normal);
+        let load = Loaded { frames: &stand.frames, joints: &row.joints, at, force, moment, axes, normal };
+        let score = criterion.score(self.cell, &load);
+        if point.is_scored {
+            verdict.close("score (m)", || self.at(i), stated[3], score, slack + 3e-5 * score);
+        }
+        score
+    }
+
+    fn step(&self, verdict: &mut Verdict, i: usize) {
+        let of = |key: &str| self.cell.setting("redundancy", key);
+        let [from, to] = [&self.rows[i - 1], &self.rows[i]];
+        let length = (self.point(i).place - self.point(i - 1).place).norm();
+        let feed = self.point(i).speed.or(of("feed_mm_per_s").map(|feed| feed * 1e-3)).unwrap_or(f64::NAN);
+        let time = if self.is_in_place(i) { f64::INFINITY } else { length / feed };
+        for (j, row) in self.cell.arm.rows.iter().enumerate() {
+            let most = row.speed.map_or(f64::INFINITY, |speed| speed * time).min(std::f64::consts::PI);
+            let step = (to.joints[j] - from.joints[j]).abs();
+            verdict.within("joint step (rad)", || format!("{} joint {}", self.at(i), j + 1), step, most + 2.02 * HALF_ANGLE);
+        }
+        for (k, axis) in self.cell.axes.iter().enumerate() {
+            if let Some(speed) = axis.speed {
+                let step = (to.positions[k] - from.positions[k]).abs();
+                verdict.within("step of an external axis", || format!("{} {}", self.at(i), axis.name), step, speed * time + 2.02 * HALF_ANGLE);
+            }
+        }
+        if self.is_in_place(i) {
+            return;
+        }
+        let mm = length * 1e3;
+        if let Some(rate) = of("max_beta_rate_deg_per_mm") {
+            let change = to.beta - from.beta;
+            let step = change.sin().atan2(change.cos()).abs();
+            verdict.within("rate of beta (rad)", || self.at(i), step, (rate * mm).to_radians() + 2.02 * HALF_ANGLE);
+        }
+        let by_length = of("max_spindle_turn_deg_per_mm").map(|limit| (limit * mm).to_radians());
+        let by_time = of("max_spindle_turn_deg_per_s").map(|limit| (limit * time).to_radians());
+        if let Some(limit) = by_length.into_iter().chain(by_time).reduce(f64::min) {
+            let [a, b] = [self.wanted(i - 1), self.wanted(i)].map(|pose| pose.rotation.to_rotation_matrix());
+            verdict.within("turn of the spindle (rad)", || self.at(i), angle_between(&a, &b), limit + 2.02 * HALF_ANGLE);
+        }
+    }
+
+    /// Distances at a point.
+    fn clear(&self, verdict: &mut Verdict, i: usize, stand: &Stand) {
+        let cell = self.cell;
+        if cell.pairs.is_empty() && cell.zones.is_empty() {
+            return;
+        }
+        let row = &self.rows[i];
+        if let Some((depth, which)) = cell.zone_depth(stand) {
+            verdict.within("zone kept out of (m)", || format!("{} {which}", self.at(i)), depth, 1e-5);
+        }
+        if cell.pairs.is_empty() {
+            return;
+        }
+        let nearest = cell.nearest(&cell.bodies, &cell.pairs, stand, 1.0);
+        let pair = |pair: &[usize; 2]| pair.map(|body| cell.bodies[body].name.as_str()).join(" and ");
+        let told = || {
+            let words = nearest.as_ref().map_or("nothing within 1 m".to_owned(), |(_, which)| pair(which));
+            format!("{} (stated {}, computed {words})", self.at(i), row.nearest)
+        };
+        match (nearest.as_ref().map(|(distance, _)| *distance), row.clearance) {
+            (Some(found), Some(stated)) => verdict.close("stated clearance (m)", told, stated, found, SHAPE_SLACK),
+            (found, stated) => {
+                let is_edge = found.or(stated).is_none_or(|distance| distance > 1.0 - 1e-3);
+                verdict.holds("stated clearance (m)", told, is_edge);
+            }
+        }
+        if let Some((found, _)) = nearest {
+            verdict.within("clearance at a point (m)", told, cell.clearance, found + SHAPE_SLACK);
+        }
+    }
+
+    /// From point to point the tool moves straight and turns evenly in the frame of the part.
+    fn between(&self, verdict: &mut Verdict, i: usize) {
+        let cell = self.cell;
+        let [from, to] = [&self.rows[i - 1], &self.rows[i]];
+        let [start, end] = [self.stand(i - 1), self.stand(i)].map(|stand| stand.part.inverse() * stand.tool);
+        let turn = (end.rotation * start.rotation.inverse()).scaled_axis();
+        let way = (end.translation.vector - start.translation.vector).norm();
+        let most = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
+        let steps = (way / 0.01).max(most / 0.02).ceil().clamp(2.0, 60.0) as usize;
+        let mut joints = from.joints;
+        for step in 1..steps {
+            let share = step as f64 / steps as f64;
+            let positions: Vec<f64> = from.positions.iter().zip(&to.positions).map(|(a, b)| a + (b - a) * share).collect();
+            let place = start.translation.vector.lerp(&end.translation.vector, share);
+            let target = Isometry3::new(place, turn * share) * start.rotation;
+            let part = cell.at(&self.placement, &joints, &positions);
+            let Some(found) = cell.arm.reach(&part.frames[0], &(part.part * target * cell.tool.inverse()), &joints) else {
+                verdict.holds("reach between points", || format!("{} at {share}", self.at(i)), false);
+                return;
+            };
+            joints = found;
+            let stand = cell.at(&self.placement, &joints, &positions);
+            let told = |which: &str| format!("{} at {share:.3} of the way: {which}", self.at(i));
+            if let Some((depth, which)) = cell.zone_depth(&stand) {
+                verdict.within("zone between points (m)", || told(&which), depth, 1e-4);
+            }
+            let nearest = cell.nearest(&cell.bodies, &cell.pairs, &stand, cell.clearance.max(1e-3));
+            let (distance, which) = nearest.map_or((f64::INFINITY, String::new()), |(distance, pair)| {
+                (distance, pair.map(|body| cell.bodies[body].name.as_str()).join(" and "))
+            });
+            verdict.within("clearance between points (m)", || told(&which), 0.9 * cell.clearance, distance + SHAPE_SLACK);
+        }
+        let off = (0..6).map(|j| (joints[j] - to.joints[j]).abs()).fold(0.0, f64::max);
+        verdict.within("the way leads to the next point (rad)", || self.at(i), off, most / (steps as f64) * 8.0 + 0.3);
+    }
+
+    /// Ranges and uses of the external axes.
+    fn axes(&self, verdict: &mut Verdict) {
+        for (k, axis) in self.cell.axes.iter().enumerate() {
+            for i in 0..self.rows.len() {
+                let position = self.rows[i].positions[k];
+                let beyond = (axis.range[0] - position).max(position - axis.range[1]);
+                verdict.within("range of an external axis", || format!("{} {}", self.at(i), axis.name), beyond, 1.01 * HALF_ANGLE);
+                let stands = i > 0 && (axis.mode == "fixed" || (axis.mode == "indexed" && self.follows(i)));
+                if stands {
+                    let is_one = position == self.rows[i - 1].positions[k];
+                    verdict.holds("use of an external axis", || format!("{} {}", self.at(i), axis.name), is_one);
+                }
+            }
+        }
+    }
+
+    fn cell_bounds(&self, verdict: &mut Verdict) {
+        let Some(table) = section(&self.cell.run, "cell") else { return };
+        for (k, key) in ["x_mm", "y_mm", "z_mm"].into_iter().enumerate() {
+            if let Some([low, high]) = crate::values::range(table, key, 1e-3) {
+                let beyond = (low - self.placement.place[k]).max(self.placement.place[k] - high);
+                verdict.within("bounds of the cell (m)", || format!("{} {key}", self.name), beyond, 1e-9);
+            }
+        }
+        let [low, high] = crate::values::range(table, "q4", 1.0).unwrap_or([-1.0, 1.0]);
+        let q4 = (self.placement.yaw / 2.0).sin();
+        verdict.within("bounds of the cell (q4)", || self.name.clone(), (low - q4).max(q4 - high), 1e-9);
+    }
+
+    /// What the summary states of the plan.
+    fn figures(&self, verdict: &mut Verdict, case: &Value, criterion: &Criterion, scores: &[f64]) {
+        let points = &self.cell.points;
+        let mm = |key: &str| case.get(key).and_then(Value::as_f64).map(|mm| mm * 1e-3);
+        let objective = criterion.objective(points, scores);
+        let slack = 0.6e-10 + 1e-4 * objective;
+        let told = |key: &str| format!("{} {key}", self.name);
+        verdict.close("objective (m)", || told("objective_mm"), mm("objective_mm").unwrap_or(f64::NAN), objective, slack);
+        let scored: Vec<usize> = (0..points.len()).filter(|i| points[*i].is_scored).collect();
+        let most = scored.iter().map(|i| scores[*i]).fold(0.0, f64::max);
+        verdict.close("largest score (m)", || told("max_mm"), mm("max_mm").unwrap_or(f64::NAN), most, 0.6e-10 + 1e-4 * most);
+        let of = |part: &dyn Fn(&Row) -> f64| {
+            let all: Vec<f64> = scored.iter().map(|i| part(&self.rows[*i]).abs()).collect();
+            (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(0.0, f64::max))
+        };
+        for (word, k) in [("wall", 0), ("feed", 1), ("axis", 2), ("total", 4)] {
+            let (mean, most) = of(&|row| row.parts[k]);
+            let stated = |key: &str| case.pointer(&format!("/deflection_mm/{word}/{key}")).and_then(Value::as_f64).unwrap_or(f64::NAN) * 1e-3;
+            verdict.close("mean deflection (m)", || told(word), stated("mean"), mean, 1.2e-10);
+            verdict.close("largest deflection (m)", || told(word), stated("max"), most, 1.2e-10);
+        }
+    }
+}
+
+/// Distances of round shapes by parry's plain method are within this. m
+pub(crate) const SHAPE_SLACK: f64 = 3e-5;
