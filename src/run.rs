@@ -16,7 +16,9 @@ use stead_placement::place::{Infeasible, setup_at};
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::settings::CertificateSettings;
 use stead_placement::setup::Setup;
-use stead_report::certificate::{certificate_files, certificate_json, certificate_text, write_certificate};
+use stead_report::certificate::{
+    certificate_files, certificate_json, certificate_text, has_certificate, write_certificate,
+};
 use stead_report::document::Timing;
 use stead_report::page::put_page;
 use stead_report::placement::{Context, evaluation, place_json, placement_files, placement_text, write_placement};
@@ -329,6 +331,15 @@ impl Placements {
         Ok(write_certificate(folder, problem, certificate, &self.run.inputs, (files, self.outcome.interrupted))?)
     }
 
+    /// Whether a certificate is asked for and a folder has finished results with one, which stay there until the new one is there, too: then
+    /// nothing is to be written before [`certify`](Self::certify), and all with [`write_in`](Self::write_in) after it.
+    ///
+    /// # Errors
+    /// [`Error::Output`]: the manifest of the folder cannot be read.
+    pub fn waits_for_certificate(&self, folder: &Folder) -> Result<bool, Error> {
+        Ok(self.run.certificate.is_some() && has_certificate(folder)?)
+    }
+
     /// How far from the best and the worst possible these placements are, where that was asked for.
     pub fn certificate(&self) -> Option<&Certificate> {
         self.certificate.as_ref()
@@ -337,6 +348,10 @@ impl Placements {
 
 impl Report for Placements {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+        let is_interrupted = self.certificate.as_ref().is_some_and(Certificate::is_interrupted);
+        // An interrupted certificate leaves a finished one, with the results that it is of, where they are.
+        let beside = if is_interrupted && has_certificate(folder)? { Some(folder.beside()?) } else { None };
+        let folder = beside.as_ref().unwrap_or(folder);
         let mut files = write_placement(folder, &self.run.problem, &self.outcome, &self.context)?;
         // The page is written again, with the certificate in it.
         let more = self.write_certificate_in(folder)?;

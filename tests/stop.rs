@@ -249,6 +249,13 @@ mod interrupt {
         let exported = bench.stead(&program);
         assert_eq!(exported.code, Some(0), "{}", exported.stderr);
         exported.assert_says(&["note: out.interrupted/best.csv ", said]);
+        let header = "; INTERRUPTED search: the best plan found by then\n";
+        for (plan, is_said) in [("out.interrupted/best.csv", true), ("out/best.csv", false)] {
+            let program = format!("p{}/PART", u8::from(is_said));
+            let exported = bench.stead(&["export", RUN, plan, "--format", "krl", "--out", &program]);
+            assert_eq!(exported.code, Some(0), "{}", exported.stderr);
+            assert_eq!(bench.read(&format!("{program}.src")).contains(header), is_said);
+        }
 
         // A second one takes the place of the first, and with --keep-partial that of the finished ones.
         assert_eq!(again(&[]).code, Some(130));
@@ -258,6 +265,36 @@ mod interrupt {
         assert_eq!(json_in(&bench, "out/summary.json")["interrupted"], true);
         // Results of an interrupted run are not finished ones.
         assert!(again(&[]).stdout.contains("; results in out\n"));
+    }
+
+    #[test]
+    fn a_finished_certificate_is_not_replaced_by_an_interrupted_one() {
+        let bench = small();
+        let ended = bench.stead(&["place", RUN, "--out", "out", "--certify", "50"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let finished = bench.tree("out");
+        assert!(finished.contains_key("certificate.json"));
+        // A gap that is not reached in the time of a test.
+        let again = |more: &[&str]| {
+            let arguments = [&["place", RUN, "--out", "out", "--threads", "2", "--certify", "0.0001"], more].concat();
+            interrupted(started(&bench, &arguments), Duration::from_millis(4000))
+        };
+        let ended = again(&[]);
+        assert_eq!(ended.code, Some(130), "{} {}", ended.stdout, ended.stderr);
+        ended.assert_says(&[
+            "note: out has finished results with a certificate; they are replaced when that of this run is done",
+            "note: out has finished results and is left as it is; those of this run are in out.interrupted",
+        ]);
+        assert!(ended.stdout.contains("results in out.interrupted\n"), "{}", ended.stdout);
+        assert!(bench.tree("out") == finished, "{:?}", bench.names("out"));
+        let certificate = json_in(&bench, "out.interrupted/certificate.json");
+        assert_ne!(certificate["best"]["status"], "reached", "{certificate:#}");
+
+        again(&["--keep-partial"]);
+        assert_eq!(json_in(&bench, "out/certificate.json")["gap_percent_asked"], 0.0001);
+        // One that comes to its end takes the place of the earlier one.
+        assert_eq!(bench.stead(&["place", RUN, "--out", "out", "--certify", "40"]).code, Some(0));
+        assert_eq!(json_in(&bench, "out/certificate.json")["gap_percent_asked"], 40.0);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::arguments::PlaceOptions;
 use super::progress::Terminal;
 use super::{Failure, files_written, left_in, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
-use stead::{Error, Run};
+use stead::{Error, Folder, Placements, Run};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let mut run = Run::read_with(&options.config, options.set.clone())?;
@@ -38,9 +38,16 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
-    let files = placements.write_in(&out.folder);
-    let left = files.as_ref().map(|files| left_in(&out.folder, files).display().to_string()).unwrap_or_default();
-    let mut written = files_written(files);
+    let waits = placements.waits_for_certificate(&out.folder)?;
+    let (mut written, mut left) = (Ok(()), String::new());
+    if waits {
+        say(&format!(
+            "note: {} has finished results with a certificate; they are replaced when that of this run is done",
+            out.folder.path().display()
+        ));
+    } else {
+        (written, left) = write_all(&out.folder, &placements);
+    }
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     if !options.json {
         let timing = placements.timing();
@@ -56,7 +63,13 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
     drop(shown);
     if is_certified {
-        written = written.and(files_written(placements.write_certificate_in(&out.folder)));
+        written = written.and(match waits {
+            true => {
+                let (written, left) = write_all(&out.folder, &placements);
+                written.and(if options.json { Ok(()) } else { print(format!("results in {left}\n").as_bytes()) })
+            }
+            false => files_written(placements.write_certificate_in(&out.folder)),
+        });
         // What cannot be certified was said before.
         if run.certificate_warning().is_none() {
             say_warnings(placements.certificate().map_or(&[], |certificate| &certificate.warnings));
@@ -71,5 +84,13 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         written = written.and(print_json(&placements));
     }
     written?;
-    if placements.outcome().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+    let is_cut_short = placements.certificate().is_some_and(|certificate| certificate.is_interrupted());
+    if placements.outcome().interrupted || (waits && is_cut_short) { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+/// Writes all files; returns where they are, nothing where that failed.
+fn write_all(folder: &Folder, placements: &Placements) -> (Result<(), Failure>, String) {
+    let files = placements.write_in(folder);
+    let left = files.as_ref().map(|files| left_in(folder, files).display().to_string()).unwrap_or_default();
+    (files_written(files), left)
 }

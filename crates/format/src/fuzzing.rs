@@ -5,7 +5,10 @@ use crate::cam::gcode::Machine;
 use crate::cam::{CamFormat, LengthUnit, ReadSettings, Resampling, import_bytes};
 use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
+use crate::robot::robot_from;
+use crate::run::read_from;
 use crate::task::parse_csv;
+use crate::toml_file::TomlFile;
 use crate::urdf::{ImportOptions, import_robot_text};
 use std::path::Path;
 use std::sync::Arc;
@@ -28,6 +31,10 @@ pub enum Reader {
     Stl,
     /// Meshes as OBJ.
     Obj,
+    /// Robot files (TOML).
+    Robot,
+    /// Run files (TOML), read as if they lay in `configs/` of the repository, with the files there that they name.
+    Run,
 }
 
 impl Reader {
@@ -37,8 +44,14 @@ impl Reader {
     /// A sentence where an answer does not hold what it promises: an error in one line that names the file and what is allowed, an imported
     /// path that is read back as a task with as many points.
     pub fn check(self, bytes: &[u8]) -> Result<bool, String> {
-        let file = Path::new(if self == Self::Obj { "file.obj" } else { "file" });
+        let file = Path::new(match self {
+            Self::Obj => "file.obj",
+            Self::Run => concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/file.toml"),
+            _ => "file",
+        });
         let taken = match self {
+            Self::Robot => TomlFile::new(file, bytes.to_vec()).and_then(|source| robot_from(&source)).map(drop),
+            Self::Run => TomlFile::new(file, bytes.to_vec()).and_then(|source| read_from(&source, None)).map(drop),
             Self::Urdf => {
                 import_robot_text(file, &String::from_utf8_lossy(bytes), &ImportOptions::default()).map(|robot| {
                     let _ = robot.to_string();
@@ -68,7 +81,7 @@ impl Reader {
         };
         match taken {
             Ok(()) => Ok(true),
-            Err(error) => promised(&error).map(|()| false),
+            Err(error) => promised(self, &error).map(|()| false),
         }
     }
 
@@ -103,9 +116,11 @@ fn used(mesh: &Arc<TriangleMesh>) -> Result<(), String> {
 }
 
 /// What every error of a reader promises.
-fn promised(error: &InputError) -> Result<(), String> {
+fn promised(reader: Reader, error: &InputError) -> Result<(), String> {
     let message = error.to_string();
-    let is_kept = message.starts_with("file") && message.contains("; allowed: ") && message.lines().count() == 1;
+    // A run file may be refused for a file that it names.
+    let is_named = reader == Reader::Run || message.starts_with("file");
+    let is_kept = is_named && message.contains("; allowed: ") && message.lines().count() == 1;
     if is_kept {
         Ok(())
     } else {
@@ -118,6 +133,7 @@ mod tests {
     use super::Reader;
     use rand::{Rng, RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use std::time::{Duration, Instant};
 
     const URDF: [&[u8]; 2] = [include_bytes!("urdf/fixtures/kuka.urdf"), include_bytes!("urdf/fixtures/abb.urdf")];
     const CLDATA: [&[u8]; 2] =
@@ -128,17 +144,36 @@ mod tests {
         [include_bytes!("../../../tasks/five-segments.csv"), include_bytes!("cam/fixtures/followed.csv")];
     const STL: [&[u8]; 2] =
         [include_bytes!("mesh/fixtures/wedge.stl"), include_bytes!("mesh/fixtures/wedge-ascii.stl")];
+    const ROBOT: [&[u8]; 2] = [
+        include_bytes!("../../../configs/robots/kuka-kr270-2.toml"),
+        include_bytes!("../../../configs/robots/staubli-tx200.toml"),
+    ];
+    const RUN: [&[u8]; 2] = [
+        include_bytes!("../../../configs/caro-2013.toml"),
+        include_bytes!("../../../configs/five-segments-cutting.toml"),
+    ];
     const OBJ: [&[u8]; 2] = [include_bytes!("mesh/fixtures/wedge.obj"), include_bytes!("mesh/fixtures/house.obj")];
 
-    /// Runs so many fixtures with mutations; how many were taken.
-    fn run(reader: Reader, fixtures: &[&[u8]], runs: usize) -> usize {
+    /// No file of these sizes may take longer.
+    const LONGEST: Duration = Duration::from_secs(2);
+
+    /// Runs a reader on so many fixtures with mutations; prints how many were taken and how long the slowest took.
+    #[expect(clippy::print_stdout, reason = "the figures of a long run")]
+    fn run(reader: Reader, fixtures: &[&[u8]], runs: usize) {
         let mut random = ChaCha8Rng::seed_from_u64(16);
-        let taken = |run: usize| {
+        let (mut taken, mut slowest) = (0, Duration::ZERO);
+        for run in 0..runs {
             let mut bytes = fixtures[run % fixtures.len()].to_vec();
             (0..random.random_range(1..4)).for_each(|_| mutate(&mut bytes, &mut random));
-            reader.check(&bytes).unwrap_or_else(|broken| panic!("{broken}: {:?}", String::from_utf8_lossy(&bytes)))
-        };
-        (0..runs).map(taken).filter(|taken| *taken).count()
+            let file = || String::from_utf8_lossy(&bytes);
+            let begun = Instant::now();
+            taken += usize::from(reader.check(&bytes).unwrap_or_else(|broken| panic!("{broken}: {:?}", file())));
+            slowest = slowest.max(begun.elapsed());
+            assert!(slowest < LONGEST, "{reader:?} takes {slowest:?}: {:?}", file());
+        }
+        println!("{reader:?}: {runs} files, {taken} taken, the slowest in {slowest:?}");
+        let share = taken as f64 / runs as f64;
+        assert!((0.025..0.975).contains(&share), "{reader:?}: {share} of {runs} are taken");
     }
 
     /// One change of a text: a byte, a piece left out, doubled or cut off, a number put in.
@@ -163,8 +198,8 @@ mod tests {
         }
     }
 
-    /// All readers on so many fixtures with mutations each.
-    fn run_all(runs: usize) {
+    /// All readers, or the one asked for, on so many fixtures with mutations each.
+    fn run_all(runs: usize, asked: Option<&str>) {
         for (reader, fixtures) in [
             (Reader::Urdf, URDF),
             (Reader::Cldata, CLDATA),
@@ -172,20 +207,23 @@ mod tests {
             (Reader::Task, TASK),
             (Reader::Stl, STL),
             (Reader::Obj, OBJ),
+            (Reader::Robot, ROBOT),
+            (Reader::Run, RUN),
         ] {
-            let share = run(reader, &fixtures, runs) as f64 / runs as f64;
-            assert!((0.025..0.975).contains(&share), "{reader:?}: {share} of {runs} are taken");
+            if asked.is_none_or(|name| name == format!("{reader:?}").to_lowercase()) {
+                run(reader, &fixtures, runs);
+            }
         }
     }
 
     #[test]
     fn every_reader_keeps_its_promises_on_fixtures_with_mutations() {
-        run_all(20_000);
+        run_all(20_000, None);
     }
 
     #[test]
     #[ignore = "a longer look at the same"]
     fn a_million_times() {
-        run_all(1_000_000);
+        run_all(1_000_000, std::env::var("STEAD_FUZZ_READER").ok().as_deref());
     }
 }

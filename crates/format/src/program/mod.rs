@@ -27,6 +27,7 @@ pub use frames::{OperatorFrame, Rotation};
 pub use layout::ProgramFile;
 
 use crate::input::{InputError, InputFile};
+use crate::manifest::interruption_note;
 use crate::new_file::write_all_new;
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
@@ -195,6 +196,8 @@ impl Program {
 
 /// The longest retraction, in m, and the widest blending, in m: beyond them a unit is wrong.
 const MAX_LENGTHS: [f64; 2] = [1.0, 0.1];
+/// What the header of a program says of a plan that is not the end of a search.
+const INTERRUPTED: &str = "INTERRUPTED search: the best plan found by then";
 /// Most moves in a part.
 const MAX_MOVES: usize = 1_000_000;
 
@@ -226,7 +229,8 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
     notes.extend(format_note(options, &moves, frames.is_some()));
     notes.extend(carrier::note(problem, carrier));
     let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
-    let files = files((run, problem), options, &planned.inputs, &moves, parts, (frames, carrier))?;
+    let header = origin(run, &planned.inputs, (problem.unchecked_collisions().is_some(), planned.is_interrupted));
+    let files = files(problem, options, header, &moves, parts, (frames, carrier))?;
     let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
     Ok(Program {
         format: options.format,
@@ -247,9 +251,9 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>) -> Result<Pro
 
 /// The files of a program in its form.
 fn files(
-    (run, problem): (&Run, &Problem),
+    problem: &Problem,
     options: &ExportOptions<'_>,
-    inputs: &[InputFile],
+    origin: Vec<String>,
     moves: &[Move],
     parts: Vec<Range<usize>>,
     (frames, carrier): (Option<Frames>, Option<Carrier<'_>>),
@@ -262,7 +266,7 @@ fn files(
     let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
     let layout = Layout {
         name: options.name,
-        origin: origin(run, inputs, problem.unchecked_collisions().is_some()),
+        origin,
         moves,
         parts,
         frames,
@@ -290,11 +294,14 @@ struct Planned {
     ways: Ways,
     uncorrected: usize,
     inputs: Vec<InputFile>,
+    /// Whether the search that the plan is from was interrupted.
+    is_interrupted: bool,
     notes: Vec<String>,
 }
 
 /// The targets of a plan, or those of its corrected path.
 fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: Ends) -> Result<Planned, InputError> {
+    let is_interrupted = interruption_note(plan).is_some();
     let (plan, file) = read_plan(plan, &run.problem)?;
     let problem = run.problem.in_setup(&plan.setup).into_owned();
     let mut inputs = run.inputs.clone();
@@ -319,7 +326,8 @@ fn targets(run: &Run, plan: &Path, corrected: Option<CorrectedPath<'_>>, ends: E
         }
         None => (planned, 0),
     };
-    Ok(Planned { placement: *placement, problem, targets, ways, uncorrected, inputs, notes: plan.notes })
+    let (placement, notes) = (*placement, plan.notes);
+    Ok(Planned { placement, problem, targets, ways, uncorrected, inputs, is_interrupted, notes })
 }
 
 /// Whether the options are in their ranges, and the form is one for the robot.
@@ -362,11 +370,12 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
 }
 
 /// What the program is, what it was made of and what it does not say, for comments.
-fn origin(run: &Run, inputs: &[InputFile], is_unchecked: bool) -> Vec<String> {
+fn origin(run: &Run, inputs: &[InputFile], (is_unchecked, is_interrupted): (bool, bool)) -> Vec<String> {
     let mut lines = vec![format!("written by stead {} for", env!("CARGO_PKG_VERSION"))];
     lines.push(names::comment(run.problem.robot.name(), 60));
     lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
     lines.extend(is_unchecked.then(|| UNCHECKED.to_owned()));
+    lines.extend(is_interrupted.then(|| INTERRUPTED.to_owned()));
     lines
 }
 

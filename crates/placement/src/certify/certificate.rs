@@ -166,6 +166,16 @@ fn evaluated(problem: &Problem, with_rate: bool) -> Vec<ConstraintKind> {
     kinds
 }
 
+impl Certificate {
+    /// Whether the caller stopped it before it was done.
+    pub fn is_interrupted(&self) -> bool {
+        [&self.best, &self.worst].into_iter().any(|found| match found {
+            Ok(proof) => proof.bound.status == Status::Interrupted,
+            Err(reason) => *reason == NoProof::Interrupted,
+        })
+    }
+}
+
 impl Proof {
     /// What a bound proves of a placement found, of the score that it is compared with.
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {

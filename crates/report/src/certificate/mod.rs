@@ -20,6 +20,17 @@ use stead_format::input::InputFile;
 use stead_placement::certify::{Certificate, NoProof, Proof};
 use stead_placement::problem::Problem;
 
+/// The file that states what is proved.
+const CERTIFICATE: &str = "certificate.json";
+
+/// Whether a folder has finished results with a certificate, which an interrupted certificate shall not replace.
+///
+/// # Errors
+/// [`ReportError`] for a manifest that cannot be read.
+pub fn has_certificate(folder: &Folder) -> Result<bool, ReportError> {
+    folder.has_finished(PLACE, CERTIFICATE)
+}
+
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
 /// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. They join the results of
 /// the run that has left the files `run`, and its page, if it has one, is made again with them. Returns the paths in that order.
@@ -62,7 +73,7 @@ pub fn certificate_files(
     inputs: &[InputFile],
 ) -> Result<Files, ReportError> {
     let mut files = vec![
-        ("certificate.json", bytes(&certificate_json(certificate, inputs))),
+        (CERTIFICATE, bytes(&certificate_json(certificate, inputs))),
         ("open-region.csv", open_region(problem, certificate)?),
     ];
     for (name, proof) in proofs(certificate) {

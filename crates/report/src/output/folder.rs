@@ -94,6 +94,25 @@ impl Folder {
         is_finished.then(|| Self::create(&self.interrupted_path())).transpose()
     }
 
+    /// Whether a finished run of a command has left this file, too, among its results here, so that an interrupted run shall not replace
+    /// them.
+    ///
+    /// # Errors
+    /// [`ReportError`] for a manifest that cannot be read.
+    pub fn has_finished(&self, command: &str, file: &str) -> Result<bool, ReportError> {
+        let manifest = transaction::manifest_in(&self.path)?;
+        let set = manifest.of(command).filter(|set| set.complete && !set.interrupted && !self.keeps_partial);
+        Ok(set.is_some_and(|set| set.file(file).is_some()))
+    }
+
+    /// The folder beside this one for results of an interrupted run; they take the place of whatever is in it.
+    ///
+    /// # Errors
+    /// As [`Folder::create`].
+    pub fn beside(&self) -> Result<Self, ReportError> {
+        Self::create(&self.interrupted_path()).map(|folder| folder.keeping_partial(true))
+    }
+
     /// Where [`beside_finished`](Self::beside_finished) is.
     fn interrupted_path(&self) -> PathBuf {
         // A path as `.` has no name of its own.
