@@ -1,5 +1,7 @@
 //! The modal state of G-code, block by block.
 
+mod position;
+
 use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
 use super::arc::arc_of;
 use super::block::{Block, Motion, Word, failed};
@@ -296,69 +298,9 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Takes a hole of a canned cycle, which is left out; how deep the tool is then is not known.
-    fn leave_out_hole(&mut self, block: &Block<'_>, metres: f64) -> Result<(), InputError> {
-        let words: Vec<Word> = block.words.iter().copied().filter(|(letter, _)| "XYABC".contains(*letter)).collect();
-        let has_cycle = block.words.iter().any(|word| word.0 == 'G' && CYCLES.contains(&(word.1 as i64)));
-        let mut at = self.target(&Block { words: &words, ..*block }, metres)?;
-        if !words.is_empty() || has_cycle {
-            let place = at.position.map(|value| value.unwrap_or(0.0));
-            self.program.holes_left_out.push((Vector3::from(place), block.line));
-        }
-        at.position[2] = None;
-        self.state = at;
-        Ok(())
-    }
-
     /// Notes a block that the operator can have left out.
     pub fn note_block_delete(&mut self) {
         self.program.note("blocks behind / (block delete): taken");
-    }
-
-    /// Where a block leads to.
-    fn target(&mut self, block: &Block<'_>, metres: f64) -> Result<State, InputError> {
-        let mut end = self.state;
-        for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
-            let Some(value) = block.get(letter) else { continue };
-            if value.abs() * metres > LARGEST {
-                return Err(self.fail(block.line, (letter, value), "not a position of a usual size", "up to 100 m"));
-            }
-            end.position[axis] = match (self.modes.is_incremental, self.state.position[axis]) {
-                (false, _) => Some(value * metres),
-                (true, Some(before)) => Some(before + value * metres),
-                (true, None) => {
-                    let allowed = "a position with G90 before";
-                    return Err(self.fail(
-                        block.line,
-                        (letter, value),
-                        "G91 from where the tool is not known",
-                        allowed,
-                    ));
-                }
-            };
-        }
-        for (axis, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
-            let Some(value) = block.get(letter) else { continue };
-            let word = (letter, value);
-            if value.abs() > LARGEST_ANGLE {
-                return Err(self.fail(block.line, word, "not an angle of a usual size", "up to 36000 deg"));
-            }
-            let before = if self.modes.is_incremental { self.state.angles[axis] } else { 0.0 };
-            end.angles[axis] = before + value.to_radians();
-            match self.settings.machine {
-                Some(machine) if machine.has(axis) => {}
-                Some(machine) => {
-                    let problem = format!("not a rotary axis of {}", machine.word());
-                    return Err(self.fail(block.line, word, &problem, "another --machine"));
-                }
-                None if end.angles[axis] == 0.0 => continue,
-                None => {
-                    let allowed = "--machine table-ac, table-bc, head-ac or head-bc";
-                    return Err(self.fail(block.line, word, "a rotary axis of a machine that is not named", allowed));
-                }
-            }
-        }
-        Ok(end)
     }
 
     /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
