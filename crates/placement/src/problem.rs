@@ -173,6 +173,9 @@ impl Redundancy {
 
 /// A joint step is never as large as half a turn. rad
 pub(super) const MAX_JOINT_STEP: f64 = PI - 1e-6;
+/// The largest step of a joint while the tool turns in place, which no feed bounds: with a larger one the straight turn of a controller can
+/// lead the joint round the other way, to an angle a turn away. rad
+const MAX_STEP_IN_PLACE: f64 = 2.0 * PI / 3.0;
 
 /// Everything that defines the placement problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -337,8 +340,12 @@ impl Problem {
     }
 
     /// Largest step of each joint from path point `point - 1` to `point`: what its speed allows at the feed, and in any case
-    /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path. rad
+    /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path; a third of a turn where the
+    /// tool turns in place. rad
     pub fn joint_steps(&self, point: usize) -> [f64; 6] {
+        if self.task.path().turns_in_place(point) {
+            return [MAX_STEP_IN_PLACE; 6];
+        }
         let time = self.step_time(point);
         std::array::from_fn(|j| {
             self.robot.joints()[j].max_speed.map_or(MAX_JOINT_STEP, |speed| MAX_JOINT_STEP.min(speed * time))

@@ -77,7 +77,9 @@ fn cutting_time(problem: &Problem, settings: &TransferSettings, held: f64, segme
     let step = |place: usize| {
         let point = plan.points.start + place;
         if path.turns_in_place(point) {
-            return duration(problem, settings, &plan.joints[place - 1], &plan.joints[place]).unwrap_or(0.0);
+            let joints = duration(problem, settings, &plan.joints[place - 1], &plan.joints[place]).unwrap_or(0.0);
+            let axes = axis_duration(problem, settings, [point - 1, point].map(|point| problem.axis_positions(point)));
+            return joints.max(axes.unwrap_or(0.0));
         }
         path.step_length(point) / path.feed(point).map_or(held, |feed| feed.min(held))
     };

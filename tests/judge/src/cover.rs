@@ -31,6 +31,7 @@ pub const FACTORS: &[Factor] = &[
     ),
     factor("spindle", &["straight", "45 deg", "90 deg"]),
     factor("angles", &["rotation", "abc_deg", "wpr_deg", "rpy_deg", "quaternion_wxyz"]),
+    factor("cell", &["point", "range"]),
     factor("orientations", &["none", "one", "named", "choice"]),
     factor("path", &["raster", "contour", "tilted", "single"]),
     factor("unscored", &["none", "plunge", "turn in place"]),
@@ -184,7 +185,9 @@ fn extended(first: [(usize, usize); 2], missing: &BTreeSet<[(usize, usize); 2]>,
                 let pair = if other.0 < factor { [*other, (factor, value)] } else { [(factor, value), *other] };
                 missing.contains(&pair)
             };
-            let gain = others().filter(is_new).count();
+            // A search takes most of the time of a run: it is drawn where it brings much.
+            let is_search = FACTORS[factor].values[value] == "range" || FACTORS[factor].values[value] == "choice";
+            let gain = others().filter(is_new).count() * if is_search { 1 } else { 3 };
             if best.is_none_or(|(known, _)| gain > known) {
                 best = Some((gain, value));
             }

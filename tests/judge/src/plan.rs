@@ -253,6 +253,7 @@ impl Plan<'_> {
         let time = if self.is_in_place(i) { f64::INFINITY } else { length / feed };
         for (j, row) in self.cell.arm.rows.iter().enumerate() {
             let most = row.speed.map_or(f64::INFINITY, |speed| speed * time).min(std::f64::consts::PI);
+            let most = if self.is_in_place(i) { most.min(std::f64::consts::TAU / 3.0) } else { most };
             let step = (to.joints[j] - from.joints[j]).abs();
             verdict.within("joint step (rad)", || format!("{} joint {}", self.at(i), j + 1), step, most + 2.02 * HALF_ANGLE);
         }
@@ -262,7 +263,15 @@ impl Plan<'_> {
                 verdict.within("step of an external axis", || format!("{} {}", self.at(i), axis.name), step, speed * time + 2.02 * HALF_ANGLE);
             }
         }
+        let [a, b] = [self.wanted(i - 1), self.wanted(i)].map(|pose| pose.rotation.to_rotation_matrix());
+        let turn = angle_between(&a, &b);
         if self.is_in_place(i) {
+            if of("max_spindle_turn_deg_per_mm").or(of("max_spindle_turn_deg_per_s")).is_some() {
+                let [from, to] = [i - 1, i].map(|i| self.point(i).axes.column(2).into_owned());
+                let tilt = from.cross(&to).norm().atan2(from.dot(&to));
+                let limit = std::f64::consts::FRAC_PI_2.max(tilt + std::f64::consts::FRAC_PI_6);
+                verdict.within("turn in place (rad)", || self.at(i), turn, limit + 2.02 * HALF_ANGLE);
+            }
             return;
         }
         let mm = length * 1e3;
@@ -274,8 +283,7 @@ impl Plan<'_> {
         let by_length = of("max_spindle_turn_deg_per_mm").map(|limit| (limit * mm).to_radians());
         let by_time = of("max_spindle_turn_deg_per_s").map(|limit| (limit * time).to_radians());
         if let Some(limit) = by_length.into_iter().chain(by_time).reduce(f64::min) {
-            let [a, b] = [self.wanted(i - 1), self.wanted(i)].map(|pose| pose.rotation.to_rotation_matrix());
-            verdict.within("turn of the spindle (rad)", || self.at(i), angle_between(&a, &b), limit + 2.02 * HALF_ANGLE);
+            verdict.within("turn of the spindle (rad)", || self.at(i), turn, limit + 2.02 * HALF_ANGLE);
         }
     }
 

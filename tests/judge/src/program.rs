@@ -274,7 +274,15 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             }
             joints = Some(rows);
             let stand = cell.at(&plan.placement, &rows, &step.external);
-            last = Some((stand.part.inverse() * stand.tool, step.external.clone()));
+            let in_part = stand.part.inverse() * stand.tool;
+            last = Some((in_part, step.external.clone()));
+            // Without a line into the cut the joint move leads to the first point of a segment.
+            let is_there = plan.rows.get(next).is_some_and(|row| {
+                let wanted = plan.wanted(next);
+                let off = (0..6).map(|j| (rows[j] - row.joints[j]).abs()).fold(0.0, f64::max);
+                (wanted.translation.vector - in_part.translation.vector).norm() < 2e-5 && off < 1e-5
+            });
+            next += usize::from(is_there);
             continue;
         }
         let Some(target) = &step.target else { continue };

@@ -234,11 +234,12 @@ impl Writer<'_> {
         let (xyz, turned) = (vector(&(tcp * 1e3)), angles(self.key, &spindle));
         self.line(format_args!("\n[spindle]\nxyz_mm = {xyz}\n{turned}\nmass_kg = 20.0\ncentre_of_mass_mm = [0.0, 0.0, 120.0]\ninertia_kg_m2 = {{ xx = 0.4, yy = 0.4, zz = 0.1 }}"));
         let middle = self.part * 1e3;
-        let wide = 60.0;
+        let wide = if self.of("cell") == "range" { 60.0 } else { 0.0 };
         let span = |at: f64, half: f64| list([(at - half).round(), (at + half).round()]);
-        let (x, y, z) = (span(middle.x, wide), span(middle.y, wide), span(middle.z, 40.0));
+        let aside = [0, 1, 2].map(|_| self.random.between(-50.0, 50.0));
+        let (x, y, z) = (span(middle.x + aside[0], wide), span(middle.y + aside[1], wide), span(middle.z + aside[2], wide));
         let turn = self.random.between(-0.2, 0.1);
-        self.line(format_args!("\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\nq4 = {}", list([turn - 0.3, turn + 0.3])));
+        self.line(format_args!("\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\nq4 = {}", list([turn - wide / 200.0, turn + wide / 200.0])));
         let side = angles(self.key, &about(Vector3::x(), 15.0));
         match self.of("orientations") {
             "one" => self.line(format_args!("orientations = [{{ name = \"tilted\", {side} }}]")),
@@ -322,7 +323,7 @@ impl Writer<'_> {
                 let _ = writeln!(text, "tie_percent = {tie}");
             }
         }
-        text.push_str("\n[search]\nseed = 3\npopulation = 8\ngenerations = 1\nbasins = 1\n");
+        text.push_str("\n[search]\nseed = 3\npopulation = 4\ngenerations = 0\nbasins = 1\n");
         match self.of("search") {
             "never" => text.push_str("tables = \"never\"\n"),
             "genetic" => text.push_str("postures = \"genetic\"\n"),

@@ -18,7 +18,9 @@ pub(super) fn axis_limit(problem: &Problem, segment: usize, plan: &SegmentPlan) 
         let (feed, joint) = smallest(feeds)?;
         Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point })
     };
-    plan.points.clone().skip(1).filter_map(at).reduce(FeedLimit::smaller)
+    // A turn of the tool in place has a time, and no feed.
+    let path = problem.task.path();
+    plan.points.clone().skip(1).filter(|point| !path.turns_in_place(*point)).filter_map(at).reduce(FeedLimit::smaller)
 }
 
 /// The smallest finite feed (m/s) with its joint.

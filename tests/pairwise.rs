@@ -1,0 +1,154 @@
+//! Every feature with every other: runs in which every pair of option values occurs, held against the judge, and the keys of the input files
+//! that these runs state.
+
+use crate::drive::{Outcome, drive};
+use std::collections::BTreeSet;
+use std::path::Path;
+use stead_judge::cover::{cover, value_of, words};
+use toml::{Table, Value};
+
+/// Keys of the schemas that no run of the generator states, and why.
+const LEFT_OUT: &[(&str, &str)] = &[
+    ("run:certificate.gap_percent", "a certificate is held against its own enumeration"),
+    ("run:certificate.memory_gb", "a certificate is held against its own enumeration"),
+    ("run:certificate.time_limit_s", "a certificate is held against its own enumeration"),
+    ("run:stability.damping_scale", "stability is no part of a plan"),
+    ("run:stability.max_depth_mm", "stability is no part of a plan"),
+    ("run:stability.variant", "stability is no part of a plan"),
+    ("run:reference.case_mm", "figures beside the results"),
+    ("run:reference.source", "figures beside the results"),
+    ("run:search.memory_gb", "changes no result"),
+    ("run:cut.engagement", "of assessments"),
+    ("run:cut.open_width_mm", "of assessments"),
+    ("run:cut.spindle_rpm", "of simulation and stability"),
+    ("run:tool.entering_angle_deg", "of assessments"),
+    ("run:tool.rake_deg", "of assessments"),
+    ("run:tool.kn_mpa", "of assessments"),
+    ("run:tool.friction", "of assessments"),
+    ("run:tool.helix_deg", "of simulation and stability"),
+    ("run:tool.ka_mpa", "of simulation and stability"),
+    ("run:tool.kr_mpa", "the other word for kr"),
+    ("run:tool.pitch_deg", "of simulation and stability"),
+    ("run:tool.runout_um", "of simulation and stability"),
+    ("run:spindle.inertia_kg_m2.xy", "of simulation and stability"),
+    ("run:spindle.inertia_kg_m2.xz", "of simulation and stability"),
+    ("run:spindle.inertia_kg_m2.yz", "of simulation and stability"),
+    ("robot:price_eur", "shown by assess"),
+    ("robot:unverified", "a note"),
+];
+
+/// Shapes, zones and their clearance are tables of the run file too, with the same keys.
+const SHARED: [&str; 3] = ["shape.", "keep_out.", "collision."];
+
+/// The keys of a schema, tables of lists as those of one.
+fn schema_keys(name: &str) -> BTreeSet<String> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("configs/schema/{name}.json"));
+    let schema: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap();
+    fn walk(schema: &serde_json::Value, at: &serde_json::Value, path: &str, keys: &mut BTreeSet<String>) {
+        let inner = |at: &serde_json::Value| {
+            let name = at.get("$ref")?.as_str()?.rsplit('/').next()?.to_owned();
+            schema.get("definitions")?.get(&name).cloned()
+        };
+        if let Some(found) = inner(at) {
+            return walk(schema, &found, path, keys);
+        }
+        let choices = ["anyOf", "allOf", "oneOf"].iter().filter_map(|word| at.get(*word)?.as_array()).flatten();
+        let mut is_leaf = true;
+        for choice in choices {
+            if inner(choice).is_some() || choice.get("properties").is_some() || choice.get("items").is_some() {
+                is_leaf = false;
+                walk(schema, choice, path, keys);
+            }
+        }
+        if let Some(items) = at.get("items").filter(|items| items.is_object()) {
+            return walk(schema, items, path, keys);
+        }
+        if let Some(properties) = at.get("properties").and_then(serde_json::Value::as_object) {
+            for (key, value) in properties {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                walk(schema, value, &path, keys);
+            }
+        } else if is_leaf {
+            keys.insert(path.to_owned());
+        }
+    }
+    let mut keys = BTreeSet::new();
+    walk(&schema, &schema, "", &mut keys);
+    keys
+}
+
+fn stated_keys(table: &Table, path: &str, keys: &mut BTreeSet<String>) {
+    for (key, value) in table {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        keys.insert(path.clone());
+        let tables = value.as_array().into_iter().flatten().filter_map(Value::as_table).chain(value.as_table());
+        tables.for_each(|inner| stated_keys(inner, &path, keys));
+    }
+}
+
+#[test]
+fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/robots");
+    let mut stated = BTreeSet::new();
+    for (number, choice) in cover(1).iter().enumerate() {
+        let folder = folder.path().join(number.to_string());
+        std::fs::create_dir_all(&folder).unwrap();
+        let files = stead_judge::write::write(choice, number as u64, &robots, &folder).unwrap();
+        for (kind, file) in files.toml {
+            let table: Table = std::fs::read_to_string(file).unwrap().parse().unwrap();
+            let mut keys = BTreeSet::new();
+            stated_keys(&table, "", &mut keys);
+            stated.extend(keys.into_iter().map(|key| format!("{kind}:{key}")));
+        }
+    }
+    let mut known: BTreeSet<String> = BTreeSet::new();
+    for kind in ["run", "robot", "surroundings"] {
+        known.extend(schema_keys(kind).into_iter().map(|key| format!("{kind}:{key}")));
+    }
+    assert!(known.len() > 150, "{known:?}");
+    let is_motion = |key: &str| {
+        ["mass_kg", "centre_of_mass_mm", "inertia_kg_m2", "damping_", "half_backlash", "gravity_compensated", "orthogonal_", "bearing_mm"]
+            .iter()
+            .any(|word| key.starts_with(&format!("robot:joints.{word}")))
+    };
+    // The five words for an orientation are drawn for all tables alike, each in some run.
+    let words = ["rotation", "abc_deg", "wpr_deg", "rpy_deg", "quaternion_wxyz"];
+    let is_angle = |key: &str| words.iter().any(|word| key.ends_with(word)) && words.iter().any(|word| stated.contains(&format!("run:spindle.{word}")));
+    let in_surroundings = |key: &str| {
+        let of_run = key.strip_prefix("run:").filter(|key| SHARED.iter().any(|table| key.starts_with(table)));
+        of_run.is_some_and(|key| stated.contains(&format!("surroundings:{key}")))
+    };
+    let left_out: BTreeSet<&str> = LEFT_OUT.iter().map(|(key, _)| *key).collect();
+    let missing: Vec<&String> = known
+        .iter()
+        .filter(|key| !stated.contains(*key) && !left_out.contains(key.as_str()))
+        .filter(|key| !is_motion(key) && !is_angle(key) && !in_surroundings(key))
+        .collect();
+    assert!(missing.is_empty(), "no run states {missing:?}: add them to tests/judge/src/cover.rs and write.rs");
+    for (key, reason) in LEFT_OUT {
+        assert!(known.contains(*key), "{key} is no key any more: {reason}");
+        assert!(!stated.contains(*key), "{key} is stated by a run: {reason}");
+    }
+}
+
+#[test]
+fn runs_of_every_pair_of_options_agree_with_the_judge() {
+    let mut judged = 0;
+    let choices = cover(1);
+    for (number, choice) in choices.iter().enumerate() {
+        let folder = tempfile::tempdir().unwrap();
+        match drive(choice, 100_000 + number as u64 + 1, folder.path()) {
+            Outcome::Judged(verdict) => {
+                judged += 1;
+                assert!(verdict.disagreements.is_empty(), "{}\n{}", words(choice), verdict.disagreements.join("\n"));
+                let asked = value_of(choice, "program") != "none" && verdict.not_exported.is_empty();
+                assert_eq!(asked, verdict.checks.contains_key("points of a program"), "{}", words(choice));
+            }
+            Outcome::NotPlaced(_) => {}
+            Outcome::Failed(why) => panic!("{why}"),
+        }
+    }
+    // A cell without a placement says nothing: there may be few of them.
+    assert!(10 * judged >= 8 * choices.len(), "{judged} of {} runs were judged", choices.len());
+}
