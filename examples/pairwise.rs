@@ -1,6 +1,8 @@
 //! `cargo run --release --example pairwise -- --runs 2000 [--from SEED] [--keep FOLDER]`: runs over all options, pair by pair, held against
 //! the judge.
 
+#![allow(clippy::print_stdout, reason = "an example prints what it finds")]
+
 #[path = "../tests/drive/mod.rs"]
 mod drive;
 

@@ -108,13 +108,25 @@ fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason(
     }
     assert!(known.len() > 150, "{known:?}");
     let is_motion = |key: &str| {
-        ["mass_kg", "centre_of_mass_mm", "inertia_kg_m2", "damping_", "half_backlash", "gravity_compensated", "orthogonal_", "bearing_mm"]
-            .iter()
-            .any(|word| key.starts_with(&format!("robot:joints.{word}")))
+        [
+            "mass_kg",
+            "centre_of_mass_mm",
+            "inertia_kg_m2",
+            "damping_",
+            "half_backlash",
+            "gravity_compensated",
+            "orthogonal_",
+            "bearing_mm",
+        ]
+        .iter()
+        .any(|word| key.starts_with(&format!("robot:joints.{word}")))
     };
     // The five words for an orientation are drawn for all tables alike, each in some run.
     let words = ["rotation", "abc_deg", "wpr_deg", "rpy_deg", "quaternion_wxyz"];
-    let is_angle = |key: &str| words.iter().any(|word| key.ends_with(word)) && words.iter().any(|word| stated.contains(&format!("run:spindle.{word}")));
+    let is_angle = |key: &str| {
+        words.iter().any(|word| key.ends_with(word))
+            && words.iter().any(|word| stated.contains(&format!("run:spindle.{word}")))
+    };
     let in_surroundings = |key: &str| {
         let of_run = key.strip_prefix("run:").filter(|key| SHARED.iter().any(|table| key.starts_with(table)));
         of_run.is_some_and(|key| stated.contains(&format!("surroundings:{key}")))

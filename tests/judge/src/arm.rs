@@ -61,8 +61,12 @@ impl Arm {
         let covariance = section(&table, "covariance").and_then(|table| {
             let names = texts(table, "parameters")?;
             let rows = table.get("matrix")?.as_array()?;
-            let entries: Vec<f64> =
-                rows.iter().filter_map(Value::as_array).flatten().filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64))).collect();
+            let entries: Vec<f64> = rows
+                .iter()
+                .filter_map(Value::as_array)
+                .flatten()
+                .filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64)))
+                .collect();
             (entries.len() == names.len() * names.len())
                 .then(|| (names.clone(), DMatrix::from_row_slice(names.len(), names.len(), &entries)))
         });
@@ -73,7 +77,8 @@ impl Arm {
                 let is_j3_level =
                     controller.get("is_j3_level").and_then(Value::as_bool).unwrap_or(kind == Some("fanuc"));
                 let sign = six(list(controller, "sign")).ok_or_else(|| told("controller.sign".to_owned()))?;
-                let offset = six(list(controller, "offset_deg")).ok_or_else(|| told("controller.offset_deg".to_owned()))?;
+                let offset =
+                    six(list(controller, "offset_deg")).ok_or_else(|| told("controller.offset_deg".to_owned()))?;
                 let root_from_base = section(&table, "root").map_or(Ok(Isometry3::identity()), pose)?;
                 Some(Counting { sign, offset: offset.map(f64::to_radians), is_j3_level, root_from_base })
             }
@@ -101,7 +106,7 @@ impl Arm {
     }
 
     /// The angles of a controller as those of the rows.
-    pub(crate) fn from_controller(&self, angles: &[f64; 6]) -> Option<[f64; 6]> {
+    pub(crate) fn joints_of(&self, angles: &[f64; 6]) -> Option<[f64; 6]> {
         let counting = self.counting.as_ref()?;
         let mut angles = *angles;
         if counting.is_j3_level {
@@ -205,7 +210,8 @@ fn row(table: &Table) -> Answer<Row> {
     let rad = |key: &str| required(table, key).map(f64::to_radians);
     let compliance = |value: &Value| match value {
         Value::Array(ends) => {
-            let ends: Vec<f64> = ends.iter().filter_map(|end| end.as_float().or(end.as_integer().map(|i| i as f64))).collect();
+            let ends: Vec<f64> =
+                ends.iter().filter_map(|end| end.as_float().or(end.as_integer().map(|i| i as f64))).collect();
             (ends.len() == 2).then(|| Law::Range(ends[0] * 1e-6, ends[1] * 1e-6))
         }
         other => other.as_float().or(other.as_integer().map(|i| i as f64)).map(|value| Law::Constant(value * 1e-6)),

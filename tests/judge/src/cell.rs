@@ -23,7 +23,11 @@ pub(crate) struct Axis {
 impl Axis {
     fn motion(&self, position: f64) -> Isometry3<f64> {
         if self.is_rail {
-            return Isometry3::translation(self.direction.x * position, self.direction.y * position, self.direction.z * position);
+            return Isometry3::translation(
+                self.direction.x * position,
+                self.direction.y * position,
+                self.direction.z * position,
+            );
         }
         let there = Isometry3::translation(self.point.x, self.point.y, self.point.z);
         there * Isometry3::rotation(self.direction * position) * there.inverse()
@@ -138,8 +142,18 @@ impl Cell {
         }
         let points = path::read(&beside("task")?, &run)?;
         let mut all = Self {
-            arm, sets, tool, mount, axes, orientations, points,
-            bodies: Vec::new(), pairs: Vec::new(), zones: Vec::new(), clearance: 0.01, run,
+            arm,
+            sets,
+            tool,
+            mount,
+            axes,
+            orientations,
+            points,
+            bodies: Vec::new(),
+            pairs: Vec::new(),
+            zones: Vec::new(),
+            clearance: 0.01,
+            run,
         };
         let mut ignored = Vec::new();
         if let Some(name) = text(&all.run, "surroundings").map(str::to_owned) {
@@ -163,7 +177,9 @@ impl Cell {
                 "flange" => Frame::Link(6),
                 other => match other.strip_prefix("link_").and_then(|number| number.parse().ok()) {
                     Some(number) => Frame::Link(number),
-                    None => Frame::Axis(self.axes.iter().position(|axis| axis.name == other).ok_or(format!("no axis {other}"))?),
+                    None => Frame::Axis(
+                        self.axes.iter().position(|axis| axis.name == other).ok_or(format!("no axis {other}"))?,
+                    ),
                 },
             };
             self.bodies.push(Body {
@@ -176,9 +192,8 @@ impl Cell {
         }
         for zone in sections(table, "keep_out") {
             let half = vector(zone, "box_mm").map(|edges| edges * 0.5e-3);
-            let half_space = section(zone, "half_space").and_then(|table| {
-                Some([vector(table, "xyz_mm")? * 1e-3, vector(table, "normal")?.normalize()])
-            });
+            let half_space = section(zone, "half_space")
+                .and_then(|table| Some([vector(table, "xyz_mm")? * 1e-3, vector(table, "normal")?.normalize()]));
             self.zones.push(Zone {
                 name: text(zone, "name").unwrap_or_default().to_owned(),
                 points: texts(zone, "points").unwrap_or_default(),
@@ -206,7 +221,8 @@ impl Cell {
         for a in 0..self.bodies.len() {
             for b in a + 1..self.bodies.len() {
                 let [one, other] = [&self.bodies[a], &self.bodies[b]];
-                let may_touch = ignored.iter().any(|[p, q]| (is(one, p) && is(other, q)) || (is(one, q) && is(other, p)));
+                let may_touch =
+                    ignored.iter().any(|[p, q]| (is(one, p) && is(other, q)) || (is(one, q) && is(other, p)));
                 if !may_touch && meets(one, other) {
                     self.pairs.push([a, b]);
                 }
@@ -262,7 +278,13 @@ impl Cell {
     }
 
     /// The least distance of these pairs of bodies and the pair, where it is below a limit. m
-    pub(crate) fn nearest(&self, bodies: &[Body], pairs: &[[usize; 2]], stand: &Stand, limit: f64) -> Option<(f64, [usize; 2])> {
+    pub(crate) fn nearest(
+        &self,
+        bodies: &[Body],
+        pairs: &[[usize; 2]],
+        stand: &Stand,
+        limit: f64,
+    ) -> Option<(f64, [usize; 2])> {
         let poses: Vec<Isometry3<f64>> = bodies.iter().map(|body| self.pose_of(stand, body)).collect();
         let mut best: Option<(f64, [usize; 2])> = None;
         for pair in pairs {

@@ -16,7 +16,10 @@ const fn factor(name: &'static str, values: &'static [&'static str]) -> Factor {
 
 /// Every option of a run that the judge knows, with the values that are tried.
 pub const FACTORS: &[Factor] = &[
-    factor("arm", &["kuka-kr270-2", "kuka-kr210-r2700", "abb-irb6640-185", "fanuc-m900ib-700", "staubli-tx200", "kuka-kr500"]),
+    factor(
+        "arm",
+        &["kuka-kr270-2", "kuka-kr210-r2700", "abb-irb6640-185", "fanuc-m900ib-700", "staubli-tx200", "kuka-kr500"],
+    ),
     factor("compliance", &["constant", "stiffness", "range", "compensator"]),
     factor("sets", &["one", "mean", "worst", "regret"]),
     factor("confidence", &["none", "2"]),
@@ -25,8 +28,18 @@ pub const FACTORS: &[Factor] = &[
     factor(
         "axes",
         &[
-            "none", "rail fixed", "rail indexed", "rail continuous", "table fixed", "table indexed", "table continuous", "tilt and turn",
-            "part rail continuous", "robot table indexed", "rail and table", "held",
+            "none",
+            "rail fixed",
+            "rail indexed",
+            "rail continuous",
+            "table fixed",
+            "table indexed",
+            "table continuous",
+            "tilt and turn",
+            "part rail continuous",
+            "robot table indexed",
+            "rail and table",
+            "held",
         ],
     ),
     factor("spindle", &["straight", "45 deg", "90 deg"]),
@@ -59,8 +72,14 @@ pub type Choice = Vec<usize>;
 
 /// Pairs of values that no run can have, and why.
 const IMPOSSIBLE: &[([&str; 4], &str)] = &[
-    (["axes", "table continuous", "turns", "per mm"], "refused: a turning part beside a limit on the turn of the spindle"),
-    (["axes", "table continuous", "turns", "per s"], "refused: a turning part beside a limit on the turn of the spindle"),
+    (
+        ["axes", "table continuous", "turns", "per mm"],
+        "refused: a turning part beside a limit on the turn of the spindle",
+    ),
+    (
+        ["axes", "table continuous", "turns", "per s"],
+        "refused: a turning part beside a limit on the turn of the spindle",
+    ),
     (["axes", "table continuous", "turns", "all"], "refused: a turning part beside a limit on the turn of the spindle"),
     (["speeds", "none", "postures", "weighed moves"], "refused: moves are weighed by their time"),
     (["postures", "weighed moves", "aggregate", "rms"], "refused: moves are weighed beside a mean"),
@@ -148,7 +167,10 @@ pub fn cover(seed: u64) -> Vec<Choice> {
                 best = Some((gain, choice));
             }
         }
-        let Some((_, choice)) = best else { missing.remove(&first); continue };
+        let Some((_, choice)) = best else {
+            missing.remove(&first);
+            continue;
+        };
         let found: Vec<_> = gained(&choice, &missing).collect();
         found.iter().for_each(|pair| {
             missing.remove(pair);
@@ -158,13 +180,20 @@ pub fn cover(seed: u64) -> Vec<Choice> {
     choices
 }
 
-fn gained<'a>(choice: &'a Choice, missing: &'a BTreeSet<[(usize, usize); 2]>) -> impl Iterator<Item = [(usize, usize); 2]> + 'a {
+fn gained<'a>(
+    choice: &'a Choice,
+    missing: &'a BTreeSet<[(usize, usize); 2]>,
+) -> impl Iterator<Item = [(usize, usize); 2]> + 'a {
     let all = (0..choice.len()).flat_map(move |a| (a + 1..choice.len()).map(move |b| [(a, choice[a]), (b, choice[b])]));
     all.filter(|pair| missing.contains(pair))
 }
 
 /// A choice with these two values, the others one by one in random order, each with the value that brings most.
-fn extended(first: [(usize, usize); 2], missing: &BTreeSet<[(usize, usize); 2]>, random: &mut Random) -> Option<Choice> {
+fn extended(
+    first: [(usize, usize); 2],
+    missing: &BTreeSet<[(usize, usize); 2]>,
+    random: &mut Random,
+) -> Option<Choice> {
     let mut values: Vec<Option<usize>> = vec![None; FACTORS.len()];
     first.iter().for_each(|(factor, value)| values[*factor] = Some(*value));
     let mut order: Vec<usize> = (0..FACTORS.len()).filter(|factor| values[*factor].is_none()).collect();
@@ -206,7 +235,11 @@ pub fn value_of(choice: &Choice, name: &str) -> &'static str {
 
 /// A choice in words.
 pub fn words(choice: &Choice) -> String {
-    let each: Vec<String> = FACTORS.iter().zip(choice).map(|(factor, value)| format!("{}={}", factor.name, factor.values[*value])).collect();
+    let each: Vec<String> = FACTORS
+        .iter()
+        .zip(choice)
+        .map(|(factor, value)| format!("{}={}", factor.name, factor.values[*value]))
+        .collect();
     each.join(", ")
 }
 
@@ -224,7 +257,13 @@ mod tests {
                 missing.remove(&pair);
             });
         }
-        assert!(missing.is_empty(), "{} pairs are missing of {}, first {:?}", missing.len(), pairs().len(), missing.first());
+        assert!(
+            missing.is_empty(),
+            "{} pairs are missing of {}, first {:?}",
+            missing.len(),
+            pairs().len(),
+            missing.first()
+        );
         assert_eq!(choices, cover(1));
         println!("{} runs cover {} pairs", choices.len(), pairs().len());
     }

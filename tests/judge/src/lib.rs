@@ -40,7 +40,9 @@ fn plan<'a>(cell: &'a Cell, results: &Path, case: &Value) -> Result<Plan<'a>, St
     let number = case.get("case").and_then(Value::as_u64).ok_or("a case without a number")? as usize;
     let name = CASES.get(number.wrapping_sub(1)).ok_or("a case without a file")?;
     let exact = |key: &str| {
-        case.pointer(&format!("/placement_exact/{key}")).and_then(Value::as_f64).ok_or_else(|| format!("no placement_exact.{key}"))
+        case.pointer(&format!("/placement_exact/{key}"))
+            .and_then(Value::as_f64)
+            .ok_or_else(|| format!("no placement_exact.{key}"))
     };
     let place = Vector3::new(exact("x_mm")?, exact("y_mm")?, exact("z_mm")?) * 1e-3;
     let orientation = case.get("orientation").and_then(Value::as_str);
@@ -66,7 +68,11 @@ pub fn judge(run: &Path, results: &Path) -> Result<Verdict, String> {
     }
     for (better, worse) in [(0, 1), (2, 3), (0, 2)] {
         if let (Some(a), Some(b)) = (objectives.get(better), objectives.get(worse)) {
-            verdict.holds("order of the cases", || format!("case {} {a}, case {} {b}", better + 1, worse + 1), *a <= *b * (1.0 + 1e-9));
+            verdict.holds(
+                "order of the cases",
+                || format!("case {} {a}, case {} {b}", better + 1, worse + 1),
+                *a <= *b * (1.0 + 1e-9),
+            );
         }
     }
     Ok(verdict)

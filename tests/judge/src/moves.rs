@@ -29,13 +29,29 @@ impl WithTool {
         let mut height = of("flute_length_mm").unwrap_or(0.0);
         let mut pieces = Vec::new();
         if let Some(diameter) = of("cutter_diameter_mm") {
-            pieces.push(body("cutter", Frame::Link(6), up(0.0, height), Solid::cylinder(diameter / 2.0, height.max(1e-4))));
+            pieces.push(body(
+                "cutter",
+                Frame::Link(6),
+                up(0.0, height),
+                Solid::cylinder(diameter / 2.0, height.max(1e-4)),
+            ));
         }
-        for pair in tool.and_then(|table| table.get("holder_mm")).and_then(toml::Value::as_array).into_iter().flatten() {
-            let entries: Vec<f64> = pair.as_array().into_iter().flatten().filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64))).collect();
+        for pair in tool.and_then(|table| table.get("holder_mm")).and_then(toml::Value::as_array).into_iter().flatten()
+        {
+            let entries: Vec<f64> = pair
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64)))
+                .collect();
             if let [length, diameter] = entries[..] {
                 let top = height + length * 1e-3;
-                pieces.push(body("holder", Frame::Link(6), up(height, top), Solid::cylinder(diameter * 0.5e-3, length * 1e-3)));
+                pieces.push(body(
+                    "holder",
+                    Frame::Link(6),
+                    up(height, top),
+                    Solid::cylinder(diameter * 0.5e-3, length * 1e-3),
+                ));
                 height = top;
             }
         }
@@ -45,7 +61,9 @@ impl WithTool {
         for piece in pieces {
             let own = bodies.len();
             bodies.push(piece);
-            pairs.extend((0..count).filter(|other| !matches!(bodies[*other].frame, Frame::Link(_))).map(|other| [own, other]));
+            pairs.extend(
+                (0..count).filter(|other| !matches!(bodies[*other].frame, Frame::Link(_))).map(|other| [own, other]),
+            );
         }
         if let Some(extent) = path_box(cell) {
             let part = bodies.len();
@@ -57,9 +75,10 @@ impl WithTool {
 
     fn nearest(&self, cell: &Cell, stand: &Stand) -> (f64, String) {
         let limit = cell.clearance.max(1e-3);
-        cell.nearest(&self.bodies, &self.pairs, stand, limit).map_or((f64::INFINITY, String::new()), |(distance, pair)| {
-            (distance, pair.map(|body| self.bodies[body].name.as_str()).join(" and "))
-        })
+        cell.nearest(&self.bodies, &self.pairs, stand, limit)
+            .map_or((f64::INFINITY, String::new()), |(distance, pair)| {
+                (distance, pair.map(|body| self.bodies[body].name.as_str()).join(" and "))
+            })
     }
 }
 
@@ -91,13 +110,24 @@ fn path_box(cell: &Cell) -> Option<Body> {
     let local: Vec<Vector3<f64>> = points.iter().map(|point| turned.inverse() * point.place).collect();
     let (low, high) = local.iter().fold((local[0], local[0]), |(low, high), v| (low.inf(v), high.sup(v)));
     let edges = (high - low).sup(&Vector3::repeat(1e-4));
-    Some(body("extent of the path", Frame::Part, crate::values::placed(&turned, &(turned * ((low + high) / 2.0))), Solid::cuboid(&edges)))
+    Some(body(
+        "extent of the path",
+        Frame::Part,
+        crate::values::placed(&turned, &(turned * ((low + high) / 2.0))),
+        Solid::cuboid(&edges),
+    ))
 }
 
 /// Least time from rest to rest over a distance within speed, acceleration and jerk.
 pub(crate) fn rest_to_rest(distance: f64, speed: f64, acceleration: f64, jerk: f64) -> f64 {
     // The speed that is reached, or the limit.
-    let ramp = |v: f64| if v * jerk >= acceleration * acceleration { v / acceleration + acceleration / jerk } else { 2.0 * (v / jerk).sqrt() };
+    let ramp = |v: f64| {
+        if v * jerk >= acceleration * acceleration {
+            v / acceleration + acceleration / jerk
+        } else {
+            2.0 * (v / jerk).sqrt()
+        }
+    };
     if speed * ramp(speed) <= distance {
         return distance / speed + ramp(speed);
     }
@@ -125,7 +155,8 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, case: &Value) -> Ans
         let after = transfer.get("after_segment").and_then(Value::as_u64).ok_or("a move after no segment")? as usize;
         let Some(end) = cell.points.iter().rposition(|point| point.segment == after) else { continue };
         let at = |what: &str| format!("{} after segment {after}: {what}", plan.name);
-        let stated: Vec<[f64; 6]> = transfer.get("joints_deg").and_then(Value::as_array).into_iter().flatten().filter_map(angles).collect();
+        let stated: Vec<[f64; 6]> =
+            transfer.get("joints_deg").and_then(Value::as_array).into_iter().flatten().filter_map(angles).collect();
         let has_shapes = !cell.bodies.is_empty() || !cell.zones.is_empty();
         verdict.holds("a way where there are shapes", || at("no joint angles"), stated.len() >= 2 || !has_shapes);
         let [from, to] = [end, end + 1].map(|i| plan.rows[i].joints);
@@ -149,7 +180,14 @@ fn axes_from(transfer: &Value) -> usize {
     if transfer.get("retracts").and_then(Value::as_bool) == Some(true) { 2 } else { 1 }
 }
 
-fn time(verdict: &mut Verdict, plan: &Plan<'_>, transfer: &Value, way: &[[f64; 6]], end: usize, at: &dyn Fn(&str) -> String) {
+fn time(
+    verdict: &mut Verdict,
+    plan: &Plan<'_>,
+    transfer: &Value,
+    way: &[[f64; 6]],
+    end: usize,
+    at: &dyn Fn(&str) -> String,
+) {
     let cell = plan.cell;
     let of = |key: &str, default: f64| cell.setting("transfer", key).unwrap_or(default);
     let (gather, jerk_time) = (of("acceleration_time_s", 0.4), of("jerk_time_s", 0.1));
@@ -190,7 +228,8 @@ fn time(verdict: &mut Verdict, plan: &Plan<'_>, transfer: &Value, way: &[[f64; 6
         _ => false,
     };
     verdict.holds("duration of a move (s)", told, is_right);
-    let travel = (0..6).map(|j| way.windows(2).map(|step| (step[1][j] - step[0][j]).abs()).sum::<f64>()).fold(0.0, f64::max);
+    let travel =
+        (0..6).map(|j| way.windows(2).map(|step| (step[1][j] - step[0][j]).abs()).sum::<f64>()).fold(0.0, f64::max);
     let stated = transfer.get("travel_deg").and_then(Value::as_f64).unwrap_or(f64::NAN);
     verdict.close("travel of a move (deg)", || at("travel"), stated, travel.to_degrees(), 1e-4 * way.len() as f64);
 }
@@ -205,7 +244,8 @@ fn free(
     at: &dyn Fn(&str) -> String,
 ) {
     let cell = plan.cell;
-    let [retracts, approaches] = ["retracts", "approaches"].map(|key| transfer.get(key).and_then(Value::as_bool) == Some(true));
+    let [retracts, approaches] =
+        ["retracts", "approaches"].map(|key| transfer.get(key).and_then(Value::as_bool) == Some(true));
     let moved_at = axes_from(transfer);
     let positions = [&plan.rows[end].positions, &plan.rows[end + 1].positions];
     for place in way.iter() {
@@ -217,7 +257,11 @@ fn free(
     let wanted = cell.setting("transfer", "retract_mm").unwrap_or(50.0) * 1e-3;
     for (which, is_line, i) in [(0, retracts, end), (1, approaches, end + 1)] {
         let short = transfer.get("short_lines").and_then(|all| all.get(which)).filter(|line| !line.is_null());
-        verdict.holds("a line out of the cut, or why not", || at(["line out", "line in"][which]), is_line || short.is_some());
+        verdict.holds(
+            "a line out of the cut, or why not",
+            || at(["line out", "line in"][which]),
+            is_line || short.is_some(),
+        );
         let stand = |joints: &[f64; 6]| cell.at(&plan.placement, joints, &plan.rows[i].positions);
         if !is_line {
             continue;
@@ -231,13 +275,21 @@ fn free(
         let turn = angle_between_poses(&from.tool, &to.tool);
         verdict.within("a line without a turn (rad)", || at(["line out", "line in"][which]), turn, 2e-5);
         if short.is_none() {
-            verdict.within("length of a line (m)", || at(["line out", "line in"][which]), wanted, lift.dot(&axis) + 5e-5);
+            verdict.within(
+                "length of a line (m)",
+                || at(["line out", "line in"][which]),
+                wanted,
+                lift.dot(&axis) + 5e-5,
+            );
         }
         // The line itself, against all but the part that the tool has cut.
         let steps = (lift.norm() / 5e-3).ceil().max(1.0) as usize;
         let mut joints = low;
         for step in 1..=steps {
-            let target = Isometry3::from_parts((from.tool.translation.vector + lift * (step as f64 / steps as f64)).into(), from.tool.rotation);
+            let target = Isometry3::from_parts(
+                (from.tool.translation.vector + lift * (step as f64 / steps as f64)).into(),
+                from.tool.rotation,
+            );
             let Some(found) = cell.arm.reach(&from.frames[0], &(target * cell.tool.inverse()), &joints) else {
                 verdict.holds("reach along a line", || at(["line out", "line in"][which]), false);
                 break;
@@ -246,8 +298,14 @@ fn free(
             let here = stand(&joints);
             let nearest = cell.nearest(&cell.bodies, &cell.pairs, &here, cell.clearance.max(1e-3));
             let distance = nearest.as_ref().map_or(f64::INFINITY, |(distance, _)| *distance);
-            let names = nearest.map_or(String::new(), |(_, pair)| pair.map(|body| cell.bodies[body].name.as_str()).join(" and "));
-            verdict.within("clearance along a line (m)", || at(&format!("{} {names}", ["line out", "line in"][which])), 0.9 * cell.clearance, distance + SHAPE_SLACK);
+            let names = nearest
+                .map_or(String::new(), |(_, pair)| pair.map(|body| cell.bodies[body].name.as_str()).join(" and "));
+            verdict.within(
+                "clearance along a line (m)",
+                || at(&format!("{} {names}", ["line out", "line in"][which])),
+                0.9 * cell.clearance,
+                distance + SHAPE_SLACK,
+            );
             if let Some((depth, zone)) = cell.zone_depth(&here) {
                 verdict.within("zone along a line (m)", || at(&zone), depth, 1e-5);
             }
@@ -275,9 +333,19 @@ fn free(
             let here: Vec<f64> = positions[0].iter().zip(positions[1]).map(|(p, q)| p + (q - p) * moved).collect();
             let stand = cell.at(&plan.placement, &joints, &here);
             let (distance, names) = with_tool.nearest(cell, &stand);
-            verdict.within("clearance of a joint move (m)", || at(&format!("move {place} at {share:.3}: {names}")), 0.9 * cell.clearance, distance + SHAPE_SLACK);
+            verdict.within(
+                "clearance of a joint move (m)",
+                || at(&format!("move {place} at {share:.3}: {names}")),
+                0.9 * cell.clearance,
+                distance + SHAPE_SLACK,
+            );
             if let Some((depth, zone)) = cell.zone_depth(&stand) {
-                verdict.within("zone on a joint move (m)", || at(&format!("move {place} at {share:.3}: {zone}")), depth, 1e-4);
+                verdict.within(
+                    "zone on a joint move (m)",
+                    || at(&format!("move {place} at {share:.3}: {zone}")),
+                    depth,
+                    1e-4,
+                );
             }
         }
     }
@@ -286,4 +354,3 @@ fn free(
 fn angle_between_poses(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     crate::values::angle_between(&a.rotation.to_rotation_matrix(), &b.rotation.to_rotation_matrix())
 }
-

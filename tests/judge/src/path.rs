@@ -25,8 +25,10 @@ pub(crate) struct Point {
 /// Reads the task, with the forces that the run states where the task has none.
 pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
     let told = |error: String| format!("{}: {error}", file.display());
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(|error| told(error.to_string()))?;
-    let names: Vec<String> = reader.headers().map_err(|error| told(error.to_string()))?.iter().map(str::to_owned).collect();
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(|error| told(error.to_string()))?;
+    let names: Vec<String> =
+        reader.headers().map_err(|error| told(error.to_string()))?.iter().map(str::to_owned).collect();
     let mut points: Vec<Point> = Vec::new();
     let has_forces = names.iter().any(|name| name == "force_x_n");
     for record in reader.records() {
@@ -36,7 +38,11 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
             record.get(column)?.parse::<f64>().ok()
         };
         let three = |stem: &str, unit: &str| {
-            Some(Vector3::new(value(&format!("{stem}x{unit}"))?, value(&format!("{stem}y{unit}"))?, value(&format!("{stem}z{unit}"))?))
+            Some(Vector3::new(
+                value(&format!("{stem}x{unit}"))?,
+                value(&format!("{stem}y{unit}"))?,
+                value(&format!("{stem}z{unit}"))?,
+            ))
         };
         let missing = || told("a column is missing".to_owned());
         let feed = three("feed_", "").ok_or_else(missing)?.normalize();
@@ -65,15 +71,25 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
 
 fn load(points: &mut [Point], run: &Table) -> Answer<()> {
     if let Some(forces) = section(run, "forces") {
-        let of = |table: &Table| Ok::<_, String>(Vector3::new(required(table, "feed_n")?, required(table, "normal_n")?, required(table, "axis_n")?));
+        let of = |table: &Table| {
+            Ok::<_, String>(Vector3::new(
+                required(table, "feed_n")?,
+                required(table, "normal_n")?,
+                required(table, "axis_n")?,
+            ))
+        };
         let all = of(forces)?;
         for point in points.iter_mut() {
-            let own = sections(forces, "segment").into_iter().find(|table| number(table, "number") == Some(point.segment as f64));
+            let own = sections(forces, "segment")
+                .into_iter()
+                .find(|table| number(table, "number") == Some(point.segment as f64));
             point.force = point.axes * own.map_or(Ok(all), of)?;
         }
         return Ok(());
     }
-    let (Some(tool), Some(cut)) = (section(run, "tool"), section(run, "cut")) else { return Err("no forces".to_owned()) };
+    let (Some(tool), Some(cut)) = (section(run, "tool"), section(run, "cut")) else {
+        return Err("no forces".to_owned());
+    };
     let cutter = Milling::read(tool, cut)?;
     let last = points.iter().map(|point| point.segment).max().unwrap_or(0);
     for segment in 1..=last {
@@ -156,7 +172,13 @@ impl Milling {
         let mut sum = Vector3::zeros();
         for k in 0..=steps {
             let angle = (from + (to - from) * f64::from(k) / f64::from(steps)) * self.wall;
-            let weight = if k == 0 || k == steps { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+            let weight = if k == 0 || k == steps {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
             let outward = Vector3::new(angle.cos(), angle.sin(), 0.0);
             let motion = Vector3::new(-angle.sin(), angle.cos(), 0.0) * self.spin;
             let thickness = self.chip * outward.x;

@@ -37,7 +37,8 @@ const HALF_LENGTH: f64 = 0.5e-7;
 pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
     let told = |error: String| format!("{}: {error}", file.display());
     let mut reader = csv::Reader::from_path(file).map_err(|error| told(error.to_string()))?;
-    let names: Vec<String> = reader.headers().map_err(|error| told(error.to_string()))?.iter().map(str::to_owned).collect();
+    let names: Vec<String> =
+        reader.headers().map_err(|error| told(error.to_string()))?.iter().map(str::to_owned).collect();
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| told(error.to_string()))?;
@@ -45,7 +46,13 @@ pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
         let maybe = |name: &str| cell_of(name).and_then(|text| text.parse::<f64>().ok());
         let value = |name: &str| maybe(name).ok_or_else(|| told(format!("no number in {name}")));
         let three = |stem: &str, unit: &str, scale: f64| {
-            Ok::<_, String>(Vector3::new(value(&format!("{stem}x{unit}"))?, value(&format!("{stem}y{unit}"))?, value(&format!("{stem}z{unit}"))?) * scale)
+            Ok::<_, String>(
+                Vector3::new(
+                    value(&format!("{stem}x{unit}"))?,
+                    value(&format!("{stem}y{unit}"))?,
+                    value(&format!("{stem}z{unit}"))?,
+                ) * scale,
+            )
         };
         let mut joints = [0.0; 6];
         for (j, joint) in joints.iter_mut().enumerate() {
@@ -104,7 +111,12 @@ impl Plan<'_> {
     fn slack(&self, stand: &Stand) -> f64 {
         let tool = stand.tool.translation.vector;
         let arm: f64 = (1..7).map(|k| (tool - stand.frames[k].translation.vector).norm() * HALF_ANGLE).sum();
-        let axes: f64 = self.cell.axes.iter().map(|axis| if axis.is_rail { HALF_LENGTH } else { (tool - axis.point).norm() * HALF_ANGLE }).sum();
+        let axes: f64 = self
+            .cell
+            .axes
+            .iter()
+            .map(|axis| if axis.is_rail { HALF_LENGTH } else { (tool - axis.point).norm() * HALF_ANGLE })
+            .sum();
         arm + axes + 2.0 * HALF_LENGTH
     }
 
@@ -132,13 +144,15 @@ impl Plan<'_> {
             return;
         }
         let criterion = Criterion::read(self.cell);
-        let mut scores = Vec::with_capacity(self.rows.len());
+        let (mut scores, mut slacks) = (Vec::with_capacity(self.rows.len()), Vec::with_capacity(self.rows.len()));
         for i in 0..self.rows.len() {
             let stand = self.stand(i);
             self.pose(verdict, i, &stand);
             self.limits(verdict, i, &stand);
             self.posture(verdict, i, &stand);
-            scores.push(self.load(verdict, i, &stand, &criterion));
+            let (score, slack) = self.load(verdict, i, &stand, &criterion);
+            scores.push(score);
+            slacks.push(slack);
             if self.follows(i) {
                 self.step(verdict, i);
             }
@@ -146,7 +160,7 @@ impl Plan<'_> {
         }
         self.axes(verdict);
         self.cell_bounds(verdict);
-        self.figures(verdict, case, &criterion, &scores);
+        self.figures(verdict, case, &criterion, (&scores, &slacks));
         if !self.cell.pairs.is_empty() || !self.cell.zones.is_empty() {
             (1..self.rows.len()).filter(|i| self.follows(*i)).for_each(|i| self.between(verdict, i));
         }
@@ -158,7 +172,12 @@ impl Plan<'_> {
         let off = (wanted.translation.vector - stand.tool.translation.vector).norm();
         verdict.within("position of the tool (m)", || self.at(i), off, slack);
         let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &stand.tool.rotation.to_rotation_matrix());
-        verdict.within("orientation of the tool (rad)", || self.at(i), turn, (8.0 + self.cell.axes.len() as f64) * HALF_ANGLE);
+        verdict.within(
+            "orientation of the tool (rad)",
+            || self.at(i),
+            turn,
+            (8.0 + self.cell.axes.len() as f64) * HALF_ANGLE,
+        );
         let seen = (stand.carrier.inverse() * Point3::from(wanted.translation.vector)).coords;
         verdict.within("stated position (m)", || self.at(i), (seen - self.rows[i].place).amax(), slack);
         verdict.holds("stated segment", || self.at(i), self.rows[i].segment == self.point(i).segment);
@@ -170,13 +189,23 @@ impl Plan<'_> {
         for (j, row) in self.cell.arm.rows.iter().enumerate() {
             let angle = self.rows[i].joints[j];
             let beyond = (row.min + margin - angle).max(angle - row.max + margin);
-            verdict.within("joint limit (rad)", || format!("{} joint {}", self.at(i), j + 1), beyond, 1.01 * HALF_ANGLE);
+            verdict.within(
+                "joint limit (rad)",
+                || format!("{} joint {}", self.at(i), j + 1),
+                beyond,
+                1.01 * HALF_ANGLE,
+            );
         }
         let tool = stand.tool.translation.vector;
         let length = of("characteristic_length_mm").unwrap_or(f64::NAN) * 1e-3;
         let condition = self.cell.arm.inverse_condition(&stand.frames, &tool, length);
         verdict.close("inverse condition", || self.at(i), self.rows[i].inverse_condition, condition, 1e-5);
-        verdict.within("least inverse condition", || self.at(i), of("min_inverse_condition").unwrap_or(0.0), condition + 1e-5);
+        verdict.within(
+            "least inverse condition",
+            || self.at(i),
+            of("min_inverse_condition").unwrap_or(0.0),
+            condition + 1e-5,
+        );
         if let Some(least) = of("min_base_distance_mm") {
             let base = stand.frames[0];
             let seen = base.inverse() * Point3::from(tool);
@@ -199,7 +228,11 @@ impl Plan<'_> {
         let forearm = stand.frames[2].inverse() * (wrist - stand.frames[3].translation.vector).coords;
         let elbow = forearm.y.atan2(forearm.x);
         let number = 1 + 4 * usize::from(is_back) + 2 * usize::from(elbow <= 0.0) + usize::from(row.joints[4] < 0.0);
-        verdict.holds("posture", || format!("{}: stated {}, computed {number}", self.at(i), row.posture), number == row.posture);
+        verdict.holds(
+            "posture",
+            || format!("{}: stated {}, computed {number}", self.at(i), row.posture),
+            number == row.posture,
+        );
         let table = section(&self.cell.run, "postures");
         if let Some(allowed) = table.and_then(|table| crate::values::list(table, "allowed")) {
             verdict.holds("allowed posture", || self.at(i), allowed.contains(&(row.posture as f64)));
@@ -216,8 +249,8 @@ impl Plan<'_> {
         }
     }
 
-    /// The load, what it does, and what the criterion makes of it. m
-    fn load(&self, verdict: &mut Verdict, i: usize, stand: &Stand, criterion: &Criterion) -> f64 {
+    /// The load, what it does, and what the criterion makes of it, with what the printed digits of the angles change of that. m
+    fn load(&self, verdict: &mut Verdict, i: usize, stand: &Stand, criterion: &Criterion) -> (f64, f64) {
         let (row, point) = (&self.rows[i], self.point(i));
         let part = stand.part.rotation.to_rotation_matrix();
         let carrier = stand.carrier.rotation.inverse();
@@ -227,7 +260,7 @@ impl Plan<'_> {
         let at = stand.tool.translation.vector;
         let moment = part * point.moment;
         let moved = self.cell.arm.deflection(&stand.frames, &row.joints, &at, &force, &moment);
-        let slack = 0.6e-10 + 3e-5 * moved.norm();
+        let slack = 0.6e-10 + OF_DIGITS * moved.norm();
         verdict.within("deflection (m)", || self.at(i), (carrier * moved - row.deflection).amax(), slack);
         let axes = part.matrix() * point.axes;
         let stated = row.parts;
@@ -240,9 +273,9 @@ impl Plan<'_> {
         let load = Loaded { frames: &stand.frames, joints: &row.joints, at, force, moment, axes, normal };
         let score = criterion.score(self.cell, &load);
         if point.is_scored {
-            verdict.close("score (m)", || self.at(i), stated[3], score, slack + 3e-5 * score);
+            verdict.close("score (m)", || self.at(i), stated[3], score, slack + OF_DIGITS * score);
         }
-        score
+        (score, slack + OF_DIGITS * score)
     }
 
     fn step(&self, verdict: &mut Verdict, i: usize) {
@@ -255,12 +288,22 @@ impl Plan<'_> {
             let most = row.speed.map_or(f64::INFINITY, |speed| speed * time).min(std::f64::consts::PI);
             let most = if self.is_in_place(i) { most.min(std::f64::consts::TAU / 3.0) } else { most };
             let step = (to.joints[j] - from.joints[j]).abs();
-            verdict.within("joint step (rad)", || format!("{} joint {}", self.at(i), j + 1), step, most + 2.02 * HALF_ANGLE);
+            verdict.within(
+                "joint step (rad)",
+                || format!("{} joint {}", self.at(i), j + 1),
+                step,
+                most + 2.02 * HALF_ANGLE,
+            );
         }
         for (k, axis) in self.cell.axes.iter().enumerate() {
             if let Some(speed) = axis.speed {
                 let step = (to.positions[k] - from.positions[k]).abs();
-                verdict.within("step of an external axis", || format!("{} {}", self.at(i), axis.name), step, speed * time + 2.02 * HALF_ANGLE);
+                verdict.within(
+                    "step of an external axis",
+                    || format!("{} {}", self.at(i), axis.name),
+                    step,
+                    speed * time + 2.02 * HALF_ANGLE,
+                );
             }
         }
         let [a, b] = [self.wanted(i - 1), self.wanted(i)].map(|pose| pose.rotation.to_rotation_matrix());
@@ -334,11 +377,13 @@ impl Plan<'_> {
         let mut joints = from.joints;
         for step in 1..steps {
             let share = step as f64 / steps as f64;
-            let positions: Vec<f64> = from.positions.iter().zip(&to.positions).map(|(a, b)| a + (b - a) * share).collect();
+            let positions: Vec<f64> =
+                from.positions.iter().zip(&to.positions).map(|(a, b)| a + (b - a) * share).collect();
             let place = start.translation.vector.lerp(&end.translation.vector, share);
             let target = Isometry3::new(place, turn * share) * start.rotation;
             let part = cell.at(&self.placement, &joints, &positions);
-            let Some(found) = cell.arm.reach(&part.frames[0], &(part.part * target * cell.tool.inverse()), &joints) else {
+            let Some(found) = cell.arm.reach(&part.frames[0], &(part.part * target * cell.tool.inverse()), &joints)
+            else {
                 verdict.holds("reach between points", || format!("{} at {share}", self.at(i)), false);
                 return;
             };
@@ -352,7 +397,12 @@ impl Plan<'_> {
             let (distance, which) = nearest.map_or((f64::INFINITY, String::new()), |(distance, pair)| {
                 (distance, pair.map(|body| cell.bodies[body].name.as_str()).join(" and "))
             });
-            verdict.within("clearance between points (m)", || told(&which), 0.9 * cell.clearance, distance + SHAPE_SLACK);
+            verdict.within(
+                "clearance between points (m)",
+                || told(&which),
+                0.9 * cell.clearance,
+                distance + SHAPE_SLACK,
+            );
         }
         let off = (0..6).map(|j| (joints[j] - to.joints[j]).abs()).fold(0.0, f64::max);
         verdict.within("the way leads to the next point (rad)", || self.at(i), off, most / (steps as f64) * 8.0 + 0.3);
@@ -364,7 +414,12 @@ impl Plan<'_> {
             for i in 0..self.rows.len() {
                 let position = self.rows[i].positions[k];
                 let beyond = (axis.range[0] - position).max(position - axis.range[1]);
-                verdict.within("range of an external axis", || format!("{} {}", self.at(i), axis.name), beyond, 1.01 * HALF_ANGLE);
+                verdict.within(
+                    "range of an external axis",
+                    || format!("{} {}", self.at(i), axis.name),
+                    beyond,
+                    1.01 * HALF_ANGLE,
+                );
                 let stands = i > 0 && (axis.mode == "fixed" || (axis.mode == "indexed" && self.follows(i)));
                 if stands {
                     let is_one = position == self.rows[i - 1].positions[k];
@@ -388,28 +443,42 @@ impl Plan<'_> {
     }
 
     /// What the summary states of the plan.
-    fn figures(&self, verdict: &mut Verdict, case: &Value, criterion: &Criterion, scores: &[f64]) {
+    fn figures(&self, verdict: &mut Verdict, case: &Value, criterion: &Criterion, (scores, slacks): (&[f64], &[f64])) {
         let points = &self.cell.points;
         let mm = |key: &str| case.get(key).and_then(Value::as_f64).map(|mm| mm * 1e-3);
         let objective = criterion.objective(points, scores);
-        let slack = 0.6e-10 + 1e-4 * objective;
+        // No aggregate changes by more than the largest change of a score, with a weight where the largest is taken.
+        let heaviest = points.iter().map(|point| criterion.weight(point)).fold(1.0, f64::max);
+        let slack = 0.6e-10
+            + slacks.iter().copied().fold(0.0, f64::max) * if criterion.aggregate == "max" { heaviest } else { 1.0 };
         let told = |key: &str| format!("{} {key}", self.name);
-        verdict.close("objective (m)", || told("objective_mm"), mm("objective_mm").unwrap_or(f64::NAN), objective, slack);
+        verdict.close(
+            "objective (m)",
+            || told("objective_mm"),
+            mm("objective_mm").unwrap_or(f64::NAN),
+            objective,
+            slack,
+        );
         let scored: Vec<usize> = (0..points.len()).filter(|i| points[*i].is_scored).collect();
         let most = scored.iter().map(|i| scores[*i]).fold(0.0, f64::max);
-        verdict.close("largest score (m)", || told("max_mm"), mm("max_mm").unwrap_or(f64::NAN), most, 0.6e-10 + 1e-4 * most);
+        verdict.close("largest score (m)", || told("max_mm"), mm("max_mm").unwrap_or(f64::NAN), most, slack);
         let of = |part: &dyn Fn(&Row) -> f64| {
             let all: Vec<f64> = scored.iter().map(|i| part(&self.rows[*i]).abs()).collect();
             (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(0.0, f64::max))
         };
         for (word, k) in [("wall", 0), ("feed", 1), ("axis", 2), ("total", 4)] {
             let (mean, most) = of(&|row| row.parts[k]);
-            let stated = |key: &str| case.pointer(&format!("/deflection_mm/{word}/{key}")).and_then(Value::as_f64).unwrap_or(f64::NAN) * 1e-3;
+            let stated = |key: &str| {
+                case.pointer(&format!("/deflection_mm/{word}/{key}")).and_then(Value::as_f64).unwrap_or(f64::NAN) * 1e-3
+            };
             verdict.close("mean deflection (m)", || told(word), stated("mean"), mean, 1.2e-10);
             verdict.close("largest deflection (m)", || told(word), stated("max"), most, 1.2e-10);
         }
     }
 }
+
+/// What the printed digits of the angles, half a unit of 0.0001 deg each, change of a deflection, relative to it.
+const OF_DIGITS: f64 = 1e-5;
 
 /// Distances of round shapes by parry's plain method are within this. m
 pub(crate) const SHAPE_SLACK: f64 = 3e-5;

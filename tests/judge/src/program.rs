@@ -82,14 +82,19 @@ impl Program {
     fn read(main: &Path, cell: &Cell) -> Answer<Self> {
         let told = |error: std::io::Error| format!("{}: {error}", main.display());
         let of_main = std::fs::read_to_string(main).map_err(told)?;
-        let (Some(stem), Some(kind)) = (main.file_stem().and_then(|s| s.to_str()), main.extension().and_then(|s| s.to_str())) else {
+        let (Some(stem), Some(kind)) =
+            (main.file_stem().and_then(|s| s.to_str()), main.extension().and_then(|s| s.to_str()))
+        else {
             return Err("a program without a name".to_owned());
         };
         let mut parts = Vec::new();
         for number in 1.. {
             // The parts are called by name, in the case that the controller has them in.
-            let names = [format!("{stem}_{number:02}.{kind}"), format!("{}_{number:02}.{kind}", stem.to_ascii_uppercase())];
-            let Some(file) = names.iter().map(|name| main.with_file_name(name)).find(|file| file.exists()) else { break };
+            let names =
+                [format!("{stem}_{number:02}.{kind}"), format!("{}_{number:02}.{kind}", stem.to_ascii_uppercase())];
+            let Some(file) = names.iter().map(|name| main.with_file_name(name)).find(|file| file.exists()) else {
+                break;
+            };
             parts.push(std::fs::read_to_string(&file).map_err(told)?);
         }
         match kind {
@@ -109,7 +114,8 @@ impl Program {
     }
 
     fn krl(parts: &[String], cell: &Cell) -> Answer<Self> {
-        let mut program = Self { base: Base::World, frame: Isometry3::identity(), tool: None, moves: Vec::new(), feed_slack: 1e-6 };
+        let mut program =
+            Self { base: Base::World, frame: Isometry3::identity(), tool: None, moves: Vec::new(), feed_slack: 1e-6 };
         let mut feed = f64::NAN;
         for line in parts.iter().flat_map(|part| part.lines()).map(str::trim) {
             if let Some(text) = line.strip_prefix("$BASE=") {
@@ -153,11 +159,18 @@ impl Program {
         let mut moves = Vec::new();
         for line in parts.iter().flat_map(|part| part.lines()).map(str::trim) {
             let all = numbers(line.split_once(' ').map_or("", |(_, rest)| rest));
-            let external = |from: usize| Self::external(cell, &|k| all.get(from + k).copied().filter(|value| *value < 8e9));
+            let external =
+                |from: usize| Self::external(cell, &|k| all.get(from + k).copied().filter(|value| *value < 8e9));
             if line.starts_with("MoveAbsJ ") {
                 let joints = all.get(..6).and_then(|angles| <[f64; 6]>::try_from(angles).ok()).ok_or(line)?;
                 let joints = Some(joints.map(f64::to_radians));
-                moves.push(Move { line: line.to_owned(), joints, target: None, external: external(6)?, feed: f64::NAN });
+                moves.push(Move {
+                    line: line.to_owned(),
+                    joints,
+                    target: None,
+                    external: external(6)?,
+                    feed: f64::NAN,
+                });
             } else if line.starts_with("MoveL ") {
                 // Pose (7), configuration (4), external axes (6), speed.
                 let target = Some(quaternion_frame(&all).ok_or(line)?);
@@ -172,7 +185,10 @@ impl Program {
         let first = parts.first().ok_or("a program without parts")?;
         let entered = |name: &str| {
             // What the operator enters stands in remarks, a line for each number.
-            let remarks: String = first.lines().filter_map(|line| line.split_once(&format!("!{name} 9 ")).map(|(_, rest)| format!("{rest} "))).collect();
+            let remarks: String = first
+                .lines()
+                .filter_map(|line| line.split_once(&format!("!{name} 9 ")).map(|(_, rest)| format!("{rest} ")))
+                .collect();
             frame(&remarks, FANUC)
         };
         let (frame_of, tool) = entered("UFRAME").zip(entered("UTOOL")).ok_or("no UFRAME or UTOOL in the remarks")?;
@@ -216,12 +232,17 @@ impl Program {
         let mut moves = Vec::new();
         for record in reader.records() {
             let record = record.map_err(told)?;
-            let value = |name: &str| names.iter().position(|known| known == name).and_then(|k| record.get(k)?.parse::<f64>().ok());
+            let value = |name: &str| {
+                names.iter().position(|known| known == name).and_then(|k| record.get(k)?.parse::<f64>().ok())
+            };
             let line = record.iter().collect::<Vec<_>>().join(",");
-            let pose: Option<Vec<f64>> = ["x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z"].into_iter().map(value).collect();
+            let pose: Option<Vec<f64>> =
+                ["x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z"].into_iter().map(value).collect();
             let angles: Option<Vec<f64>> = (1..7).map(|k| value(&format!("a{k}_deg")).map(f64::to_radians)).collect();
             let is_joint = record.get(2) == Some("joint");
-            let external = Self::external(cell, &|k| value(&format!("e{}_mm", k + 1)).or_else(|| value(&format!("e{}_deg", k + 1))))?;
+            let external = Self::external(cell, &|k| {
+                value(&format!("e{}_mm", k + 1)).or_else(|| value(&format!("e{}_deg", k + 1)))
+            })?;
             let target = pose.and_then(|pose| quaternion_frame(&pose)).ok_or_else(|| line.clone())?;
             let joints = if is_joint { angles.and_then(|angles| angles.try_into().ok()) } else { None };
             let feed = value("feed_mm_per_s").map_or(f64::NAN, |feed| feed * 1e-3);
@@ -253,10 +274,16 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
     let cell = plan.cell;
     let program = Program::read(main, cell)?;
     let name = main.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_owned();
-    let root_from_base = cell.arm.counting.as_ref().map_or_else(Isometry3::identity, |counting| counting.root_from_base);
+    let root_from_base =
+        cell.arm.counting.as_ref().map_or_else(Isometry3::identity, |counting| counting.root_from_base);
     let world = cell.mount * root_from_base.inverse();
     if let Some(tool) = &program.tool {
-        verdict.within("tool of a program (m)", || name.clone(), (tool.translation.vector - cell.tool.translation.vector).norm(), 1e-7);
+        verdict.within(
+            "tool of a program (m)",
+            || name.clone(),
+            (tool.translation.vector - cell.tool.translation.vector).norm(),
+            1e-7,
+        );
         let turn = angle_between(&tool.rotation.to_rotation_matrix(), &cell.tool.rotation.to_rotation_matrix());
         verdict.within("tool of a program (rad)", || name.clone(), turn, 3e-8);
     }
@@ -267,7 +294,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
         let at = || format!("{name} {}", step.line);
         let still = cell.at(&plan.placement, &[0.0; 6], &step.external);
         if let Some(angles) = &step.joints {
-            let rows = cell.arm.from_controller(angles).ok_or("a program without [controller]")?;
+            let rows = cell.arm.joints_of(angles).ok_or("a program without [controller]")?;
             for (j, row) in cell.arm.rows.iter().enumerate() {
                 let beyond = (row.min - rows[j]).max(rows[j] - row.max);
                 verdict.within("joint limit of a program (rad)", || format!("{} joint {}", at(), j + 1), beyond, 2e-7);
@@ -301,7 +328,12 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &in_part.rotation.to_rotation_matrix());
             ((wanted.translation.vector - in_part.translation.vector).norm(), turn)
         };
-        let is_point = |i: usize| i < plan.rows.len() && { let (away, turn) = off(i); away < 1e-5 && turn < 1.8e-4 };
+        let is_point = |i: usize| {
+            i < plan.rows.len() && {
+                let (away, turn) = off(i);
+                away < 1e-5 && turn < 1.8e-4
+            }
+        };
         let previous = next.checked_sub(1);
         let is_next = is_point(next);
         // Out of the cut after a point, or into it before one: along the tool axis.
@@ -312,10 +344,19 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &in_part.rotation.to_rotation_matrix());
             (lift - axis * lift.dot(&axis)).norm() < 2e-5 && lift.dot(&axis) > 0.0 && turn < 1.8e-4
         };
-        let stands_at = if is_next { Some(next) } else { previous.filter(|i| is_line(*i)).or_else(|| (next < plan.rows.len() && is_line(next)).then_some(next)) };
+        let stands_at = if is_next {
+            Some(next)
+        } else {
+            previous.filter(|i| is_line(*i)).or_else(|| (next < plan.rows.len() && is_line(next)).then_some(next))
+        };
         let told = || {
             let near = off(next.min(plan.rows.len() - 1));
-            format!("{}: neither path point {next} (off by {:.6} m, {:.6} rad) nor a line along the tool axis", at(), near.0, near.1)
+            format!(
+                "{}: neither path point {next} (off by {:.6} m, {:.6} rad) nor a line along the tool axis",
+                at(),
+                near.0,
+                near.1
+            )
         };
         verdict.holds("line of a program", told, stands_at.is_some());
         let Some(i) = stands_at else { return Ok(()) };
@@ -325,8 +366,15 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
         }
         // The feed of the first point of a segment has no effect; the line to it has that of the cut that follows.
         let is_first = i == 0 || cell.points[i - 1].segment != cell.points[i].segment;
-        let fed = if is_first && cell.points.get(i + 1).is_some_and(|next| next.segment == cell.points[i].segment) { i + 1 } else { i };
-        let feed = cell.points[fed].speed.or(cell.setting("redundancy", "feed_mm_per_s").map(|feed| feed * 1e-3)).unwrap_or(f64::NAN);
+        let fed = if is_first && cell.points.get(i + 1).is_some_and(|next| next.segment == cell.points[i].segment) {
+            i + 1
+        } else {
+            i
+        };
+        let feed = cell.points[fed]
+            .speed
+            .or(cell.setting("redundancy", "feed_mm_per_s").map(|feed| feed * 1e-3))
+            .unwrap_or(f64::NAN);
         let least = if program.feed_slack > 1e-4 { feed.max(1e-3) } else { feed };
         verdict.close("feed of a program (m/s)", at, step.feed, least, program.feed_slack);
         // The arm, followed from where it is.
@@ -335,10 +383,15 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             let mut found = Some(here);
             for part in 1..=8 {
                 let share = f64::from(part) / 8.0;
-                let positions: Vec<f64> = external.iter().zip(&step.external).map(|(a, b)| a + (b - a) * share).collect();
-                let target = Isometry3::new(from.translation.vector.lerp(&in_part.translation.vector, share), turn * share) * from.rotation;
+                let positions: Vec<f64> =
+                    external.iter().zip(&step.external).map(|(a, b)| a + (b - a) * share).collect();
+                let target =
+                    Isometry3::new(from.translation.vector.lerp(&in_part.translation.vector, share), turn * share)
+                        * from.rotation;
                 let stand = cell.at(&plan.placement, &here, &positions);
-                found = found.and_then(|near| cell.arm.reach(&stand.frames[0], &(stand.part * target * cell.tool.inverse()), &near));
+                found = found.and_then(|near| {
+                    cell.arm.reach(&stand.frames[0], &(stand.part * target * cell.tool.inverse()), &near)
+                });
             }
             verdict.holds("the arm follows a program", at, found.is_some());
             if let (Some(found), true) = (found, is_next) {

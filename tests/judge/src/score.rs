@@ -97,7 +97,9 @@ impl Criterion {
             let mut worst = score;
             for start in 0..26 {
                 let k = start + usize::from(start >= 13);
-                let mut error = Vector3::new((k % 3) as f64 - 1.0, (k / 3 % 3) as f64 - 1.0, (k / 9) as f64 - 1.0).normalize() * size;
+                let mut error = Vector3::new((k % 3) as f64 - 1.0, (k / 3 % 3) as f64 - 1.0, (k / 9) as f64 - 1.0)
+                    .normalize()
+                    * size;
                 for _ in 0..2000 {
                     let found = with(&error);
                     let slope = Vector3::from_fn(|k, _| gain[k].dot(&found));
@@ -115,7 +117,9 @@ impl Criterion {
             }
             score = worst;
         }
-        if self.confidence > 0.0 && let Some((names, matrix)) = &arm.covariance {
+        if self.confidence > 0.0
+            && let Some((names, matrix)) = &arm.covariance
+        {
             let slopes = DVector::from_iterator(
                 names.len(),
                 names.iter().map(|name| {
@@ -157,7 +161,9 @@ impl Arm {
         let Some(row) = number.and_then(|number| arm.rows.get_mut(number.wrapping_sub(1))) else { return (arm, 1.0) };
         let scale = 1.0 + share;
         let step = match &mut row.law {
-            Law::Spring { stiffness, .. } if name.ends_with("spring_stiffness_n_per_mm") => grown(stiffness, scale, 1e-3),
+            Law::Spring { stiffness, .. } if name.ends_with("spring_stiffness_n_per_mm") => {
+                grown(stiffness, scale, 1e-3)
+            }
             Law::Spring { free, .. } if name.ends_with("free_length_mm") => grown(free, scale, 1e3),
             Law::Range(at_min, _) if name.ends_with("[1]") => grown(at_min, scale, 1e6),
             Law::Range(_, at_max) => grown(at_max, scale, 1e6),

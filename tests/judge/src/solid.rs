@@ -130,7 +130,8 @@ impl Solid {
     /// Zero where they touch. m
     pub(crate) fn distance(&self, at: &Isometry3<f64>, other: &Self, other_at: &Isometry3<f64>) -> f64 {
         let [here, there] = [(at, self), (other_at, other)].map(|(pose, solid)| parry_pose(&(pose * solid.turned)));
-        let between = query::distance(&here, &*self.core, &there, &*other.core).map_or(f64::NAN, |found| found.distance);
+        let between =
+            query::distance(&here, &*self.core, &there, &*other.core).map_or(f64::NAN, |found| found.distance);
         let within = |mesh: &Self, mesh_at: &Isometry3<f64>, solid: &Self, solid_at: &Isometry3<f64>| {
             let point = mesh_at.inverse() * (solid_at * nalgebra::Point3::from(solid.inside));
             !mesh.closed.is_empty() && mesh.contains(&point.coords)
@@ -165,7 +166,8 @@ fn read_stl(bytes: &[u8]) -> Vec<[Vector3<f64>; 3]> {
     let count = bytes.get(80..84).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let content = String::from_utf8_lossy(bytes);
     if bytes.len() == 84 + 50 * count && count > 0 {
-        let number = |at: usize| f64::from(f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
+        let number =
+            |at: usize| f64::from(f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
         let vertex = |at: usize| Vector3::new(number(at), number(at + 4), number(at + 8));
         return (0..count).map(|k| [12, 24, 36].map(|offset| vertex(84 + 50 * k + offset))).collect();
     }

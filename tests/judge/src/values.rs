@@ -44,7 +44,10 @@ pub(crate) fn section<'a>(table: &'a Table, key: &str) -> Option<&'a Table> {
 }
 
 pub(crate) fn sections<'a>(table: &'a Table, key: &str) -> Vec<&'a Table> {
-    table.get(key).and_then(Value::as_array).map_or_else(Vec::new, |all| all.iter().filter_map(Value::as_table).collect())
+    table
+        .get(key)
+        .and_then(Value::as_array)
+        .map_or_else(Vec::new, |all| all.iter().filter_map(Value::as_table).collect())
 }
 
 /// A range `[min, max]` in a unit of so many m or rad.
@@ -95,6 +98,7 @@ pub(crate) fn placed(rotation: &Rotation3<f64>, place: &Vector3<f64>) -> Isometr
 /// The angle by which one rotation has to turn to become another. rad
 pub(crate) fn angle_between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
     let turn = (a.inverse() * b).into_inner();
-    let sine = Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]).norm();
+    let sine =
+        Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]).norm();
     sine.atan2(turn.trace() - 1.0)
 }

@@ -17,9 +17,20 @@ pub struct Verdict {
 
 impl Verdict {
     /// A figure as stated and as computed.
-    pub(crate) fn close(&mut self, kind: &'static str, place: impl Fn() -> String, stated: f64, computed: f64, tolerance: f64) {
+    pub(crate) fn close(
+        &mut self,
+        kind: &'static str,
+        place: impl Fn() -> String,
+        stated: f64,
+        computed: f64,
+        tolerance: f64,
+    ) {
         let is_close = (stated - computed).abs() <= tolerance;
-        self.holds(kind, || format!("{}: stated {stated}, computed {computed}, tolerance {tolerance:.3e}", place()), is_close);
+        self.holds(
+            kind,
+            || format!("{}: stated {stated}, computed {computed}, tolerance {tolerance:.3e}", place()),
+            is_close,
+        );
     }
 
     /// A figure that must not be above a limit.

@@ -108,7 +108,8 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
     std::fs::write(&run, &writer.run).map_err(told)?;
     toml.push(("run", run.clone()));
     let axes = of("axes");
-    let part_moves = ["table", "tilt", "part rail", "held"].iter().any(|word| axes.contains(word)) && !axes.starts_with("robot");
+    let part_moves =
+        ["table", "tilt", "part rail", "held"].iter().any(|word| axes.contains(word)) && !axes.starts_with("robot");
     let native = match of("arm") {
         arm if arm.starts_with("kuka") => "krl",
         arm if arm.starts_with("abb") => "rapid",
@@ -182,8 +183,15 @@ impl Writer<'_> {
                 }
             }
             if self.of("compliance") == "compensator" && j == 1 {
-                let spring = [("spring_stiffness_n_per_mm", 140.0), ("a_mm", 700.0), ("l_mm", 180.0), ("alpha_deg", 11.0), ("free_length_mm", 460.0)];
-                let table: Table = spring.into_iter().map(|(key, value)| (key.to_owned(), Value::from(value))).collect();
+                let spring = [
+                    ("spring_stiffness_n_per_mm", 140.0),
+                    ("a_mm", 700.0),
+                    ("l_mm", 180.0),
+                    ("alpha_deg", 11.0),
+                    ("free_length_mm", 460.0),
+                ];
+                let table: Table =
+                    spring.into_iter().map(|(key, value)| (key.to_owned(), Value::from(value))).collect();
                 kept.insert("compensator".to_owned(), Value::Table(table));
             }
             joints.push(Value::Table(kept));
@@ -208,10 +216,24 @@ impl Writer<'_> {
         let reach = upper + forearm;
         // Where the part is in the frame of the rows, in which direction the mount turns that.
         let (local, mount, turned) = match self.of("mount") {
-            "ceiling" => (Vector3::new(shoulder + 0.6 * reach, 0.0, height + 0.5 * reach), 1.3 + height + 0.5 * reach, about(Vector3::x(), 180.0)),
-            "wall" => (Vector3::new(shoulder + 0.5 * reach, 0.0, height + 0.3 * reach), 1.2 + shoulder + 0.5 * reach, about(Vector3::y(), 90.0)),
-            "pedestal" => (Vector3::new(shoulder + 0.6 * reach, 0.0, height - 0.25 * reach), 0.35, Rotation3::identity()),
-            "tilted" => (Vector3::new(shoulder + 0.6 * reach, 0.0, height - 0.15 * reach), 0.3, about(Vector3::y(), 12.0) * about(Vector3::z(), 20.0)),
+            "ceiling" => (
+                Vector3::new(shoulder + 0.6 * reach, 0.0, height + 0.5 * reach),
+                1.3 + height + 0.5 * reach,
+                about(Vector3::x(), 180.0),
+            ),
+            "wall" => (
+                Vector3::new(shoulder + 0.5 * reach, 0.0, height + 0.3 * reach),
+                1.2 + shoulder + 0.5 * reach,
+                about(Vector3::y(), 90.0),
+            ),
+            "pedestal" => {
+                (Vector3::new(shoulder + 0.6 * reach, 0.0, height - 0.25 * reach), 0.35, Rotation3::identity())
+            }
+            "tilted" => (
+                Vector3::new(shoulder + 0.6 * reach, 0.0, height - 0.15 * reach),
+                0.3,
+                about(Vector3::y(), 12.0) * about(Vector3::z(), 20.0),
+            ),
             _ => (Vector3::new(shoulder + 0.6 * reach, 0.0, height - 0.25 * reach), 0.0, Rotation3::identity()),
         };
         self.mount = placed(&turned, &Vector3::new(0.05 * f64::from(u8::from(mount != 0.0)), 0.0, mount));
@@ -237,14 +259,22 @@ impl Writer<'_> {
         let wide = if self.of("cell") == "range" { 60.0 } else { 0.0 };
         let span = |at: f64, half: f64| list([(at - half).round(), (at + half).round()]);
         let aside = [0, 1, 2].map(|_| self.random.between(-50.0, 50.0));
-        let (x, y, z) = (span(middle.x + aside[0], wide), span(middle.y + aside[1], wide), span(middle.z + aside[2], wide));
+        let (x, y, z) =
+            (span(middle.x + aside[0], wide), span(middle.y + aside[1], wide), span(middle.z + aside[2], wide));
         let turn = self.random.between(-0.2, 0.1);
-        self.line(format_args!("\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\nq4 = {}", list([turn - wide / 200.0, turn + wide / 200.0])));
+        self.line(format_args!(
+            "\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\nq4 = {}",
+            list([turn - wide / 200.0, turn + wide / 200.0])
+        ));
         let side = angles(self.key, &about(Vector3::x(), 15.0));
         match self.of("orientations") {
             "one" => self.line(format_args!("orientations = [{{ name = \"tilted\", {side} }}]")),
-            "named" => self.line(format_args!("orientations = [{{ name = \"flat\" }}, {{ name = \"tilted\", {side} }}]\norientation = \"tilted\"")),
-            "choice" => self.line(format_args!("orientations = [{{ name = \"flat\" }}, {{ name = \"tilted\", {side} }}]")),
+            "named" => self.line(format_args!(
+                "orientations = [{{ name = \"flat\" }}, {{ name = \"tilted\", {side} }}]\norientation = \"tilted\""
+            )),
+            "choice" => {
+                self.line(format_args!("orientations = [{{ name = \"flat\" }}, {{ name = \"tilted\", {side} }}]"))
+            }
             _ => {}
         }
         self.axes();
@@ -253,10 +283,15 @@ impl Writer<'_> {
     fn axes(&mut self) {
         let at = vector(&(self.part * 1e3).map(f64::round));
         let rail = |name: &str, carries: &str, mode: &str| {
-            format!("\n[[external_axis]]\nname = \"{name}\"\nkind = \"rail\"\ncarries = \"{carries}\"\ndirection = [0.2, 1.0, 0.0]\nrange_mm = [-180.0, 150.0]\nspeed_mm_per_s = 400.0\nuse = \"{mode}\"")
+            format!(
+                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"rail\"\ncarries = \"{carries}\"\ndirection = [0.2, 1.0, 0.0]\nrange_mm = [-180.0, 150.0]\nspeed_mm_per_s = 400.0\nuse = \"{mode}\""
+            )
         };
         let table = |name: &str, carries: &str, axis: &str, at: &str, most: f64, mode: &str| {
-            format!("\n[[external_axis]]\nname = \"{name}\"\nkind = \"turntable\"\ncarries = \"{carries}\"\naxis = {axis}\nxyz_mm = {at}\nrange_deg = {}\nspeed_deg_per_s = 50.0\nuse = \"{mode}\"", list([-most, most]))
+            format!(
+                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"turntable\"\ncarries = \"{carries}\"\naxis = {axis}\nxyz_mm = {at}\nrange_deg = {}\nspeed_deg_per_s = 50.0\nuse = \"{mode}\"",
+                list([-most, most])
+            )
         };
         let up = "[0.0, 0.0, 1.0]";
         let text = match self.of("axes") {
@@ -267,11 +302,14 @@ impl Writer<'_> {
             "table indexed" => table("turn", "workpiece", up, &at, 60.0, "indexed"),
             "table continuous" => table("turn", "workpiece", up, &at, 40.0, "continuous"),
             "tilt and turn" => {
-                table("tilt", "workpiece", "[0.0, 1.0, 0.0]", &at, 25.0, "fixed") + &table("turn", "workpiece", up, &at, 60.0, "indexed")
+                table("tilt", "workpiece", "[0.0, 1.0, 0.0]", &at, 25.0, "fixed")
+                    + &table("turn", "workpiece", up, &at, 60.0, "indexed")
             }
             "part rail continuous" => rail("slide", "workpiece", "continuous"),
             "robot table indexed" => table("carousel", "robot", up, "[0.0, 0.0, 0.0]", 15.0, "indexed"),
-            "rail and table" => rail("rail", "robot", "indexed") + &table("turn", "workpiece", up, &at, 45.0, "indexed"),
+            "rail and table" => {
+                rail("rail", "robot", "indexed") + &table("turn", "workpiece", up, &at, 45.0, "indexed")
+            }
             "held" => table("turn", "workpiece", up, &at, 60.0, "fixed").replace("[-60.0, 60.0]", "[20.0, 20.0]"),
             _ => String::new(),
         };
@@ -282,7 +320,10 @@ impl Writer<'_> {
     fn settings(&mut self) {
         let mut text = String::new();
         let margin = self.of("margin");
-        let _ = writeln!(text, "\n[constraints]\nmin_inverse_condition = 0.05\ncharacteristic_length_mm = 682.0\njoint_margin_deg = {margin}");
+        let _ = writeln!(
+            text,
+            "\n[constraints]\nmin_inverse_condition = 0.05\ncharacteristic_length_mm = 682.0\njoint_margin_deg = {margin}"
+        );
         match self.of("bounds") {
             "deflection" => text.push_str("max_deflection_mm = 4.0\n"),
             "base distance" => text.push_str("min_base_distance_mm = 400.0\n"),
@@ -293,7 +334,8 @@ impl Writer<'_> {
             "weights" => writeln!(text, "weights = {{ wall = 1.0, axis = 0.5, feed = 0.2, surface = 0.7 }}"),
             direction => writeln!(text, "direction = \"{direction}\""),
         };
-        let _ = writeln!(text, "aggregate = \"{}\"\nforce_uncertainty = {}", self.of("aggregate"), self.of("force errors"));
+        let _ =
+            writeln!(text, "aggregate = \"{}\"\nforce_uncertainty = {}", self.of("aggregate"), self.of("force errors"));
         if self.of("confidence") != "none" {
             let _ = writeln!(text, "confidence = {}", self.of("confidence"));
         }
@@ -305,7 +347,11 @@ impl Writer<'_> {
         }
         text.push_str("\n[redundancy]\nbeta_step_deg = 15.0\nfeed_mm_per_s = 40.0\n");
         let turns = self.of("turns");
-        for (word, line) in [("beta", "max_beta_rate_deg_per_mm = 3.0"), ("per mm", "max_spindle_turn_deg_per_mm = 2.5"), ("per s", "max_spindle_turn_deg_per_s = 120.0")] {
+        for (word, line) in [
+            ("beta", "max_beta_rate_deg_per_mm = 3.0"),
+            ("per mm", "max_spindle_turn_deg_per_mm = 2.5"),
+            ("per s", "max_spindle_turn_deg_per_s = 120.0"),
+        ] {
             if turns == word || turns == "all" {
                 let _ = writeln!(text, "{line}");
             }
@@ -331,7 +377,9 @@ impl Writer<'_> {
             _ => {}
         }
         if self.of("transfer") == "stated" {
-            text.push_str("\n[transfer]\nacceleration_time_s = 0.3\njerk_time_s = 0.2\nblend_mm = 3.0\nretract_mm = 35.0\n");
+            text.push_str(
+                "\n[transfer]\nacceleration_time_s = 0.3\njerk_time_s = 0.2\nblend_mm = 3.0\nretract_mm = 35.0\n",
+            );
         }
         let is_page = self.of("output") == "page";
         let _ = writeln!(text, "\n[output]\nmaps = {is_page}\npage = {is_page}");
@@ -381,7 +429,9 @@ impl Writer<'_> {
                 let k = f64::from(k);
                 add(1, x * (20.0 * k - 50.0) + z * k * k, x, z + x * (0.06 * k - 0.1) + y * 0.15);
             }),
-            _ => (0..7).for_each(|k| add(1, x * (15.0 * f64::from(k) - 50.0) + y * f64::from(k * k), x + y * 0.1 * f64::from(k), z)),
+            _ => (0..7).for_each(|k| {
+                add(1, x * (15.0 * f64::from(k) - 50.0) + y * f64::from(k * k), x + y * 0.1 * f64::from(k), z)
+            }),
         }
         match self.of("path") {
             "raster" => (0..5).for_each(|k| add(2, x * (50.0 - 25.0 * f64::from(k)) + y * 20.0, -x, z)),
@@ -389,7 +439,12 @@ impl Writer<'_> {
                 (0..4).for_each(|k| add(2, y * (20.0 * f64::from(k)), y, z));
                 (0..5).for_each(|k| {
                     let angle = f64::from(k) * 0.35;
-                    add(3, (x * (angle.cos() - 1.0) + y * angle.sin()) * 50.0 + y * 60.0, y * angle.cos() - x * angle.sin(), z);
+                    add(
+                        3,
+                        (x * (angle.cos() - 1.0) + y * angle.sin()) * 50.0 + y * 60.0,
+                        y * angle.cos() - x * angle.sin(),
+                        z,
+                    );
                 });
             }
             "tilted" => (0..4).for_each(|k| add(2, y * (20.0 * f64::from(k)) - z * 5.0, y, z - y * 0.2)),
@@ -403,7 +458,13 @@ impl Writer<'_> {
                         for height in [10.0, 20.0] {
                             let first = &steps[at];
                             let place = first.place + first.axis * height;
-                            let above = Step { segment: first.segment, place, feed: first.feed, axis: first.axis, scored: false };
+                            let above = Step {
+                                segment: first.segment,
+                                place,
+                                feed: first.feed,
+                                axis: first.axis,
+                                scored: false,
+                            };
                             steps.insert(at, above);
                         }
                         at += 2;
@@ -425,7 +486,8 @@ impl Writer<'_> {
         let load = self.of("load");
         let (has_forces, has_moments) = (matches!(load, "task" | "moments"), load == "moments");
         let (has_feeds, has_scored) = (self.of("feeds") == "task", self.of("unscored") != "none");
-        let mut text = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z".to_owned();
+        let mut text =
+            "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z".to_owned();
         for (is_there, names) in [
             (has_forces, ",force_x_n,force_y_n,force_z_n"),
             (has_moments, ",moment_x_nm,moment_y_nm,moment_z_nm"),
@@ -437,7 +499,8 @@ impl Writer<'_> {
         text.push('\n');
         for step in &steps {
             let normal = (step.axis + step.feed.cross(&step.axis) * 0.5).normalize();
-            let mut numbers: Vec<f64> = [step.place, step.feed, step.axis, normal].iter().flat_map(|v| [v.x, v.y, v.z]).collect();
+            let mut numbers: Vec<f64> =
+                [step.place, step.feed, step.axis, normal].iter().flat_map(|v| [v.x, v.y, v.z]).collect();
             if has_forces {
                 numbers.extend([-120.0, 80.0, 60.0].map(|force| force * self.random.between(0.5, 1.5)));
             }
@@ -449,7 +512,17 @@ impl Writer<'_> {
             }
             let words: Vec<String> = numbers.iter().map(|number| format!("{number:.9}")).collect();
             let _ = write!(text, "{},{}", step.segment, words.join(","));
-            let _ = writeln!(text, "{}", if !has_scored { "" } else if step.scored { ",1" } else { ",0" });
+            let _ = writeln!(
+                text,
+                "{}",
+                if !has_scored {
+                    ""
+                } else if step.scored {
+                    ",1"
+                } else {
+                    ",0"
+                }
+            );
         }
         text
     }
@@ -462,10 +535,15 @@ impl Writer<'_> {
         }
         let key = self.key;
         let mut text = String::new();
-        let mut shape = |name: &str, attached: &str, form: &str, place: Vector3<f64>, turned: Option<Rotation3<f64>>| {
-            let turned = turned.map_or(String::new(), |rotation| format!("{}\n", angles(key, &rotation)));
-            let _ = writeln!(text, "[[shape]]\nname = \"{name}\"\nattached = \"{attached}\"\n{form}\nxyz_mm = {}\n{turned}", vector(&(place * 1e3)));
-        };
+        let mut shape =
+            |name: &str, attached: &str, form: &str, place: Vector3<f64>, turned: Option<Rotation3<f64>>| {
+                let turned = turned.map_or(String::new(), |rotation| format!("{}\n", angles(key, &rotation)));
+                let _ = writeln!(
+                    text,
+                    "[[shape]]\nname = \"{name}\"\nattached = \"{attached}\"\n{form}\nxyz_mm = {}\n{turned}",
+                    vector(&(place * 1e3))
+                );
+            };
         let spindle = (self.tool * Point3::new(0.0, 0.0, -0.19)).coords;
         let along = self.tool.rotation.to_rotation_matrix();
         let mut mesh = None;
@@ -490,11 +568,28 @@ impl Writer<'_> {
             shape("forearm", "link_4", &arm, Vector3::new(0.0, 0.0, -0.55 * forearm), None);
             let floor = self.part.z - 0.55;
             shape("floor", "base", "box_mm = [5000.0, 5000.0, 60.0]", Vector3::new(self.part.x, 0.0, floor), None);
-            shape("fence", "base", "box_mm = [2500.0, 30.0, 1500.0]", Vector3::new(self.part.x, 1.4, floor + 0.8), Some(about(Vector3::z(), 8.0)));
-            shape("clamp", "workpiece", "cylinder_mm = { radius = 12.0, length = 40.0 }", Vector3::new(0.1, 0.11, 0.01), None);
+            shape(
+                "fence",
+                "base",
+                "box_mm = [2500.0, 30.0, 1500.0]",
+                Vector3::new(self.part.x, 1.4, floor + 0.8),
+                Some(about(Vector3::z(), 8.0)),
+            );
+            shape(
+                "clamp",
+                "workpiece",
+                "cylinder_mm = { radius = 12.0, length = 40.0 }",
+                Vector3::new(0.1, 0.11, 0.01),
+                None,
+            );
         }
         if let Some(axis) = match self.of("axes") {
-            axes if axes.starts_with("table") || axes == "held" || axes.ends_with("table") && axes.starts_with("rail") => Some("turn"),
+            axes if axes.starts_with("table")
+                || axes == "held"
+                || axes.ends_with("table") && axes.starts_with("rail") =>
+            {
+                Some("turn")
+            }
             "tilt and turn" => Some("tilt"),
             "part rail continuous" => Some("slide"),
             _ => None,
@@ -516,11 +611,20 @@ impl Writer<'_> {
         }
         let clearance = if kind == "cell" { 4.0 } else { 6.0 };
         let ignore = match kind {
-            "cell" => "[[\"link_2\", \"link_4\"], [\"table\", \"carrier\"], [\"part\", \"carrier\"], [\"floor\", \"link_2\"]]",
+            "cell" => {
+                "[[\"link_2\", \"link_4\"], [\"table\", \"carrier\"], [\"part\", \"carrier\"], [\"floor\", \"link_2\"]]"
+            }
             _ => "[[\"table\", \"carrier\"], [\"part\", \"carrier\"]]",
         };
         let has_carrier = text.contains("\"carrier\"");
-        let ignore = if has_carrier { ignore.to_owned() } else { ignore.replace("[\"table\", \"carrier\"], [\"part\", \"carrier\"]", "").replace(", ,", ",").replace("[, ", "[") };
+        let ignore = if has_carrier {
+            ignore.to_owned()
+        } else {
+            ignore
+                .replace("[\"table\", \"carrier\"], [\"part\", \"carrier\"]", "")
+                .replace(", ,", ",")
+                .replace("[, ", "[")
+        };
         let ignore = if ignore == "[]" { String::new() } else { format!("ignore = {ignore}\n") };
         let _ = writeln!(text, "[collision]\nclearance_mm = {clearance}\n{ignore}");
         (text, mesh)
@@ -529,9 +633,21 @@ impl Writer<'_> {
 
 /// The corners of a block about the origin, and its twelve triangles, outwards.
 fn block(edges: [f64; 3]) -> ([Vector3<f64>; 8], [[usize; 3]; 12]) {
-    let corner = |k: usize| Vector3::from_fn(|axis, _| if k >> axis & 1 == 1 { edges[axis] / 2.0 } else { -edges[axis] / 2.0 });
+    let corner =
+        |k: usize| Vector3::from_fn(|axis, _| if k >> axis & 1 == 1 { edges[axis] / 2.0 } else { -edges[axis] / 2.0 });
     let triangles = [
-        [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
     ];
     (std::array::from_fn(corner), triangles)
 }
@@ -561,4 +677,3 @@ fn block_obj(edges: [f64; 3]) -> String {
     });
     text
 }
-

@@ -1,5 +1,7 @@
 //! Shipped results as they are, and with mistakes planted in results or in what they are held against: the judge has to find each.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic, in its helpers too")]
+
 use std::path::{Path, PathBuf};
 use stead_judge::{Verdict, judge};
 
@@ -81,9 +83,13 @@ fn altered(text: &str, row: usize, column: &str, by: f64) -> String {
 #[test]
 fn shipped_results_are_right_and_much_is_looked_at() {
     for (name, run) in [("caro-2013", "caro-2013"), ("caro-2013-k1-0.8", "caro-2013-k1-0.8")] {
-        let verdict = judge(&root().join(format!("configs/{run}.toml")), &root().join(format!("results/{name}"))).unwrap();
+        let verdict =
+            judge(&root().join(format!("configs/{run}.toml")), &root().join(format!("results/{name}"))).unwrap();
         assert!(verdict.disagreements.is_empty(), "{verdict}");
-        assert!(verdict.checks["position of the tool (m)"] == 420 && verdict.checks["joint limit (rad)"] == 2520, "{verdict}");
+        assert!(
+            verdict.checks["position of the tool (m)"] == 420 && verdict.checks["joint limit (rad)"] == 2520,
+            "{verdict}"
+        );
     }
 }
 
@@ -131,7 +137,11 @@ fn results_of_another_cell_are_found() {
         ("q4 = [-1.0, 1.0]", "q4 = [-1.0, 0.5]", "bounds of the cell (q4)"),
         ("min_inverse_condition = 0.2", "min_inverse_condition = 0.3", "least inverse condition"),
         ("min_inverse_condition = 0.2", "min_inverse_condition = 0.2\njoint_margin_deg = 20.0", "joint limit (rad)"),
-        ("min_inverse_condition = 0.2", "min_inverse_condition = 0.2\nmin_base_distance_mm = 1700.0", "distance from axis 1 (m)"),
+        (
+            "min_inverse_condition = 0.2",
+            "min_inverse_condition = 0.2\nmin_base_distance_mm = 1700.0",
+            "distance from axis 1 (m)",
+        ),
         ("min_inverse_condition = 0.2", "min_inverse_condition = 0.2\nmax_deflection_mm = 0.2", "largest score (m)"),
         ("feed_mm_per_s = 66.667", "feed_mm_per_s = 200.0", "joint step (rad)"),
         ("max_beta_rate_deg_per_mm = 0.9", "max_beta_rate_deg_per_mm = 0.7", "rate of beta (rad)"),
@@ -155,15 +165,26 @@ fn results_of_another_cell_are_found() {
 #[test]
 fn shapes_that_were_not_kept_apart_are_found() {
     let shape = |attached: &str, place: &str| {
-        format!("\n[[shape]]\nname = \"post\"\nattached = \"{attached}\"\nbox_mm = [60.0, 60.0, 60.0]\nxyz_mm = {place}\n")
+        format!(
+            "\n[[shape]]\nname = \"post\"\nattached = \"{attached}\"\nbox_mm = [60.0, 60.0, 60.0]\nxyz_mm = {place}\n"
+        )
     };
     let case = Case::new();
     // A block on the flange, and one beside the path that it meets.
     case.change("configs/run.toml", |text| {
-        format!("{text}{}{}", shape("workpiece", "[-150.0, 330.0, 30.0]"), shape("flange", "[0.0, 0.0, 640.0]").replace("post", "block"))
+        format!(
+            "{text}{}{}",
+            shape("workpiece", "[-150.0, 330.0, 30.0]"),
+            shape("flange", "[0.0, 0.0, 640.0]").replace("post", "block")
+        )
     });
     let kinds = case.kinds();
-    for kind in ["clearance at a point (m)", "clearance between points (m)", "a line out of the cut, or why not", "clearance of a joint move (m)"] {
+    for kind in [
+        "clearance at a point (m)",
+        "clearance between points (m)",
+        "a line out of the cut, or why not",
+        "clearance of a joint move (m)",
+    ] {
         assert!(kinds.iter().any(|known| known == kind), "{kind} is not among {kinds:?}");
     }
     let case = Case::new();
