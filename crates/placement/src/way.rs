@@ -112,13 +112,6 @@ struct Line {
     short: Option<ShortLine>,
 }
 
-impl Line {
-    /// How long it is where it should have a length. m
-    fn length(&self, wanted: f64) -> f64 {
-        self.short.as_ref().map_or(wanted, |short| short.length)
-    }
-}
-
 /// The move from the end of one segment's plan to the start of the next; `None` where there is no scene.
 pub fn way(problem: &Problem, placement: &Placement, plans: [&SegmentPlan; 2], number: usize) -> Option<Way> {
     let space = Space::new(problem, placement)?;
@@ -134,10 +127,11 @@ pub fn way(problem: &Problem, placement: &Placement, plans: [&SegmentPlan; 2], n
     let mut blocked = None;
     let mut lines: Vec<[Line; 2]> = Vec::new();
     for lift in LIFTS {
-        // A higher line is looked at in other steps, and may so end a little before the lowest one: then that is taken.
+        // A higher line is looked at in other steps, and may so end a little before the lowest one, where that is whole: then that is taken.
         let raised = |k: usize| {
             let line = space.line([end, start][k], retract + lift);
-            if line.length(retract + lift) < lowest[k].length(retract) { lowest[k].clone() } else { line }
+            let is_short = line.short.as_ref().is_some_and(|short| short.length < retract);
+            if is_short && lowest[k].short.is_none() { lowest[k].clone() } else { line }
         };
         let pair = [raised(0), raised(1)];
         // A line that a shorter one has ended already leads no farther.

@@ -477,8 +477,9 @@ impl Plan<'_> {
     }
 }
 
-/// What the printed digits of the angles, half a unit of 0.0001 deg each, change of a deflection, relative to it.
-const OF_DIGITS: f64 = 1e-5;
+/// What the printed digits of six angles, half a unit of 0.0001 deg each (9e-7 rad), change of a deflection, relative to it: each some five
+/// times itself at the most.
+const OF_DIGITS: f64 = 3e-5;
 
 /// Distances of round shapes by parry's plain method are within this. m
 pub(crate) const SHAPE_SLACK: f64 = 3e-5;

@@ -79,7 +79,7 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         choice,
         random: Random::new(seed),
         key: of("angles"),
-        run: "robot = \"robot.toml\"\ntask = \"task.csv\"\n".to_owned(),
+        run: "robot = \"robot.toml\"\ntask = \"task.csv\"\nstiffness_like = \"made up\"\n".to_owned(),
         mount: Isometry3::identity(),
         part: Vector3::zeros(),
         sizes: sizes(&arm)?,
@@ -152,6 +152,10 @@ impl Writer<'_> {
             }
         }
         table.insert("stiffness_like".to_owned(), Value::from("made up"));
+        if let Some(controller) = table.get_mut("controller").and_then(Value::as_table_mut) {
+            let is_fanuc = controller.get("kind").and_then(Value::as_str) == Some("fanuc");
+            controller.insert("is_j3_level".to_owned(), Value::from(is_fanuc));
+        }
         let softer = if set == 0 { 1.0 } else { 1.7 };
         let rows = arm.get("joints").and_then(Value::as_array).cloned().unwrap_or_default();
         let mut joints = Vec::new();
