@@ -18,10 +18,10 @@ use nalgebra::Matrix3;
 use std::f64::consts::PI;
 use stead_model::robot::angles::wrap;
 
-/// The largest turn of the spindle in place, where its axis turns by less: with a larger one a controller, which turns the tool the short
-/// way, can lead a joint of the wrist to an angle a turn away from that of the plan. rad
-const TURN_IN_PLACE: f64 = PI / 2.0;
-/// How far the spindle may turn in place beyond what its axis has to. rad
+/// The largest turn of the spindle between neighbouring points of the whole path, where its axis turns by less: with a larger one a
+/// controller, which turns the tool the short way, can lead a joint of the wrist to an angle a turn away from that of the plan. rad
+const MAX_TURN: f64 = PI / 2.0;
+/// How far the spindle may turn beyond what its axis has to. rad
 const BEYOND_AXIS: f64 = PI / 6.0;
 
 /// The changes of beta that are allowed from one path point to the next, modulo a turn: those within `half` of `middle`.
@@ -88,20 +88,22 @@ impl Problem {
         Turn::between(&points[point - 1].workpiece_from_point(), &points[point].workpiece_from_point())
     }
 
-    /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set. A turn in place has neither length
-    /// nor feed: there it is a quarter turn, or somewhat more than the tool axis turns. rad
+    /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set; not more than a quarter turn, or
+    /// somewhat more than the tool axis turns, which is all that bounds a turn in place: that has neither length nor feed. rad
     pub fn spindle_turn_limit(&self, point: usize) -> Option<f64> {
         self.turn_limit(point, &self.redundancy)
     }
 
     fn turn_limit(&self, point: usize, limits: &Redundancy) -> Option<f64> {
+        let is_set = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
+        let most = || MAX_TURN.max(self.turn(point).tilt + BEYOND_AXIS);
         if self.task.path().turns_in_place(point) {
-            let is_set = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
-            return is_set.then(|| TURN_IN_PLACE.max(self.turn(point).tilt + BEYOND_AXIS));
+            return is_set.then(most);
         }
         let by_length = limits.max_spindle_turn.map(|limit| limit * self.step_length(point));
         let by_time = limits.max_spindle_speed.map(|limit| limit * self.step_time(point));
-        by_length.into_iter().chain(by_time).reduce(f64::min)
+        let limit = by_length.into_iter().chain(by_time).reduce(f64::min)?;
+        Some(if self.task.path().is_thinned() || limit <= MAX_TURN { limit } else { limit.min(most()) })
     }
 
     /// The angle between the tool frames at path points `point - 1` and `point` when beta changes by `change` (rad). rad

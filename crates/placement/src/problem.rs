@@ -343,13 +343,9 @@ impl Problem {
     /// less than half a turn, since a joint that turns farther between two neighbours does not follow the path; a third of a turn where the
     /// tool turns in place. rad
     pub fn joint_steps(&self, point: usize) -> [f64; 6] {
-        if self.task.path().turns_in_place(point) {
-            return [MAX_STEP_IN_PLACE; 6];
-        }
         let time = self.step_time(point);
-        std::array::from_fn(|j| {
-            self.robot.joints()[j].max_speed.map_or(MAX_JOINT_STEP, |speed| MAX_JOINT_STEP.min(speed * time))
-        })
+        let most = if self.task.path().turns_in_place(point) { MAX_STEP_IN_PLACE } else { MAX_JOINT_STEP };
+        std::array::from_fn(|j| self.robot.joints()[j].max_speed.map_or(most, |speed| most.min(speed * time)))
     }
 
     /// The schemes to choose from where the posture may not change: each allowed posture, for every segment; nothing where each

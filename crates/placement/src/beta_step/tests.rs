@@ -58,6 +58,8 @@ proptest! {
         (redundancy.max_beta_rate, redundancy.max_spindle_turn) = (limit(0, 0.01), limit(1, 0.01));
         redundancy.max_spindle_speed = limit(2, 0.01 / redundancy.feed);
         let by_turn = [1, 2].into_iter().filter(|k| given >> k & 1 == 1).map(|k| limits[k]).fold(f64::INFINITY, f64::min);
+        let most = std::f64::consts::FRAC_PI_2.max(problem.axis_turn(1) + std::f64::consts::FRAC_PI_6);
+        let by_turn = if by_turn.is_finite() { by_turn.min(most) } else { by_turn };
         let by_rate = if given & 1 == 1 { limits[0] } else { f64::INFINITY };
         let margin = (by_turn - angle(&problem, 0.3, 0.3 + change)).min(by_rate - change.abs());
         let measured = problem.on_beta_step(1, change).map(|m| m.margin()).fold(f64::INFINITY, f64::min);
