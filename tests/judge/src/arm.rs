@@ -1,6 +1,6 @@
 //! An arm from the rows of its file: frames, Jacobian, compliance. Craig's Denavit-Hartenberg parameters, multiplied out.
 
-use crate::values::{Answer, list, number, pose, required, section, sections, text, texts};
+use crate::values::{Answer, list, number, plain, pose, required, section, sections, text, texts};
 use nalgebra::{DMatrix, Isometry3, Matrix6, Rotation3, Translation3, Vector3, Vector6};
 use std::path::Path;
 use toml::{Table, Value};
@@ -61,12 +61,7 @@ impl Arm {
         let covariance = section(&table, "covariance").and_then(|table| {
             let names = texts(table, "parameters")?;
             let rows = table.get("matrix")?.as_array()?;
-            let entries: Vec<f64> = rows
-                .iter()
-                .filter_map(Value::as_array)
-                .flatten()
-                .filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64)))
-                .collect();
+            let entries: Vec<f64> = rows.iter().filter_map(Value::as_array).flatten().filter_map(plain).collect();
             (entries.len() == names.len() * names.len())
                 .then(|| (names.clone(), DMatrix::from_row_slice(names.len(), names.len(), &entries)))
         });
@@ -210,11 +205,10 @@ fn row(table: &Table) -> Answer<Row> {
     let rad = |key: &str| required(table, key).map(f64::to_radians);
     let compliance = |value: &Value| match value {
         Value::Array(ends) => {
-            let ends: Vec<f64> =
-                ends.iter().filter_map(|end| end.as_float().or(end.as_integer().map(|i| i as f64))).collect();
+            let ends: Vec<f64> = ends.iter().filter_map(plain).collect();
             (ends.len() == 2).then(|| Law::Range(ends[0] * 1e-6, ends[1] * 1e-6))
         }
-        other => other.as_float().or(other.as_integer().map(|i| i as f64)).map(|value| Law::Constant(value * 1e-6)),
+        other => plain(other).map(|value| Law::Constant(value * 1e-6)),
     };
     let law = match number(table, "stiffness_mnm_per_rad") {
         Some(stiffness) => Law::Constant(1e-6 / stiffness),

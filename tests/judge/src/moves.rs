@@ -3,7 +3,7 @@
 use crate::cell::{Body, Cell, Frame, Stand};
 use crate::plan::{Plan, SHAPE_SLACK};
 use crate::solid::Solid;
-use crate::values::{Answer, number, section};
+use crate::values::{Answer, angle_between, number, plain, section};
 use crate::verdict::Verdict;
 use nalgebra::{Isometry3, Rotation3, Vector3};
 use serde_json::Value;
@@ -38,12 +38,7 @@ impl WithTool {
         }
         for pair in tool.and_then(|table| table.get("holder_mm")).and_then(toml::Value::as_array).into_iter().flatten()
         {
-            let entries: Vec<f64> = pair
-                .as_array()
-                .into_iter()
-                .flatten()
-                .filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64)))
-                .collect();
+            let entries: Vec<f64> = pair.as_array().into_iter().flatten().filter_map(plain).collect();
             if let [length, diameter] = entries[..] {
                 let top = height + length * 1e-3;
                 pieces.push(body(
@@ -272,7 +267,7 @@ fn free(
         let lift = to.tool.translation.vector - from.tool.translation.vector;
         let aside = (lift - axis * lift.dot(&axis)).norm();
         verdict.within("a line along the tool axis (m)", || at(["line out", "line in"][which]), aside, 5e-5);
-        let turn = angle_between_poses(&from.tool, &to.tool);
+        let turn = angle_between(&from.tool, &to.tool);
         verdict.within("a line without a turn (rad)", || at(["line out", "line in"][which]), turn, 2e-5);
         if short.is_none() {
             verdict.within(
@@ -318,10 +313,10 @@ fn free(
         }
         // On a direct way the external axes move with the joints; on any other while the arm stands still.
         let (a, b) = (way[place - 1], way[place]);
-        let shares: [[f64; 2]; 2] = match place.cmp(&moved_at) {
-            std::cmp::Ordering::Less => [[0.0, 0.0]; 2],
-            std::cmp::Ordering::Equal => [[0.0, 1.0]; 2],
-            std::cmp::Ordering::Greater => [[1.0, 1.0]; 2],
+        let [stood, stands] = match place.cmp(&moved_at) {
+            std::cmp::Ordering::Less => [0.0, 0.0],
+            std::cmp::Ordering::Equal => [0.0, 1.0],
+            std::cmp::Ordering::Greater => [1.0, 1.0],
         };
         let most = (0..6).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max);
         let farther = positions[0].iter().zip(positions[1]).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
@@ -329,7 +324,7 @@ fn free(
         for step in 0..=steps {
             let share = step as f64 / steps as f64;
             let joints: [f64; 6] = std::array::from_fn(|j| a[j] + (b[j] - a[j]) * share);
-            let moved = shares[0][0] + (shares[0][1] - shares[0][0]) * share;
+            let moved = stood + (stands - stood) * share;
             let here: Vec<f64> = positions[0].iter().zip(positions[1]).map(|(p, q)| p + (q - p) * moved).collect();
             let stand = cell.at(&plan.placement, &joints, &here);
             let (distance, names) = with_tool.nearest(cell, &stand);
@@ -349,8 +344,4 @@ fn free(
             }
         }
     }
-}
-
-fn angle_between_poses(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    crate::values::angle_between(&a.rotation.to_rotation_matrix(), &b.rotation.to_rotation_matrix())
 }

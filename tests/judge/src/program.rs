@@ -284,7 +284,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             (tool.translation.vector - cell.tool.translation.vector).norm(),
             1e-7,
         );
-        let turn = angle_between(&tool.rotation.to_rotation_matrix(), &cell.tool.rotation.to_rotation_matrix());
+        let turn = angle_between(tool, &cell.tool);
         verdict.within("tool of a program (rad)", || name.clone(), turn, 3e-8);
     }
     let mut next = 0_usize;
@@ -325,7 +325,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
         let in_part = still.part.inverse() * tool;
         let off = |i: usize| {
             let wanted = plan.wanted(i);
-            let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &in_part.rotation.to_rotation_matrix());
+            let turn = angle_between(&wanted, &in_part);
             ((wanted.translation.vector - in_part.translation.vector).norm(), turn)
         };
         let is_point = |i: usize| {
@@ -341,7 +341,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             let wanted = plan.wanted(i);
             let lift = in_part.translation.vector - wanted.translation.vector;
             let axis = -(wanted.rotation * Vector3::z());
-            let turn = angle_between(&wanted.rotation.to_rotation_matrix(), &in_part.rotation.to_rotation_matrix());
+            let turn = angle_between(&wanted, &in_part);
             (lift - axis * lift.dot(&axis)).norm() < 2e-5 && lift.dot(&axis) > 0.0 && turn < 1.8e-4
         };
         let stands_at = if is_next {

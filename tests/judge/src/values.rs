@@ -6,7 +6,8 @@ use toml::{Table, Value};
 /// What could be read, or a sentence.
 pub(crate) type Answer<T> = Result<T, String>;
 
-fn plain(value: &Value) -> Option<f64> {
+/// The number that a value is, whole or not.
+pub(crate) fn plain(value: &Value) -> Option<f64> {
     match value {
         Value::Float(number) => Some(*number),
         Value::Integer(number) => Some(*number as f64),
@@ -95,9 +96,9 @@ pub(crate) fn placed(rotation: &Rotation3<f64>, place: &Vector3<f64>) -> Isometr
     Isometry3::from_parts(Translation3::from(*place), UnitQuaternion::from_rotation_matrix(rotation))
 }
 
-/// The angle by which one rotation has to turn to become another. rad
-pub(crate) fn angle_between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
-    let turn = (a.inverse() * b).into_inner();
+/// The angle by which one pose has to turn to become another. rad
+pub(crate) fn angle_between(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    let turn = (a.rotation.inverse() * b.rotation).to_rotation_matrix().into_inner();
     let sine =
         Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]).norm();
     sine.atan2(turn.trace() - 1.0)

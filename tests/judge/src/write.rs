@@ -1,5 +1,8 @@
 //! The files of a run for a choice of options.
 
+mod shapes;
+mod task;
+
 use crate::cover::{Choice, Random, value_of};
 use crate::values::{Answer, number, placed};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
@@ -258,7 +261,10 @@ impl Writer<'_> {
         let spindle = Rotation3::from_matrix_unchecked(matrix);
         self.tool = placed(&spindle, &tcp);
         let (xyz, turned) = (vector(&(tcp * 1e3)), angles(self.key, &spindle));
-        self.line(format_args!("\n[spindle]\nxyz_mm = {xyz}\n{turned}\nmass_kg = 20.0\ncentre_of_mass_mm = [0.0, 0.0, 120.0]\ninertia_kg_m2 = {{ xx = 0.4, yy = 0.4, zz = 0.1 }}"));
+        self.line(format_args!(
+            "\n[spindle]\nxyz_mm = {xyz}\n{turned}\nmass_kg = 20.0\ncentre_of_mass_mm = [0.0, 0.0, 120.0]\n\
+             inertia_kg_m2 = {{ xx = 0.4, yy = 0.4, zz = 0.1 }}"
+        ));
         let middle = self.part * 1e3;
         let wide = if self.of("cell") == "range" { 60.0 } else { 0.0 };
         let span = |at: f64, half: f64| list([(at - half).round(), (at + half).round()]);
@@ -288,12 +294,14 @@ impl Writer<'_> {
         let at = vector(&(self.part * 1e3).map(f64::round));
         let rail = |name: &str, carries: &str, mode: &str| {
             format!(
-                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"rail\"\ncarries = \"{carries}\"\ndirection = [0.2, 1.0, 0.0]\nrange_mm = [-180.0, 150.0]\nspeed_mm_per_s = 400.0\nuse = \"{mode}\""
+                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"rail\"\ncarries = \"{carries}\"\n\
+                 direction = [0.2, 1.0, 0.0]\nrange_mm = [-180.0, 150.0]\nspeed_mm_per_s = 400.0\nuse = \"{mode}\""
             )
         };
         let table = |name: &str, carries: &str, axis: &str, at: &str, most: f64, mode: &str| {
             format!(
-                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"turntable\"\ncarries = \"{carries}\"\naxis = {axis}\nxyz_mm = {at}\nrange_deg = {}\nspeed_deg_per_s = 50.0\nuse = \"{mode}\"",
+                "\n[[external_axis]]\nname = \"{name}\"\nkind = \"turntable\"\ncarries = \"{carries}\"\n\
+                 axis = {axis}\nxyz_mm = {at}\nrange_deg = {}\nspeed_deg_per_s = 50.0\nuse = \"{mode}\"",
                 list([-most, most])
             )
         };
@@ -390,7 +398,8 @@ impl Writer<'_> {
         match self.of("load") {
             "forces" => text.push_str("\n[forces]\nfeed_n = -150.0\nnormal_n = -90.0\naxis_n = 40.0\n"),
             "forces by segment" => text.push_str(
-                "\n[forces]\nfeed_n = -150.0\nnormal_n = -90.0\naxis_n = 40.0\n\n[[forces.segment]]\nnumber = 1\nfeed_n = 60.0\nnormal_n = 200.0\naxis_n = 10.0\n",
+                "\n[forces]\nfeed_n = -150.0\nnormal_n = -90.0\naxis_n = 40.0\n\n\
+                 [[forces.segment]]\nnumber = 1\nfeed_n = 60.0\nnormal_n = 200.0\naxis_n = 10.0\n",
             ),
             load @ ("conventional" | "climb") => {
                 let _ = writeln!(
@@ -411,273 +420,4 @@ impl Writer<'_> {
         }
         self.run.push_str(&text);
     }
-
-    /// The tool path, about the origin of the part, some 120 mm wide.
-    fn task(&mut self) -> String {
-        struct Step {
-            segment: usize,
-            place: Vector3<f64>,
-            feed: Vector3<f64>,
-            axis: Vector3<f64>,
-            scored: bool,
-        }
-        let mut steps: Vec<Step> = Vec::new();
-        let mut add = |segment: usize, place: Vector3<f64>, feed: Vector3<f64>, axis: Vector3<f64>| {
-            steps.push(Step { segment, place, feed: feed.normalize(), axis: axis.normalize(), scored: true });
-        };
-        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
-        match self.of("path") {
-            "raster" => (0..5).for_each(|k| add(1, x * (25.0 * f64::from(k) - 50.0) - y * 20.0, x, z)),
-            "contour" => (0..4).for_each(|k| add(1, x * (20.0 * f64::from(k) - 60.0), x, z)),
-            "tilted" => (0..5).for_each(|k| {
-                let k = f64::from(k);
-                add(1, x * (20.0 * k - 50.0) + z * k * k, x, z + x * (0.06 * k - 0.1) + y * 0.15);
-            }),
-            _ => (0..7).for_each(|k| {
-                add(1, x * (15.0 * f64::from(k) - 50.0) + y * f64::from(k * k), x + y * 0.1 * f64::from(k), z)
-            }),
-        }
-        match self.of("path") {
-            "raster" => (0..5).for_each(|k| add(2, x * (50.0 - 25.0 * f64::from(k)) + y * 20.0, -x, z)),
-            "contour" => {
-                (0..4).for_each(|k| add(2, y * (20.0 * f64::from(k)), y, z));
-                (0..5).for_each(|k| {
-                    let angle = f64::from(k) * 0.35;
-                    add(
-                        3,
-                        (x * (angle.cos() - 1.0) + y * angle.sin()) * 50.0 + y * 60.0,
-                        y * angle.cos() - x * angle.sin(),
-                        z,
-                    );
-                });
-            }
-            "tilted" => (0..4).for_each(|k| add(2, y * (20.0 * f64::from(k)) - z * 5.0, y, z - y * 0.2)),
-            _ => {}
-        }
-        match self.of("unscored") {
-            "plunge" => {
-                let mut at = 0;
-                while at < steps.len() {
-                    if at == 0 || steps[at].segment != steps[at - 1].segment {
-                        for height in [10.0, 20.0] {
-                            let first = &steps[at];
-                            let place = first.place + first.axis * height;
-                            let above = Step {
-                                segment: first.segment,
-                                place,
-                                feed: first.feed,
-                                axis: first.axis,
-                                scored: false,
-                            };
-                            steps.insert(at, above);
-                        }
-                        at += 2;
-                    }
-                    at += 1;
-                }
-            }
-            "turn in place" => {
-                if let Some(last) = steps.last() {
-                    let (segment, place, feed) = (last.segment, last.place, last.feed);
-                    let aside = last.axis.cross(&feed);
-                    let axis = (last.axis + aside * 0.12).normalize();
-                    steps.push(Step { segment, place, feed, axis, scored: false });
-                    steps.push(Step { segment, place: place + feed * 15.0, feed, axis, scored: true });
-                }
-            }
-            _ => {}
-        }
-        let load = self.of("load");
-        let (has_forces, has_moments) = (matches!(load, "task" | "moments"), load == "moments");
-        let (has_feeds, has_scored) = (self.of("feeds") == "task", self.of("unscored") != "none");
-        let mut text =
-            "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z".to_owned();
-        for (is_there, names) in [
-            (has_forces, ",force_x_n,force_y_n,force_z_n"),
-            (has_moments, ",moment_x_nm,moment_y_nm,moment_z_nm"),
-            (has_feeds, ",feed_mm_per_s"),
-            (has_scored, ",scored"),
-        ] {
-            text.push_str(if is_there { names } else { "" });
-        }
-        text.push('\n');
-        for step in &steps {
-            let normal = (step.axis + step.feed.cross(&step.axis) * 0.5).normalize();
-            let mut numbers: Vec<f64> =
-                [step.place, step.feed, step.axis, normal].iter().flat_map(|v| [v.x, v.y, v.z]).collect();
-            if has_forces {
-                numbers.extend([-120.0, 80.0, 60.0].map(|force| force * self.random.between(0.5, 1.5)));
-            }
-            if has_moments {
-                numbers.extend([3.0, -2.0, 1.0].map(|moment| moment * self.random.between(0.5, 1.5)));
-            }
-            if has_feeds {
-                numbers.push(self.random.between(15.0, 45.0).round());
-            }
-            let words: Vec<String> = numbers.iter().map(|number| format!("{number:.9}")).collect();
-            let _ = write!(text, "{},{}", step.segment, words.join(","));
-            let _ = writeln!(
-                text,
-                "{}",
-                if !has_scored {
-                    ""
-                } else if step.scored {
-                    ",1"
-                } else {
-                    ",0"
-                }
-            );
-        }
-        text
-    }
-
-    /// Surroundings, and a mesh file where they name one.
-    fn shapes(&mut self) -> (String, Option<(&'static str, Vec<u8>)>) {
-        let kind = self.of("shapes");
-        if kind == "none" {
-            return (String::new(), None);
-        }
-        let key = self.key;
-        let mut text = String::new();
-        let mut shape =
-            |name: &str, attached: &str, form: &str, place: Vector3<f64>, turned: Option<Rotation3<f64>>| {
-                let turned = turned.map_or(String::new(), |rotation| format!("{}\n", angles(key, &rotation)));
-                let _ = writeln!(
-                    text,
-                    "[[shape]]\nname = \"{name}\"\nattached = \"{attached}\"\n{form}\nxyz_mm = {}\n{turned}",
-                    vector(&(place * 1e3))
-                );
-            };
-        let spindle = (self.tool * Point3::new(0.0, 0.0, -0.19)).coords;
-        let along = self.tool.rotation.to_rotation_matrix();
-        let mut mesh = None;
-        if kind == "hull" {
-            shape("spindle", "flange", "hull = \"body.obj\"\nunit = \"m\"", spindle, Some(along));
-            mesh = Some(("body.obj", block_obj([0.07, 0.07, 0.18]).into_bytes()));
-        } else {
-            shape("spindle", "flange", "capsule_mm = { radius = 40.0, length = 120.0 }", spindle, Some(along));
-        }
-        if kind == "mesh" {
-            shape("part", "workpiece", "mesh = \"part.stl\"", Vector3::new(0.0, 0.01, -0.052), None);
-            mesh = Some(("part.stl", block_stl([170.0, 190.0, 80.0])));
-        } else {
-            shape("part", "workpiece", "box_mm = [170.0, 190.0, 80.0]", Vector3::new(0.0, 0.01, -0.052), None);
-        }
-        shape("table", "workpiece", "box_mm = [260.0, 260.0, 30.0]", Vector3::new(0.0, 0.0, -0.12), None);
-        if kind == "cell" {
-            let [_, _, upper, forearm] = self.sizes;
-            let arm = format!("capsule_mm = {{ radius = 110.0, length = {:.1} }}", upper * 1e3);
-            shape("upper arm", "link_2", &arm, Vector3::new(upper / 2.0, 0.0, 0.0), Some(about(Vector3::y(), 90.0)));
-            let arm = format!("cylinder_mm = {{ radius = 90.0, length = {:.1} }}", forearm * 400.0);
-            shape("forearm", "link_4", &arm, Vector3::new(0.0, 0.0, -0.55 * forearm), None);
-            let floor = self.part.z - 0.55;
-            shape("floor", "base", "box_mm = [5000.0, 5000.0, 60.0]", Vector3::new(self.part.x, 0.0, floor), None);
-            shape(
-                "fence",
-                "base",
-                "box_mm = [2500.0, 30.0, 1500.0]",
-                Vector3::new(self.part.x, 1.4, floor + 0.8),
-                Some(about(Vector3::z(), 8.0)),
-            );
-            shape(
-                "clamp",
-                "workpiece",
-                "cylinder_mm = { radius = 12.0, length = 40.0 }",
-                Vector3::new(0.1, 0.11, 0.01),
-                None,
-            );
-        }
-        if let Some(axis) = match self.of("axes") {
-            axes if axes.starts_with("table")
-                || axes == "held"
-                || axes.ends_with("table") && axes.starts_with("rail") =>
-            {
-                Some("turn")
-            }
-            "tilt and turn" => Some("tilt"),
-            "part rail continuous" => Some("slide"),
-            _ => None,
-        } {
-            shape("carrier", axis, "box_mm = [300.0, 300.0, 40.0]", self.part - Vector3::z() * 0.29, None);
-        }
-        if kind == "cell" {
-            let far = vector(&((self.part - Vector3::new(0.0, 1.6, 0.0)) * 1e3));
-            let _ = writeln!(
-                text,
-                "[[keep_out]]\nname = \"door\"\npoints = [\"tool\", \"wrist\", \"elbow\"]\nhalf_space = {{ xyz_mm = {far}, normal = [0.0, -1.0, 0.0] }}\n"
-            );
-            let place = vector(&((self.part + Vector3::new(0.3, 0.5, 0.3)) * 1e3));
-            let turned = angles(key, &about(Vector3::z(), 20.0));
-            let _ = writeln!(
-                text,
-                "[[keep_out]]\nname = \"cabinet\"\npoints = [\"wrist\", \"elbow\"]\nbox_mm = [200.0, 200.0, 600.0]\nxyz_mm = {place}\n{turned}\n"
-            );
-        }
-        let clearance = if kind == "cell" { 4.0 } else { 6.0 };
-        let ignore = match kind {
-            "cell" => {
-                "[[\"link_2\", \"link_4\"], [\"table\", \"carrier\"], [\"part\", \"carrier\"], [\"floor\", \"link_2\"]]"
-            }
-            _ => "[[\"table\", \"carrier\"], [\"part\", \"carrier\"]]",
-        };
-        let has_carrier = text.contains("\"carrier\"");
-        let ignore = if has_carrier {
-            ignore.to_owned()
-        } else {
-            ignore
-                .replace("[\"table\", \"carrier\"], [\"part\", \"carrier\"]", "")
-                .replace(", ,", ",")
-                .replace("[, ", "[")
-        };
-        let ignore = if ignore == "[]" { String::new() } else { format!("ignore = {ignore}\n") };
-        let _ = writeln!(text, "[collision]\nclearance_mm = {clearance}\n{ignore}");
-        (text, mesh)
-    }
-}
-
-/// The corners of a block about the origin, and its twelve triangles, outwards.
-fn block(edges: [f64; 3]) -> ([Vector3<f64>; 8], [[usize; 3]; 12]) {
-    let corner =
-        |k: usize| Vector3::from_fn(|axis, _| if k >> axis & 1 == 1 { edges[axis] / 2.0 } else { -edges[axis] / 2.0 });
-    let triangles = [
-        [0, 2, 1],
-        [1, 2, 3],
-        [4, 5, 6],
-        [5, 7, 6],
-        [0, 1, 4],
-        [1, 5, 4],
-        [2, 6, 3],
-        [3, 6, 7],
-        [0, 4, 2],
-        [2, 4, 6],
-        [1, 3, 5],
-        [3, 7, 5],
-    ];
-    (std::array::from_fn(corner), triangles)
-}
-
-fn block_stl(edges: [f64; 3]) -> Vec<u8> {
-    let (corners, triangles) = block(edges);
-    let mut bytes = vec![b' '; 80];
-    bytes.extend((triangles.len() as u32).to_le_bytes());
-    for triangle in triangles {
-        bytes.extend([0_u8; 12]);
-        for corner in triangle {
-            corners[corner].iter().for_each(|value| bytes.extend((*value as f32).to_le_bytes()));
-        }
-        bytes.extend([0_u8; 2]);
-    }
-    bytes
-}
-
-fn block_obj(edges: [f64; 3]) -> String {
-    let (corners, triangles) = block(edges);
-    let mut text = String::new();
-    corners.iter().for_each(|c| {
-        let _ = writeln!(text, "v {} {} {}", c.x, c.y, c.z);
-    });
-    triangles.iter().for_each(|t| {
-        let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
-    });
-    text
 }

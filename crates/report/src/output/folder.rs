@@ -7,6 +7,7 @@ use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use stead_format::input::InputFile;
+use stead_format::manifest::ResultSet;
 
 /// The name of the lock file, which is there as long as a run writes.
 const LOCK: &str = ".stead.lock";
@@ -86,12 +87,7 @@ impl Folder {
     /// # Errors
     /// As [`Folder::create`].
     pub fn beside_finished(&self, command: &str, is_interrupted: bool) -> Result<Option<Self>, ReportError> {
-        if !is_interrupted || self.keeps_partial {
-            return Ok(None);
-        }
-        let manifest = transaction::manifest_in(&self.path)?;
-        let is_finished = manifest.of(command).is_some_and(|set| set.complete && !set.interrupted);
-        is_finished.then(|| Self::create(&self.interrupted_path())).transpose()
+        (is_interrupted && self.shields(command, |_| true)?).then(|| Self::create(&self.interrupted_path())).transpose()
     }
 
     /// Whether a finished run of a command has left this file, too, among its results here, so that an interrupted run shall not replace
@@ -100,9 +96,17 @@ impl Folder {
     /// # Errors
     /// [`ReportError`] for a manifest that cannot be read.
     pub fn has_finished(&self, command: &str, file: &str) -> Result<bool, ReportError> {
+        self.shields(command, |set| set.file(file).is_some())
+    }
+
+    /// Whether finished results of a command, of which something else holds, are here and shall not be replaced by those of an interrupted
+    /// run.
+    fn shields(&self, command: &str, holds: impl Fn(&ResultSet) -> bool) -> Result<bool, ReportError> {
+        if self.keeps_partial {
+            return Ok(false);
+        }
         let manifest = transaction::manifest_in(&self.path)?;
-        let set = manifest.of(command).filter(|set| set.complete && !set.interrupted && !self.keeps_partial);
-        Ok(set.is_some_and(|set| set.file(file).is_some()))
+        Ok(manifest.of(command).is_some_and(|set| set.complete && !set.interrupted && holds(set)))
     }
 
     /// The folder beside this one for results of an interrupted run; they take the place of whatever is in it.
