@@ -1,6 +1,7 @@
-//! What shapes cost: the whole job of the published path in the shipped cell, with its shapes and without: `cargo bench --bench collision`.
+//! What shapes cost: the whole job of a shipped cell, with its shapes and without, for the published path and for a robot on a rail:
+//! `cargo bench --bench collision`.
 //!
-//! Both jobs are the same but for the surroundings: quote their ratio.
+//! The two jobs of a cell are the same but for the surroundings: quote their ratio.
 
 #![allow(clippy::expect_used, reason = "a benchmark of shipped files")]
 
@@ -17,8 +18,16 @@ fn main() {
 
 #[divan::bench(args = [false, true], sample_count = 5, sample_size = 1)]
 fn job(bencher: Bencher, with_shapes: bool) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/collision.toml");
-    let run = read_run(&file).expect("the shipped run is valid");
+    bench_job(bencher, "configs/collision.toml", with_shapes);
+}
+
+#[divan::bench(args = [false, true], sample_count = 3, sample_size = 1)]
+fn rail_job(bencher: Bencher, with_shapes: bool) {
+    bench_job(bencher, "configs/rail-panel.toml", with_shapes);
+}
+
+fn bench_job(bencher: Bencher, file: &str, with_shapes: bool) {
+    let run = read_run(&Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).expect("the shipped run is valid");
     let scene = run.problem.scene.clone().filter(|_| with_shapes);
     let problem = Problem { scene, ..run.problem };
     bencher.bench_local(|| place(black_box(&problem), &run.search, &run.transfer, &Monitor::silent()));
