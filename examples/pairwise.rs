@@ -1,5 +1,5 @@
-//! `cargo run --release --example pairwise -- --runs 2000 [--from SEED] [--keep FOLDER]`: runs over all options, pair by pair, held against
-//! the judge.
+//! `cargo run --release --example pairwise -- --runs 2000 [--from SEED] [--only 7,12] [--keep FOLDER]`: runs over all
+//! options, pair by pair, held against the judge; with `--only`, those of these numbers alone.
 
 #![allow(clippy::print_stdout, reason = "an example prints what it finds")]
 
@@ -7,19 +7,21 @@
 mod drive;
 
 use drive::{Outcome, drive};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use stead_judge::cover::{cover, pairs, words};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut wanted, mut seed, mut keep) = (100_usize, 1_u64, None);
+    let mut only: Option<BTreeSet<usize>> = None;
     let mut arguments = std::env::args().skip(1);
     while let (Some(name), Some(value)) = (arguments.next(), arguments.next()) {
         match name.as_str() {
             "--runs" => wanted = value.parse()?,
             "--from" => seed = value.parse()?,
+            "--only" => only = Some(value.split(',').map(str::parse).collect::<Result<_, _>>()?),
             "--keep" => keep = Some(PathBuf::from(value)),
-            _ => return Err(format!("{name}: not known; --runs, --from, --keep").into()),
+            _ => return Err(format!("{name}: not known; --runs, --from, --only, --keep").into()),
         }
     }
     let (mut judged, mut not_placed, mut failed, mut exported, mut not_exported, mut disagreeing) = (0, 0, 0, 0, 0, 0);
@@ -33,6 +35,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 break 'all;
             }
             number += 1;
+            if only.as_ref().is_some_and(|only| !only.contains(&number)) {
+                continue;
+            }
             let temporary = tempfile::tempdir()?;
             let folder = keep.as_ref().map_or(temporary.path().to_path_buf(), |keep| keep.join(format!("{number:04}")));
             std::fs::create_dir_all(&folder)?;

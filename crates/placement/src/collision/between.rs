@@ -7,9 +7,9 @@ use stead_cell::{Attachment, PairKind, Poses, Proximity, Scene};
 use stead_model::robot::{Pose, Posture, angles::wrap};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
-/// Steps of joints 1 to 3, and of joints 4 to 6, over which a straight move of the joints leaves the straight line of the tool by a few
-/// millimetres at the most. rad
-const STEPS: [f64; 2] = [0.1, 0.2];
+/// Steps of joints 1 to 3, and of joints 4 to 6, over which a straight move of the joints leaves the straight line of the tool by less
+/// than a tenth of a millimetre. rad
+const STEPS: [f64; 2] = [0.03, 0.06];
 
 impl Problem {
     /// A pair that comes too near on the move to a path point from the one before, in a posture. Both ends are given by joint angles (rad) and
