@@ -1,4 +1,5 @@
-//! Collisions of states and plans: whether the shapes of the scene keep their distance.
+//! Collisions of states and plans: whether the shapes of the scene keep their distance, and whether the arm can follow the moves between
+//! points at all.
 //!
 //! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made as if nothing stood around, and
 //! looked at; what hits is forbidden, and the plan made again ([`crate::redundancy`]). Forbidding states makes no plan cheaper, so a
@@ -7,21 +8,31 @@
 use crate::constraints::Measured;
 use crate::problem::{Placement, Problem};
 use crate::segment_plan::SegmentPlan;
+use crate::straight_move::LineEnd;
 use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_cell::{Clearance, PairKind, Poses, Proximity, Scene};
 use stead_model::external_axis::{Carried, carried};
 use stead_model::robot::Posture;
 
-/// A state of a plan in which two shapes are nearer than they may be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanHit {
-    /// The path point; of a hit between two points the later one.
+/// A state of a plan, or a move between two, that may not be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanFault {
+    /// The path point; of a move between two points the later one.
     pub point: usize,
     /// Whether it is on the way from the point before.
     pub is_between: bool,
-    /// Number of the pair in the scene.
-    pub pair: usize,
+    /// What it is.
+    pub fault: Fault,
+}
+
+/// What is wrong with a state, or with a move between two.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// Two shapes are nearer than they may be: the number of the pair in the scene.
+    Hit(usize),
+    /// The arm cannot follow the straight move of the tool.
+    Unfollowed(LineEnd),
 }
 
 /// The least room at the points of a plan.
@@ -142,49 +153,46 @@ impl Problem {
         scene.next_hit(known, &poses, &[PairKind::ToolWorkpiece]).is_some()
     }
 
-    /// The states of a segment's plan that hit, and with `with_motions` also the moves from point to point.
-    pub fn plan_hits(&self, placement: &Placement, plan: &SegmentPlan, with_motions: bool) -> Vec<PlanHit> {
-        let posture = with_motions.then_some(plan.posture);
-        self.path_hits(placement, &plan.points, &plan.joints, &PairKind::OF_STATES, posture).collect()
+    /// The states of a segment's plan that hit, and with `with_moves` also the moves from point to point that hit or cannot be followed,
+    /// unless the path is a subset of points.
+    pub fn plan_faults(&self, placement: &Placement, plan: &SegmentPlan, with_moves: bool) -> Vec<PlanFault> {
+        let posture = (with_moves && !self.task.path().is_thinned()).then_some(plan.posture);
+        self.path_faults(placement, &plan.points, &plan.joints, &PairKind::OF_STATES, posture).collect()
     }
 
     /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other; moves from point to
     /// point are looked at where a posture is given.
-    pub(crate) fn path_hits(
+    pub(crate) fn path_faults(
         &self,
         placement: &Placement,
         points: &Span<usize>,
         joints: &[[f64; 6]],
         kinds: &'static [PairKind],
         posture: Option<Posture>,
-    ) -> impl Iterator<Item = PlanHit> {
+    ) -> impl Iterator<Item = PlanFault> {
+        let scene = self.scene.as_deref();
         let mut known = Proximity::default();
-        // Where all stands at the point before, if nothing hits there.
-        let mut free_before: Option<Poses> = None;
-        let hit = move |(place, point): (usize, usize)| {
-            let scene = self.scene.as_deref()?;
-            let poses = self.poses(scene, point, placement, &joints[place]);
-            let before = free_before.zip(posture);
-            let between = before.and_then(|(before, posture)| {
-                let ends = [(joints[place - 1], before), (joints[place], poses)];
-                self.move_hit(scene, placement, (point, posture), ends, &mut known)
+        // Where all stands at the point before; whether nothing hits there.
+        let mut before: (Option<Poses>, bool) = (None, false);
+        let fault = move |(place, point): (usize, usize)| {
+            let poses = scene.map(|scene| (scene, self.poses(scene, point, placement, &joints[place])));
+            let between = posture.filter(|_| before.1).and_then(|posture| {
+                let ends = [joints[place - 1], joints[place]];
+                let stands = poses.as_ref().zip(before.0.as_ref()).map(|((scene, end), start)| (*scene, [start, end]));
+                self.move_fault(placement, (point, posture), ends, stands, &mut known)
             });
-            let pair = scene.next_hit(&mut known, &poses, kinds);
-            free_before = pair.is_none().then_some(poses);
-            match (pair, between) {
-                (Some(pair), _) => Some(PlanHit { point, is_between: false, pair }),
-                (None, Some(pair)) => Some(PlanHit { point, is_between: true, pair }),
-                (None, None) => None,
-            }
+            let pair = poses.as_ref().and_then(|(scene, poses)| scene.next_hit(&mut known, poses, kinds));
+            before = (poses.map(|(_, poses)| poses), pair.is_none());
+            let is_between = pair.is_none();
+            pair.map(Fault::Hit).or(between).map(|fault| PlanFault { point, is_between, fault })
         };
-        points.clone().enumerate().filter_map(hit)
+        points.clone().enumerate().filter_map(fault)
     }
 
-    /// Whether nothing hits along the plans of all segments, between points too.
+    /// Whether nothing hits along the plans of all segments, between points too, and the arm can follow all moves between points.
     pub fn is_free(&self, placement: &Placement, plans: &[SegmentPlan]) -> bool {
-        self.scene.is_none()
-            || (self.placement_hit(placement).is_none()
-                && plans.iter().all(|plan| self.plan_hits(placement, plan, true).is_empty()))
+        self.placement_hit(placement).is_none()
+            && plans.iter().all(|plan| self.plan_faults(placement, plan, true).is_empty())
     }
 }
 

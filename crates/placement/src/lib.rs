@@ -49,6 +49,7 @@ pub mod sense;
 pub mod sensitivity;
 pub mod settings;
 pub mod setup;
+mod straight_move;
 pub mod symmetry;
 pub mod tool_scene;
 pub mod transfer;

@@ -8,7 +8,7 @@ use super::feed::{CutFeed, cut_feed};
 use super::problem::{Placement, Problem};
 use super::segment_plan::SegmentPlan;
 use super::settings::TransferSettings;
-use super::way::{Way, way};
+use super::way::{LineEnd, Way, way};
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 
 /// How long the cut takes.
@@ -20,6 +20,8 @@ pub struct Cycle {
     pub cutting: f64,
     /// Moves between segments, in order, one fewer than segments; zero where nothing changes.
     pub transfers: Vec<Transfer>,
+    /// Path points to which the arm cannot follow the straight move of the tool, and why.
+    pub unfollowed: Vec<(usize, LineEnd)>,
 }
 
 /// A joint move from the end of one segment to the start of the next, from rest to rest.
@@ -64,7 +66,8 @@ pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettin
             Some(Transfer { after_segment: index + 1, duration, travel: travel.fold(0.0, f64::max), way })
         })
         .collect();
-    Cycle { feed, cutting, transfers }
+    let unfollowed = plans.iter().flat_map(|plan| problem.unfollowed_moves(placement, plan)).collect();
+    Cycle { feed, cutting, transfers, unfollowed }
 }
 
 /// The time of a segment (from 0): each move with its feed, or with the highest that the arm holds along the segment (m/s) where that is

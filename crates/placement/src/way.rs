@@ -5,13 +5,14 @@
 
 use crate::problem::{Placement, Problem};
 use crate::segment_plan::SegmentPlan;
+pub use crate::straight_move::LineEnd;
 use crate::tool_scene::ToolScene;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 use stead_cell::{PairKind, Scene};
-use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
+use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::{Pose, Posture};
 use stead_model::task::PathPoint;
 
@@ -39,30 +40,6 @@ pub struct ShortLine {
     pub wanted: f64,
     /// What ends it.
     pub end: LineEnd,
-}
-
-/// What ends a line along the tool axis.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LineEnd {
-    /// The arm does not reach farther in its posture.
-    OutOfReach,
-    /// A joint (from 1) is at its limit.
-    JointLimit(usize),
-    /// A joint (from 1) would swing round a singularity.
-    Swing(usize),
-    /// Two shapes are too near.
-    Hit(Arc<[String; 2]>),
-}
-
-impl std::fmt::Display for LineEnd {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::OutOfReach => write!(f, "the arm does not reach farther in its posture"),
-            Self::JointLimit(joint) => write!(f, "joint {joint} is at its limit"),
-            Self::Swing(joint) => write!(f, "joint {joint} would swing round a singularity"),
-            Self::Hit(names) => write!(f, "{} and {} come too near", names[0], names[1]),
-        }
-    }
 }
 
 /// Lifts beyond the retraction that are tried. m
@@ -290,24 +267,22 @@ impl<'a> Space<'a> {
         let mut last = joints;
         for step in 1..=steps {
             let share = |step: usize| wanted * step as f64 / steps as f64;
-            let target = Pose { translation: flange.translation + axis * share(step), ..flange };
-            let next =
-                self.problem.robot.inverse(&target, posture).map_err(|_| LineEnd::OutOfReach).and_then(|found| {
-                    let next: [f64; 6] = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
-                    let is_beyond = |j: &usize| {
-                        let joint = &self.problem.robot.joints()[*j];
-                        !(joint.min - margin..=joint.max + margin).contains(&next[*j])
-                    };
-                    let swings = |j: &usize| (next[*j] - last[*j]).abs() > MAX_SWING;
-                    match ((0..6).find(swings), (0..6).find(is_beyond)) {
-                        (Some(joint), _) => Err(LineEnd::Swing(joint + 1)),
-                        (None, Some(joint)) => Err(LineEnd::JointLimit(joint + 1)),
-                        (None, None) => match self.hit_in(self.scene, (&last, point), (&next, point)) {
-                            Some(names) => Err(LineEnd::Hit(names)),
-                            None => Ok(next),
-                        },
-                    }
-                });
+            let flange_at = |part: f64| {
+                let along = share(step - 1) + part * (share(step) - share(step - 1));
+                Pose { translation: flange.translation + axis * along, ..flange }
+            };
+            let next = self.problem.follow((posture, &last), 1, flange_at, |_, _| None::<()>).and_then(|(next, _)| {
+                let swings = |j: &usize| (next[*j] - last[*j]).abs() > MAX_SWING;
+                let is_beyond = |j: &usize| self.problem.robot.joints()[*j].is_beyond(next[*j], margin);
+                match ((0..6).find(swings), (0..6).find(is_beyond)) {
+                    (Some(joint), _) => Err(LineEnd::Swing(joint + 1)),
+                    (None, Some(joint)) => Err(LineEnd::JointLimit(joint + 1)),
+                    (None, None) => match self.hit_in(self.scene, (&last, point), (&next, point)) {
+                        Some(names) => Err(LineEnd::Hit(names)),
+                        None => Ok(next),
+                    },
+                }
+            });
             match next {
                 Ok(next) => {
                     last = next;

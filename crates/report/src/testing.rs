@@ -189,7 +189,7 @@ impl Grid {
             segments: (0..5).map(|k| (placement_sense == Sense::Min).then(|| limit(k))).collect(),
             external_axes: Vec::new(),
         };
-        let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect() };
+        let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect(), unfollowed: Vec::new() };
         let (placement, setup) = (self.placement, problem().setup.clone());
         Case {
             placement_sense,

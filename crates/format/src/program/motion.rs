@@ -122,6 +122,9 @@ const APPROACH_STEPS: i32 = 10;
 /// A joint that turns farther in one of these steps passes a singularity. rad
 const MAX_APPROACH_STEP: f64 = 0.5;
 
+/// Joint angles from the rounded beta and pose of a plan's row differ from its own by no more than this. rad
+const PLAN_ROUNDING: f64 = 1e-5;
+
 /// The frames of a program with its poses given in this frame of the cell, where the robot's root is known.
 pub(super) fn frames(
     problem: &Problem,
@@ -287,7 +290,19 @@ impl Maker<'_> {
     fn exact(&self, point: usize, target: &Target) -> Result<At, ProgramError> {
         let unreached = |reason| ProgramError::Unreached { point, way: String::new(), reason, most: None };
         let joints = self.joints(&target.base_from_tool, target.posture, &target.joints).map_err(unreached)?;
-        Ok(At { base_from_tool: target.base_from_tool, joints })
+        Ok(At { base_from_tool: target.base_from_tool, joints: self.in_limits(joints) })
+    }
+
+    /// The same joint angles (rad), but at a limit where they are beyond it by no more than the rounding of the plan's digits.
+    fn in_limits(&self, joints: [f64; 6]) -> [f64; 6] {
+        let margin = self.problem.constraints.joint_margin;
+        std::array::from_fn(|j| {
+            let joint = &self.problem.robot.joints()[j];
+            match joint.is_beyond(joints[j], margin + PLAN_ROUNDING) {
+                true => joints[j],
+                false => joints[j].clamp(joint.min - margin, joint.max + margin),
+            }
+        })
     }
 
     /// The farthest in whole mm, up to that asked for, that the tool can be retracted before and after every segment, but for those with a
@@ -353,10 +368,8 @@ impl Maker<'_> {
 fn beyond_limit(problem: &Problem, joints: &[f64; 6]) -> Option<String> {
     let margin = problem.constraints.joint_margin;
     problem.robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
-        let (min, max) = (joint.min - margin, joint.max + margin);
-        let is_within = (min - ANGLE_ROUNDING..=max + ANGLE_ROUNDING).contains(angle);
-        let [angle, min, max] = [*angle, min, max].map(f64::to_degrees);
-        (!is_within)
-            .then(|| format!("joint {number} would stand at {angle:.3} deg, and goes from {min:.3} to {max:.3}"))
+        let is_beyond = joint.is_beyond(*angle, margin + ANGLE_ROUNDING);
+        let [angle, min, max] = [*angle, joint.min - margin, joint.max + margin].map(f64::to_degrees);
+        is_beyond.then(|| format!("joint {number} would stand at {angle:.3} deg, and goes from {min:.3} to {max:.3}"))
     })
 }

@@ -5,6 +5,7 @@ use crate::plan::PlacedPlan;
 use std::sync::Arc;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
+use stead_placement::place::unfollowed_warning;
 use stead_placement::problem::Problem;
 use stead_placement::redundancy::SegmentPlan;
 use stead_placement::way::{AtPoint, LineEnd, ShortLine, Space, Way, way};
@@ -18,13 +19,15 @@ pub(super) struct Ends {
     pub has_blending: bool,
 }
 
-/// The ways between segments and the moves that are not free; empty where nothing stands around.
+/// The ways between segments, empty where nothing stands around, and the moves that are not free.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ways {
     /// From each segment to the next.
     all: Vec<Way>,
     /// The pairs that hit before the first segment and after the last.
     pub ends_hit: [Option<Names>; 2],
+    /// Path points to which the arm cannot follow the straight move of the tool, and why.
+    unfollowed: Vec<(usize, LineEnd)>,
 }
 
 /// The names of two shapes.
@@ -33,13 +36,14 @@ pub(super) type Names = Arc<[String; 2]>;
 impl Ways {
     /// Those of a plan, with the retraction before the first segment and after the last one in m.
     pub fn new(problem: &Problem, plan: &PlacedPlan, approach: f64) -> Self {
-        let Some(space) = Space::new(problem, &plan.placement) else { return Self::default() };
+        let segments = problem.task.segments();
+        let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
+        let unfollowed = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment)).collect();
+        let Some(space) = Space::new(problem, &plan.placement) else { return Self { unfollowed, ..Self::default() } };
         let at = |point: usize| {
             let row = &plan.points[point];
             AtPoint { point, beta: plan.betas[point], posture: row.posture, joints: row.joints }
         };
-        let segments = problem.task.segments();
-        let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
         let way = |(index, pair): (usize, &[SegmentPlan])| way(problem, &plan.placement, [&pair[0], &pair[1]], index);
         let all = plans.windows(2).enumerate().filter_map(way).collect();
         let last = problem.task.points().len().checked_sub(1);
@@ -50,7 +54,7 @@ impl Ways {
             };
             of_arm.or_else(|| space.tool_hit(point?, approach))
         });
-        Self { all, ends_hit }
+        Self { all, ends_hit, unfollowed }
     }
 
     /// The free way from a segment (from 0) to the next, if there is one.
@@ -71,7 +75,7 @@ impl Ways {
         }
     }
 
-    /// The moves that hit, in sentences.
+    /// The moves that hit, and those between path points that the arm cannot follow, in sentences.
     pub fn blocked(&self, ends: Ends) -> Vec<String> {
         let between = self.all.iter().zip(1..).filter_map(|(way, number)| {
             let [a, b] = &**way.blocked_by.as_ref()?;
@@ -86,7 +90,11 @@ impl Ways {
             let [a, b] = &**hit.as_ref()?;
             Some(format!("the move of {mm:.1} mm along the tool axis {when} hits ({a} and {b})"))
         });
-        between.chain(at_ends).collect()
+        let cannot_follow = self.unfollowed.iter().filter(|(_, end)| !matches!(end, LineEnd::JointLimit(_)));
+        let unfollowed = cannot_follow.map(|(point, end)| {
+            format!("the arm cannot follow the straight move of the tool to point {point} ({end})")
+        });
+        between.chain(at_ends).chain(unfollowed).collect()
     }
 
     /// What is said in the program of the lines out of the segment before a segment (from 0), and into it, that are too short.
@@ -106,7 +114,10 @@ impl Ways {
     pub fn warnings(&self, ends: Ends) -> Vec<Warning> {
         let hits = self.blocked(ends).into_iter().map(|text| Warning::new("blocked-move", format!("NOT FREE: {text}")));
         let short = (0..=self.all.len()).flat_map(|segment| self.short_lines(segment));
-        hits.chain(short.map(|text| Warning::new("short-line", text))).collect()
+        let beyond = self.unfollowed.iter().filter(|(_, end)| matches!(end, LineEnd::JointLimit(_)));
+        let beyond: Vec<String> = beyond.map(|(point, end)| format!("to point {point}: {end}")).collect();
+        let short = short.map(|text| Warning::new("short-line", text));
+        hits.chain(short).chain(unfollowed_warning(&beyond)).collect()
     }
 }
 

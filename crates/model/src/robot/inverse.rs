@@ -59,8 +59,7 @@ impl Robot {
         let x6 = rotation.column(0).into_owned();
         let y6 = rotation.column(1).into_owned();
         let z6 = rotation.column(2).into_owned();
-        let flange = root_from_base * (base_from_flange.translation - cast(&g.root_in_base));
-        let wrist = flange - z6 * T::constant(g.flange);
+        let wrist = root_from_base * (self.wrist_centre(base_from_flange) - cast(&g.root_in_base));
 
         // Joint 1, and the wrist centre in the plane of the arm as seen from the shoulder.
         let lateral = T::constant(g.lateral);
@@ -129,6 +128,36 @@ impl Robot {
         let z5 = (x3 * s4 - side * c4) * T::constant(s5);
         let theta6 = z5.dot(&x6).scale(s6).atan2(z5.dot(&y6).scale(s6));
         Ok([theta1, theta2, theta3, theta4, theta5, theta6])
+    }
+
+    /// The wrist centre in the base frame, of frame 6 in that frame. m
+    pub fn wrist_centre<T: Scalar>(&self, base_from_flange: &Pose<T>) -> Vector3<T> {
+        let axis6 = base_from_flange.rotation.column(2).into_owned();
+        base_from_flange.translation - axis6 * T::constant(self.geometry().flange)
+    }
+
+    /// How far the wrist centre may move from where it is, in any direction, and still be in the geometric reach of a posture; joint limits
+    /// are ignored. Zero out of reach. m
+    pub fn reach_margin(&self, base_from_flange: &Pose<f64>, posture: Posture) -> f64 {
+        let g = self.geometry();
+        let wrist = g.base_from_root.transpose() * (self.wrist_centre(base_from_flange) - g.root_in_base);
+        let radius = libm::hypot(wrist.x, wrist.y);
+        let lateral = g.lateral.abs();
+        if radius < lateral {
+            return 0.0;
+        }
+        let forward = libm::sqrt((radius - lateral) * (radius + lateral));
+        let outward = if posture.is_back() { -forward } else { forward };
+        let distance = libm::hypot(outward - g.shoulder_radius, wrist.z - g.shoulder_height);
+        let room = (g.upper_arm + g.forearm - distance).min(distance - (g.upper_arm - g.forearm).abs()).max(0.0);
+        if lateral == 0.0 {
+            // The distance from the shoulder changes by no more than the wrist centre moves; past axis 1 the arm turns about.
+            return room.min(radius);
+        }
+        // As far as `forward` stays above its half, it changes by so many times what the wrist centre moves.
+        let inwards = radius - libm::hypot(lateral, forward / 2.0);
+        let rate = (radius + inwards) / (forward / 2.0);
+        if forward > 0.0 { inwards.min(room / rate) } else { 0.0 }
     }
 }
 
@@ -221,6 +250,31 @@ mod tests {
         let theta = [0.8, theta2, delta - g.forearm_angle, 0.3, 0.7, 0.2];
         let (error, reached) = round_trip(&robot, &theta);
         assert!(error < 1e-9 && reached == 8, "{error} {reached}");
+    }
+
+    #[test]
+    fn within_the_margin_of_its_reach_the_wrist_centre_may_go_anywhere() {
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        let mut arms = odd_arms();
+        arms.push(kr270());
+        let (mut near, mut far) = (0, 0);
+        for k in 0..100_000 {
+            let robot = &arms[k % arms.len()];
+            let mut theta: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
+            if k % 2 == 0 {
+                theta[2] = -robot.geometry().forearm_angle + random.random_range(-0.1..0.1);
+            }
+            let pose = robot.forward(&theta);
+            let posture = Posture::of(robot, &theta);
+            let margin = robot.reach_margin(&pose, posture);
+            let towards = Vector3::from_fn(|_, _| random.random_range(-1.0..1.0)).normalize();
+            let moved = |by: f64| Pose { translation: pose.translation + towards * by, ..pose };
+            let by = 0.999 * margin;
+            assert!(robot.inverse(&moved(by), posture).is_ok(), "{margin} at {theta:?}");
+            near += usize::from(margin > 1e-3);
+            far += usize::from(robot.inverse(&moved(2.0 * margin + 0.01), posture).is_err());
+        }
+        assert!(near > 40_000 && far > 20_000, "{near} {far}");
     }
 
     #[test]

@@ -273,6 +273,13 @@ impl Robot {
     }
 }
 
+impl Joint {
+    /// Whether an angle is beyond one of its limits by more than a margin. rad
+    pub fn is_beyond(&self, angle: f64, margin: f64) -> bool {
+        !(self.min - margin..=self.max + margin).contains(&angle)
+    }
+}
+
 fn check_joint(number: usize, joint: &Joint) -> Result<(), RobotError> {
     let finite =
         [("alpha", joint.alpha), ("a", joint.a), ("d", joint.d), ("min", joint.min), ("max", joint.max)].into_iter();

@@ -60,7 +60,7 @@ pub(super) fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
-/// Moves between segments that have no free way, and lines into and out of the cut that are shorter than they should be, of plans with
+/// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into and out of the cut that are shorter than they should be, of plans with
 /// their names.
 pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
     let ways = |plan: &(&str, &Cycle)| {
@@ -98,7 +98,23 @@ pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
         );
         Warning::new("short-line", text)
     });
-    blocked.into_iter().chain(short).collect()
+    let unfollowed = plans.iter().flat_map(|(plan, cycle)| {
+        cycle.unfollowed.iter().map(move |(point, end)| format!("{plan} to point {point}: {end}"))
+    });
+    let unfollowed = unfollowed_warning(&unfollowed.collect::<Vec<_>>());
+    blocked.into_iter().chain(short).chain(unfollowed).collect()
+}
+
+/// Warns of straight moves from one path point to the next that the arm cannot follow.
+pub fn unfollowed_warning(moves: &[String]) -> Option<Warning> {
+    (!moves.is_empty()).then(|| {
+        let text = format!(
+            "between path points the arm cannot follow the straight line of the tool: {}; points that are closer together, a lower rate of \
+             beta or of the turn of the spindle, or constraints.joint_margin_deg help",
+            listed(moves, "; ")
+        );
+        Warning::new("unfollowed-move", text)
+    })
 }
 
 /// Of many things the first are listed.

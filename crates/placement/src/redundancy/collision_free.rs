@@ -7,7 +7,7 @@
 use super::joint_turns::SegmentChoice;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, StateSet, Workspace, joint_turns, kinds_left, off_grid};
 use crate::candidate::Objective;
-use crate::collision::PlanHit;
+use crate::collision::{Fault, PlanFault};
 use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
 use crate::way::{AtPoint, Space, line_ends, whole_lines};
@@ -18,6 +18,9 @@ use stead_model::robot::{Posture, PostureClass};
 
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 60;
+
+/// Plans made for one placement to get rid of moves that the arm cannot follow; then they are let pass, and told of.
+const FOLLOW_ROUNDS: usize = 20;
 
 /// Times that a plan taken off the grid is looked at for more points that hit, before all are looked at.
 const WATCHES: usize = 6;
@@ -74,7 +77,7 @@ pub(crate) fn settled_among_free(
         let refined = refined(&watched);
         let mut places: Vec<usize> = Vec::new();
         if refined.cost.is_finite() {
-            let hits = problem.plan_hits(placement, &refined, false);
+            let hits = problem.plan_faults(placement, &refined, false);
             places.extend(hits.iter().map(|hit| hit.point - plan.points.start));
             let whole = whole_lines(problem, placement, &refined);
             places.extend((lines[0] && !whole[0]).then_some(0));
@@ -103,39 +106,39 @@ impl Planner<'_> {
         mut plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let all: Vec<usize> = (0..self.problem.task.segments().len()).collect();
-        let mut choices = Vec::new();
-        let has_scene = self.problem.scene.is_some();
-        if has_scene {
-            workspace.forbidden.clear();
-            if let Some(pair) = self.problem.placement_hit(placement) {
-                return Err(self.blocked_by(pair));
-            }
-            choices = vec![Vec::new(); all.len()];
+        workspace.forbidden.clear();
+        if let Some(pair) = self.problem.placement_hit(placement) {
+            return Err(self.blocked_by(pair));
         }
+        let is_checked = self.problem.scene.is_some() || self.checks_moves;
+        let mut choices = vec![Vec::new(); all.len()];
         let mut collisions = Collisions::new();
         let mut asked = all.clone();
         // Ends of segments, by their points, at which no state of a plan has a whole line, and those at which some were forbidden for that.
         let (mut waived, mut bound) = (BTreeSet::new(), BTreeSet::new());
         // Plans in which nothing hits, as far as they were looked at.
         let mut free: Vec<Option<SegmentPlan>> = vec![None; choices.len()];
-        for _ in 0..MAX_ROUNDS {
-            let found = match plan(workspace, &asked) {
-                Ok(found) => found,
-                Err(none) => {
-                    let lines = self.lines_of(&none, &bound);
-                    if lines.is_empty() {
-                        return Err(NoFeasiblePlan { collisions, ..none });
-                    }
-                    // Without a state that has its whole line, the segment is planned as if it needed none.
+        // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
+        let (mut are_moves_bound, mut are_moves_waived) = (false, false);
+        for round in 0..MAX_ROUNDS {
+            let found = plan(workspace, &asked);
+            let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_of(none, &bound));
+            let waives_moves = are_moves_bound && !are_moves_waived && (found.is_err() || round >= FOLLOW_ROUNDS);
+            let found = match found {
+                Err(none) if lines.is_empty() && !waives_moves => return Err(NoFeasiblePlan { collisions, ..none }),
+                Ok(found) if !waives_moves => found,
+                _ => {
+                    // Without a state that has its whole line, or that the arm can go on from, it is planned as if none were needed.
                     bound.clear();
                     waived.extend(lines);
+                    are_moves_waived |= waives_moves;
                     workspace.forbidden.clear();
                     free.fill(None);
                     asked.clone_from(&all);
                     continue;
                 }
             };
-            if !has_scene {
+            if !is_checked {
                 return Ok(joint_turns::select_joint_paths(self.problem, sense, found));
             }
             for (segment, found) in asked.drain(..).zip(found) {
@@ -146,17 +149,22 @@ impl Planner<'_> {
                 if free[segment].as_ref() == Some(plan) {
                     continue;
                 }
-                let hits = self.hits(placement, plan);
-                for hit in &hits {
-                    collisions.entry(hit.pair).or_default().insert(hit.point);
-                    self.forbid_hit(placement, plan, hit, &mut workspace.forbidden);
+                let mut is_free = true;
+                for fault in self.problem.plan_faults(placement, plan, self.checks_moves) {
+                    match fault.fault {
+                        Fault::Hit(pair) => drop(collisions.entry(pair).or_default().insert(fault.point)),
+                        Fault::Unfollowed(_) if are_moves_waived => continue,
+                        Fault::Unfollowed(_) => are_moves_bound = true,
+                    }
+                    is_free = false;
+                    self.forbid_fault(placement, plan, &fault, &mut workspace.forbidden);
                 }
-                let lines = match hits.is_empty() && self.checks_motions {
+                let lines = match is_free && self.checks_moves {
                     true => self.forbid_short_lines(placement, plan, &waived, &mut workspace.forbidden),
                     false => Vec::new(),
                 };
                 bound.extend(&lines);
-                if hits.is_empty() && lines.is_empty() {
+                if is_free && lines.is_empty() {
                     free[segment] = Some(plan.clone());
                 } else {
                     asked.push(segment);
@@ -167,7 +175,7 @@ impl Planner<'_> {
             }
         }
         let points: BTreeSet<usize> = collisions.values().flatten().copied().collect();
-        Err(NoFeasiblePlan { blocked_points: points.into_iter().collect(), broken_segments: Vec::new(), collisions })
+        Err(NoFeasiblePlan { blocked_points: points.into_iter().collect(), collisions, ..NoFeasiblePlan::empty() })
     }
 
     /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
@@ -202,8 +210,8 @@ impl Planner<'_> {
     /// does are looked at one by one.
     pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
         let (problem, spacing) = (self.problem, self.spacing);
-        if problem.plan_hits(placement, plan, false).is_empty() {
-            let lines = match self.checks_motions {
+        if problem.plan_faults(placement, plan, false).is_empty() {
+            let lines = match self.checks_moves {
                 true => whole_lines(problem, placement, plan),
                 false => [false; 2],
             };
@@ -228,7 +236,7 @@ impl Planner<'_> {
                     let path = choice.joint_paths.iter().find(|path| path.posture == *posture);
                     path.is_none_or(|path| {
                         let kinds = &PairKind::OF_JOINTS;
-                        self.problem.path_hits(placement, &choice.points, &path.joints, kinds, None).next().is_some()
+                        self.problem.path_faults(placement, &choice.points, &path.joints, kinds, None).next().is_some()
                     })
                 };
                 let free: BTreeSet<Posture> = postures.iter().copied().filter(|posture| !hits(posture)).collect();
@@ -246,15 +254,9 @@ impl Planner<'_> {
         let points = 0..self.problem.task.points().len();
         NoFeasiblePlan {
             blocked_points: points.clone().collect(),
-            broken_segments: Vec::new(),
             collisions: Collisions::from([(pair, points.collect())]),
+            ..NoFeasiblePlan::empty()
         }
-    }
-
-    /// What hits along a plan: the states, and the motions from point to point unless the path is a subset of points.
-    fn hits(&self, placement: &Placement, plan: &SegmentPlan) -> Vec<PlanHit> {
-        let with_motions = self.checks_motions && !self.problem.task.path().is_thinned();
-        self.problem.plan_hits(placement, plan, with_motions)
     }
 
     /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
@@ -291,21 +293,41 @@ impl Planner<'_> {
         short.into_iter().map(|end| end.point).collect()
     }
 
-    /// Forbids the states of the grid next to one of a plan that hits.
-    fn forbid_hit(&self, placement: &Placement, plan: &SegmentPlan, hit: &PlanHit, forbidden: &mut StateSet) {
-        let place = hit.point - plan.points.start;
-        // Of a motion that hits, the state at its end; once that is forbidden, the one at its start.
-        for place in if hit.is_between { vec![place, place - 1] } else { vec![place] } {
-            let point = plan.points.start + place;
+    /// Forbids the states of the grid next to one of a plan that hits, or that ends a move which may not be; once that is forbidden, the one
+    /// at its start.
+    fn forbid_fault(&self, placement: &Placement, plan: &SegmentPlan, fault: &PlanFault, forbidden: &mut StateSet) {
+        let PlanFault { point, is_between, .. } = *fault;
+        let is_hit = matches!(fault.fault, Fault::Hit(_));
+        for point in if is_between { vec![point, point - 1] } else { vec![point] } {
             let (kinds, mut known) = (kinds_left(self.tool_hits.as_deref()), Proximity::default());
+            let place = point - plan.points.start;
             let hits = |k| {
-                let state = (point, self.grid.beta(k));
-                self.problem.next_hit(state, placement, plan.posture, kinds, &mut known).is_some()
+                let beta = self.grid.beta(k);
+                self.problem.next_hit((point, beta), placement, plan.posture, kinds, &mut known).is_some()
+                    || (!is_hit && self.is_unfollowed(placement, plan, (point, fault.point), beta))
             };
             if self.forbid_near((point, plan.posture.class()), plan.betas[place], hits, forbidden) {
                 return;
             }
         }
+    }
+
+    /// Whether the arm cannot follow the move of a plan to a path point (`end`) with another beta (rad) at one of its ends.
+    fn is_unfollowed(
+        &self,
+        placement: &Placement,
+        plan: &SegmentPlan,
+        (point, end): (usize, usize),
+        beta: f64,
+    ) -> bool {
+        let place = end - plan.points.start;
+        let mut joints = [plan.joints[place - 1], plan.joints[place]];
+        let side = usize::from(point == end);
+        let flange = self.problem.base_from_flange(point, placement, beta);
+        let Ok(found) = self.problem.robot.inverse(&flange, plan.posture) else { return false };
+        joints[side] = std::array::from_fn(|j| joints[side][j] + wrap(found[j] - joints[side][j]));
+        let state = (end, plan.posture);
+        self.problem.move_fault(placement, state, joints, None, &mut Proximity::default()).is_some()
     }
 
     /// Forbids the state of the grid next to a beta (rad), or where that is forbidden the one on its other side, with its neighbours as far

@@ -87,8 +87,8 @@ pub struct Planner<'a> {
     instructions: Instructions,
     /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
     tool_hits: Option<Arc<StateSet>>,
-    /// Whether plans are free between their points too.
-    checks_motions: bool,
+    /// Whether the moves between the points of plans are looked at too.
+    checks_moves: bool,
 }
 
 /// Space of one thread to plan in.
@@ -138,7 +138,7 @@ impl<'a> Planner<'a> {
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
             tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
-            checks_motions: room.neighbours == FINAL_ROOM.neighbours,
+            checks_moves: room.neighbours == FINAL_ROOM.neighbours,
         }
     }
 

@@ -1,0 +1,197 @@
+//! Straight moves as a controller drives them: the tool moves straight and turns evenly, and the joints follow in their posture.
+//!
+//! Between two places that the arm reaches it may not reach all others: where a spindle at an angle to the flange turns about its tool, the
+//! wrist centre swings out on an arc; and past a singularity of the wrist joints 4 and 6 may go on by the other way round.
+
+use crate::problem::{Placement, Problem};
+use crate::segment_plan::SegmentPlan;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use stead_model::robot::angles::wrap;
+use stead_model::robot::{Pose, Posture};
+use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
+
+/// Why the arm cannot go on along a straight line of the tool.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LineEnd {
+    /// The arm does not reach farther in its posture.
+    OutOfReach,
+    /// A joint (from 1) is at its limit.
+    JointLimit(usize),
+    /// A joint (from 1) would swing round a singularity.
+    Swing(usize),
+    /// A joint (from 1) would go the other way round than planned, and end a whole turn off.
+    WholeTurn(usize),
+    /// Two shapes are too near.
+    Hit(Arc<[String; 2]>),
+}
+
+impl std::fmt::Display for LineEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::OutOfReach => write!(f, "the arm does not reach farther in its posture"),
+            Self::JointLimit(joint) => write!(f, "joint {joint} is at its limit"),
+            Self::Swing(joint) => write!(f, "joint {joint} would swing round a singularity"),
+            Self::WholeTurn(joint) => {
+                write!(f, "joint {joint} would go the other way round than planned, and end a whole turn off")
+            }
+            Self::Hit(names) => write!(f, "{} and {} come too near", names[0], names[1]),
+        }
+    }
+}
+
+/// Steps of joints 1 to 3, and of joints 4 to 6, over which a straight move of the joints leaves the straight line of the tool by less
+/// than a tenth of a millimetre. rad
+const STEPS: [f64; 2] = [0.03, 0.06];
+/// A step in which a joint turns by more than so many times these is halved.
+const MOST_STEPS: f64 = 3.0;
+/// A joint that turns farther in a step that is not halved any more swings round a singularity. rad
+const MAX_SWING: f64 = 0.5;
+/// How often a step is halved at the most, where a joint turns far, and where the arm may leave its reach: a joint that turns by
+/// [`MAX_SWING`] in a hundredth of a move keeps no feed.
+const HALVINGS: [i32; 2] = [3, 12];
+/// A joint that is by no more than this beyond its limit between two points, both inside, is not told of. rad
+const BULGE: f64 = 2e-3;
+/// A way of the wrist centre is as long as the chord but for this factor, where the tool turns by little.
+const ARC: f64 = 1.05;
+/// The wrist centre may come so near to the end of its reach without a closer look. m
+const REACH_ROUNDING: f64 = 1e-5;
+
+impl Problem {
+    /// Follows a path of the flange in the base frame, given over a share from 0 to 1, from joint angles (rad) in a posture, in so many
+    /// steps or, where a joint turns far or the arm is nearly stretched or folded, in finer ones; up to the first state of which `visit`
+    /// gives an answer. Returns where the joints are then. Limits of the joints are not looked at.
+    ///
+    /// # Errors
+    /// What ends the path before.
+    pub(crate) fn follow<H>(
+        &self,
+        (posture, from): (Posture, &[f64; 6]),
+        steps: usize,
+        flange_at: impl Fn(f64) -> Pose<f64>,
+        mut visit: impl FnMut(f64, &[f64; 6]) -> Option<H>,
+    ) -> Result<([f64; 6], Option<H>), LineEnd> {
+        let robot = &self.robot;
+        let first = flange_at(0.0);
+        let mut last = (*from, first, robot.reach_margin(&first, posture));
+        for step in 0..steps {
+            let (mut done, mut width) = (0.0, 1.0);
+            while done < 1.0 {
+                let share = (step as f64 + done + width) / steps as f64;
+                let flange = flange_at(share);
+                let found = robot.inverse(&flange, posture).map_err(|_| LineEnd::OutOfReach)?;
+                let joints: [f64; 6] = std::array::from_fn(|j| last.0[j] + wrap(found[j] - last.0[j]));
+                let turned = |j: usize| (joints[j] - last.0[j]).abs();
+                let room = robot.reach_margin(&flange, posture);
+                let way = ARC * robot.wrist_centre(&flange).metric_distance(&robot.wrist_centre(&last.1));
+                let is_far = (0..6).any(|j| turned(j) > MOST_STEPS * STEPS[j / 3]);
+                let may_leave = way > REACH_ROUNDING && last.2 + room < way;
+                let can_halve = |times: i32| width > 0.5_f64.powi(times);
+                if (is_far && can_halve(HALVINGS[0])) || (may_leave && can_halve(HALVINGS[1])) {
+                    width /= 2.0;
+                    continue;
+                }
+                if let Some(joint) = (0..6).find(|j| turned(*j) > MAX_SWING) {
+                    return Err(LineEnd::Swing(joint + 1));
+                }
+                last = (joints, flange, room);
+                if let Some(found) = visit(share, &joints) {
+                    return Ok((joints, Some(found)));
+                }
+                done += width;
+                // Dyadic, so that steps meet again at whole ones.
+                if (done / width) % 2.0 == 0.0 {
+                    width = (2.0 * width).min(1.0);
+                }
+            }
+        }
+        Ok((last.0, None))
+    }
+}
+
+/// A straight move of the tool in the frame of the part to a path point from the one before, while the external axes move evenly.
+#[derive(Debug)]
+pub(crate) struct StraightMove<'a> {
+    problem: &'a Problem,
+    placement: &'a Placement,
+    /// The path point at its end.
+    point: usize,
+    posture: Posture,
+    /// Joint angles at both ends. rad
+    joints: [[f64; 6]; 2],
+    /// The tool at the start, in the frame of the part.
+    start: Pose<f64>,
+    /// What it moves and turns by. m, rad
+    way: Vector3<f64>,
+    turn: Vector3<f64>,
+}
+
+impl<'a> StraightMove<'a> {
+    /// The move to a path point in a posture between joint angles (rad).
+    pub fn new(
+        problem: &'a Problem,
+        placement: &'a Placement,
+        (point, posture): (usize, Posture),
+        joints: [[f64; 6]; 2],
+    ) -> Self {
+        let tool = |point: usize, joints: &[f64; 6]| {
+            let base_from_tool = problem.robot.forward(joints).then(&problem.spindle.flange_from_tool);
+            problem.base_from_part(point, placement).inverse().then(&base_from_tool)
+        };
+        let [start, end] = [tool(point - 1, &joints[0]), tool(point, &joints[1])];
+        let turn = rotation_vector(&(end.rotation * start.rotation.transpose()));
+        Self { problem, placement, point, posture, joints, start, way: end.translation - start.translation, turn }
+    }
+
+    /// The flange in the base frame at a share of the move.
+    fn flange_at(&self, share: f64) -> Pose<f64> {
+        let tool = Pose {
+            rotation: rotation_from_vector(&(self.turn * share)) * self.start.rotation,
+            translation: self.start.translation + self.way * share,
+        };
+        let positions = self.problem.positions_between([self.point - 1, self.point], share);
+        let part = self.problem.turned(self.problem.base_from_workpiece_at(&positions, self.placement));
+        part.then(&tool).then(&self.problem.spindle.flange_from_tool.inverse())
+    }
+
+    /// Follows it up to the first state, given by its share and joint angles (rad), of which `visit` gives an answer.
+    ///
+    /// # Errors
+    /// What keeps the arm from following it.
+    pub fn follow<H>(&self, visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
+        let [from, to] = &self.joints;
+        let steps = (0..6).map(|j| (to[j] - from[j]).abs() / STEPS[j / 3]).fold(1.0, f64::max).ceil() as usize;
+        let flange_at = |share: f64| self.flange_at(share);
+        let (end, found) = self.problem.follow((self.posture, from), steps, flange_at, visit)?;
+        let is_off = |j: &usize| (end[*j] - to[*j]).abs() > PI;
+        match (0..6).find(is_off) {
+            Some(joint) if found.is_none() => Err(LineEnd::WholeTurn(joint + 1)),
+            _ => Ok(found),
+        }
+    }
+
+    /// What is wrong with it, a joint beyond its limit between the points too.
+    fn fault(&self) -> Option<LineEnd> {
+        let robot = &self.problem.robot;
+        let margin = self.problem.constraints.joint_margin + BULGE;
+        let beyond = |_, joints: &[f64; 6]| (0..6).find(|j| robot.joints()[*j].is_beyond(joints[*j], margin));
+        match self.follow(beyond) {
+            Ok(joint) => joint.map(|joint| LineEnd::JointLimit(joint + 1)),
+            Err(end) => Some(end),
+        }
+    }
+}
+
+impl Problem {
+    /// Path points of a plan to which the arm cannot follow the straight move of the tool, and why; none on a subset of a path.
+    pub fn unfollowed_moves(&self, placement: &Placement, plan: &SegmentPlan) -> Vec<(usize, LineEnd)> {
+        let moves = (1..plan.joints.len()).filter(|_| !self.task.path().is_thinned());
+        let fault = |place: usize| {
+            let point = plan.points.start + place;
+            let joints = [plan.joints[place - 1], plan.joints[place]];
+            Some((point, StraightMove::new(self, placement, (point, plan.posture), joints).fault()?))
+        };
+        moves.filter_map(fault).collect()
+    }
+}
