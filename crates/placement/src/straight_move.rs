@@ -41,11 +41,12 @@ impl std::fmt::Display for LineEnd {
     }
 }
 
-/// Steps of joints 1 to 3, and of joints 4 to 6, over which a straight move of the joints leaves the straight line of the tool by less
-/// than a tenth of a millimetre. rad
+/// Steps of joints 1 to 3, and of joints 4 to 6, and turns of tool and workpiece, over which a straight move of the joints leaves that of the
+/// tool by about a tenth of a millimetre. rad
 const STEPS: [f64; 2] = [0.03, 0.06];
+const TURN_STEP: f64 = 0.04;
 /// A step in which a joint turns by more than so many times these is halved.
-const MOST_STEPS: f64 = 3.0;
+const MOST_STEPS: f64 = 1.25;
 /// A joint that turns farther in a step that is not halved any more swings round a singularity. rad
 const MAX_SWING: f64 = 0.5;
 /// How often a step is halved at the most, where a joint turns far, and where the arm may leave its reach: a joint that turns by
@@ -161,9 +162,13 @@ impl<'a> StraightMove<'a> {
     /// What keeps the arm from following it.
     pub fn follow<H>(&self, visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
         let [from, to] = &self.joints;
-        let steps = (0..6).map(|j| (to[j] - from[j]).abs() / STEPS[j / 3]).fold(1.0, f64::max).ceil() as usize;
+        let [before, after] =
+            [self.point - 1, self.point].map(|point| self.problem.base_from_part(point, self.placement).rotation);
+        let of_part = rotation_vector(&(after * before.transpose()));
+        let turned = (self.turn.norm() + of_part.norm()) / TURN_STEP;
+        let steps = (0..6).map(|j| (to[j] - from[j]).abs() / STEPS[j / 3]).fold(turned, f64::max).ceil().max(1.0);
         let flange_at = |share: f64| self.flange_at(share);
-        let (end, found) = self.problem.follow((self.posture, from), steps, flange_at, visit)?;
+        let (end, found) = self.problem.follow((self.posture, from), steps as usize, flange_at, visit)?;
         let is_off = |j: &usize| (end[*j] - to[*j]).abs() > PI;
         match (0..6).find(is_off) {
             Some(joint) if found.is_none() => Err(LineEnd::WholeTurn(joint + 1)),
@@ -193,5 +198,120 @@ impl Problem {
             Some((point, StraightMove::new(self, placement, (point, plan.posture), joints).fault()?))
         };
         moves.filter_map(fault).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::five_segments;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use std::sync::Arc;
+    use stead_cell::testing::kr270_shapes;
+    use stead_cell::{KeepOut, Proximity, Scene, Surroundings, TrackedPoint, Zone};
+
+    /// Moves of up to 60 mm and a radian between states of a posture, near a stretched arm and singularities of the wrist: path point 1,
+    /// posture, joint angles.
+    fn random_moves(problem: &Problem, count: usize) -> Vec<(Posture, [[f64; 6]; 2])> {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let robot = &problem.robot;
+        let tool = problem.spindle.flange_from_tool;
+        let mut moves = Vec::new();
+        while moves.len() < count {
+            let mut from: [f64; 6] = std::array::from_fn(|_| random.random_range(-2.0..2.0));
+            match moves.len() % 3 {
+                0 => from[2] = -robot.geometry().forearm_angle + random.random_range(-0.2..0.2),
+                1 => from[4] = random.random_range(-0.3..0.3),
+                _ => {}
+            }
+            let posture = Posture::of(robot, &from);
+            let mut vector = |most: f64| Vector3::from_fn(|_, _| random.random_range(-1.0..1.0)).normalize() * most;
+            let (way, turn) = (vector(0.06), vector(1.0));
+            let start = robot.forward(&from).then(&tool);
+            let end =
+                Pose { rotation: rotation_from_vector(&turn) * start.rotation, translation: start.translation + way };
+            let Ok(found) = robot.inverse(&end.then(&tool.inverse()), posture) else { continue };
+            moves.push((posture, [from, std::array::from_fn(|j| from[j] + wrap(found[j] - from[j]))]));
+        }
+        moves
+    }
+
+    /// The same move in many even steps: the joint angles, as far as the arm reaches.
+    fn in_even_steps(straight: &StraightMove<'_>) -> Vec<[f64; 6]> {
+        let mut last = straight.joints[0];
+        let states = (1..=20_000).map_while(|step| {
+            let found =
+                straight.problem.robot.inverse(&straight.flange_at(f64::from(step) / 20_000.0), straight.posture);
+            last = found.ok().map(|found| std::array::from_fn(|j| last[j] + wrap(found[j] - last[j])))?;
+            Some(last)
+        });
+        states.collect()
+    }
+
+    #[test]
+    fn moves_are_followed_as_in_many_even_steps() {
+        let problem = five_segments();
+        let placement = Placement::from([0.0; 4]);
+        let mut counts = [0; 4];
+        for (posture, joints) in random_moves(&problem, 400) {
+            let straight = StraightMove::new(&problem, &placement, (1, posture), joints);
+            let states = in_even_steps(&straight);
+            let largest = states.windows(2).flat_map(|pair| (0..6).map(|j| (pair[1][j] - pair[0][j]).abs()));
+            let largest = largest.fold(0.0, f64::max);
+            let followed = straight.follow(|_, _| None::<()>);
+            let is_whole = states.len() == 20_000;
+            let arrives = is_whole && (0..6).all(|j| (states[19_999][j] - joints[1][j]).abs() < 1e-6);
+            match &followed {
+                Ok(_) => assert!(arrives, "{joints:?} is not followed in even steps"),
+                Err(LineEnd::OutOfReach) => assert!(!is_whole, "{joints:?} is in reach"),
+                Err(LineEnd::WholeTurn(_)) => assert!(is_whole && !arrives, "{joints:?} arrives"),
+                // A hundredth of the move in which a joint turns by half a radian.
+                Err(end) => assert!(!arrives || largest > 0.5 / 200.0, "{joints:?}: {end}, {largest}"),
+            }
+            counts[followed.map_or_else(|end| 1 + usize::from(end != LineEnd::OutOfReach), |_| 0)] += 1;
+        }
+        assert!(counts[0] > 200 && counts[1] > 10 && counts[2] > 5, "{counts:?}");
+    }
+
+    #[test]
+    fn a_zone_that_the_wrist_brushes_between_two_points_is_found() {
+        let problem = five_segments();
+        let placement = Placement::from([0.0; 4]);
+        let mut found = 0;
+        for (posture, joints) in random_moves(&problem, 200) {
+            let straight = StraightMove::new(&problem, &placement, (1, posture), joints);
+            let centre = |joints: &[f64; 6]| problem.robot.wrist_centre(&problem.robot.forward(joints));
+            if straight.fault().is_some() {
+                continue;
+            }
+            // The zone begins where the wrist centre is farthest out across the chord, but for 0.3 mm.
+            let [start, end] = [0, 1].map(|side| centre(&joints[side]));
+            let chord = (end - start).normalize();
+            let out = |joints: &[f64; 6]| {
+                let apart = centre(joints) - start;
+                apart - chord * apart.dot(&chord)
+            };
+            let states = in_even_steps(&straight);
+            let Some(farthest) = states.iter().max_by(|a, b| out(a).norm().total_cmp(&out(b).norm())) else { continue };
+            let far = out(farthest);
+            if far.norm() < 1e-3 {
+                continue;
+            }
+            let normal = far.normalize();
+            let zone = Zone::HalfSpace { point: start + normal * (far.norm() - 3e-4), normal };
+            let keep_out = KeepOut { name: "light curtain".to_owned(), zone, points: vec![TrackedPoint::Wrist] };
+            let shapes = kr270_shapes().into_iter().filter(|shape| shape.name == "spindle").collect();
+            let around = Surroundings::new(shapes, vec![keep_out], 0.01, Vec::new()).unwrap();
+            let scene = Scene::new(&problem.robot, &problem.spindle.flange_from_tool, around).unwrap();
+            let among = Problem { scene: Some(Arc::new(scene)), ..problem.clone() };
+            let scene = among.scene.as_deref().unwrap();
+            let stands = [0, 1].map(|side| among.poses(scene, side, &placement, &joints[side]));
+            let ends = Some((scene, [&stands[0], &stands[1]]));
+            let fault = among.move_fault(&placement, (1, posture), joints, ends, &mut Proximity::default());
+            assert!(fault.is_some(), "{joints:?}: {} mm out", far.norm() * 1e3);
+            found += 1;
+        }
+        assert!(found > 50, "{found}");
     }
 }
