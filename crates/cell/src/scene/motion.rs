@@ -251,17 +251,20 @@ impl Scene {
     fn travel(&self, number: usize, motion: &Motion<'_>) -> f64 {
         let pair = &self.pairs[number];
         let by_joints: f64 = pair.reach.iter().zip(motion.steps).map(|(reach, step)| reach * step).sum();
-        let of = |frame: usize, farthest: f64| motion.screws[frame].map_or(0.0, |screw| screw.travel(farthest));
+        let of = |frame: usize, farthest: &dyn Fn() -> f64| {
+            motion.screws[frame].as_ref().map_or(0.0, |screw| screw.travel(farthest()))
+        };
         by_joints
             + match pair.members {
-                Members::Bodies(a, b) => {
-                    [a, b].iter().map(|body| of(self.bodies[*body].frame, self.bodies[*body].cover.farthest())).sum()
-                }
+                Members::Bodies(a, b) => [&self.bodies[a], &self.bodies[b]]
+                    .iter()
+                    .map(|body| of(body.frame, &|| body.cover.farthest()))
+                    .sum(),
                 // A zone turns with the cell about the origin of the base frame: no point of the arm is farther from that.
-                Members::Zone(..) => {
+                Members::Zone(..) => of(0, &|| {
                     let rows: f64 = self.robot.mounted_rows().iter().map(|row| row.translation.norm()).sum();
-                    of(0, rows + self.flange_from_tool.translation.norm())
-                }
+                    rows + self.flange_from_tool.translation.norm()
+                }),
             }
     }
 }

@@ -22,6 +22,9 @@ const MAX_ROUNDS: usize = 60;
 /// Plans made for one placement to get rid of moves that the arm cannot follow; then they are let pass, and told of.
 const FOLLOW_ROUNDS: usize = 20;
 
+/// Of the moves to all values of beta, so many at the most are looked at where one may not be.
+const MOVES_LOOKED_AT: usize = 90;
+
 /// Times that a plan taken off the grid is looked at for more points that hit, before all are looked at.
 const WATCHES: usize = 6;
 
@@ -29,15 +32,16 @@ const WATCHES: usize = 6;
 pub type Collisions = BTreeMap<usize, BTreeSet<usize>>;
 
 /// Forbids a state that hits, on a grid of `count` values of beta, and its neighbours in beta as far as they hit too; with a `stride`
-/// above one only every so many of them are looked at, and what lies between two that hit is forbidden with them.
+/// above one only every so many of them are looked at, and what lies between two that hit is forbidden with them. Returns the last that is
+/// forbidden on either side.
 pub(crate) fn forbid(
     (point, class): (usize, PostureClass),
     (beta, count, stride): (usize, usize, usize),
     mut hits: impl FnMut(usize) -> bool,
     forbidden: &mut StateSet,
-) {
+) -> [usize; 2] {
     forbidden.add(point, class, beta);
-    for side in [1, count - 1] {
+    [1, count - 1].map(|side| {
         let mut at = beta;
         loop {
             let next = (at + stride * side) % count;
@@ -49,50 +53,71 @@ pub(crate) fn forbid(
                 forbidden.add(point, class, at);
             }
         }
-    }
+        at
+    })
+}
+
+/// What a plan off the grid keeps of the one that it is made of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kept {
+    /// Lines into and out of the cut that are whole.
+    pub lines: [bool; 2],
+    /// Moves from point to point in which nothing is wrong.
+    pub moves: bool,
 }
 
 /// A plan with beta taken off the grid ([`off_grid::refine`]; one of infinite cost only says where, and may stay so). Where it would hit
-/// at some points, the states of these are looked at one by one, at last those of all; lines into and out of the cut that are whole stay
-/// so (`lines`).
+/// at some points, the states of these are looked at one by one, at last those of all; what is kept of the plan stays as it was, with beta
+/// held at the ends of moves that would not.
 pub(crate) fn settled_among_free(
     problem: &Problem,
     placement: &Placement,
     sense: Sense,
-    (spacing, lines): (off_grid::Spacing, [bool; 2]),
+    (spacing, kept): (off_grid::Spacing, Kept),
     plan: &SegmentPlan,
 ) -> SegmentPlan {
-    let kept = |place: usize, is_watched: bool| off_grid::Watch {
-        collisions: is_watched,
-        line: is_watched && ((place == 0 && lines[0]) || (place + 1 == plan.points.len() && lines[1])),
-    };
-    let refined = |watched: &[bool]| {
-        let watched: Vec<_> = watched.iter().enumerate().map(|(place, watch)| kept(place, *watch)).collect();
+    let count = plan.points.len();
+    let lines = kept.lines;
+    let refined = |watched: &[off_grid::Watch]| {
         let mut refined = plan.clone();
-        off_grid::refine(problem, placement, sense, spacing, &watched, &mut refined);
+        off_grid::refine(problem, placement, sense, spacing, watched, &mut refined);
         refined
     };
-    let mut watched = vec![false; plan.points.len()];
-    for _ in 0..WATCHES {
+    let watch = |place: usize, held: bool| off_grid::Watch {
+        collisions: true,
+        line: (place == 0 && lines[0]) || (place + 1 == count && lines[1]),
+        held,
+    };
+    let mut watched = vec![off_grid::Watch::default(); count];
+    for round in 0..=WATCHES {
         let refined = refined(&watched);
-        let mut places: Vec<usize> = Vec::new();
+        // Places of the plan where something is wrong, and whether beta is held there for that.
+        let mut places: Vec<(usize, bool)> = Vec::new();
         if refined.cost.is_finite() {
-            let hits = problem.plan_faults(placement, &refined, false);
-            places.extend(hits.iter().map(|hit| hit.point - plan.points.start));
+            for fault in problem.plan_faults(placement, &refined, kept.moves) {
+                let place = fault.point - plan.points.start;
+                places.push((place, fault.is_between));
+                places.extend(fault.is_between.then(|| (place - 1, true)));
+            }
             let whole = whole_lines(problem, placement, &refined);
-            places.extend((lines[0] && !whole[0]).then_some(0));
-            places.extend((lines[1] && !whole[1]).then_some(watched.len() - 1));
+            places.extend((lines[0] && !whole[0]).then_some((0, false)));
+            places.extend((lines[1] && !whole[1]).then_some((count - 1, false)));
         }
-        if places.is_empty() {
+        if places.is_empty() || (round == WATCHES && !kept.moves) {
             return refined;
         }
-        // What hits at one point mostly hits at the next.
-        for place in places {
-            let last = (place + 2).min(watched.len());
-            watched[place.saturating_sub(1)..last].fill(true);
+        for (place, held) in places {
+            // What hits at one point mostly hits at the next.
+            for place in place.saturating_sub(1)..(place + 2).min(count) {
+                watched[place] = watch(place, watched[place].held);
+            }
+            watched[place].held |= held;
+        }
+        if round + 1 == WATCHES {
+            watched = (0..count).map(|place| watch(place, watched[place].held)).collect();
         }
     }
-    refined(&vec![true; watched.len()])
+    plan.clone()
 }
 
 impl Planner<'_> {
@@ -118,6 +143,8 @@ impl Planner<'_> {
         let (mut waived, mut bound) = (BTreeSet::new(), BTreeSet::new());
         // Plans in which nothing hits, as far as they were looked at.
         let mut free: Vec<Option<SegmentPlan>> = vec![None; choices.len()];
+        // How often the move to a point was faulty.
+        let mut faulty: BTreeMap<usize, u32> = BTreeMap::new();
         // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
         let (mut are_moves_bound, mut are_moves_waived) = (false, false);
         for round in 0..MAX_ROUNDS {
@@ -149,7 +176,7 @@ impl Planner<'_> {
                 if free[segment].as_ref() == Some(plan) {
                     continue;
                 }
-                let mut is_free = true;
+                let (mut is_free, mut hit) = (true, Vec::new());
                 for fault in self.problem.plan_faults(placement, plan, self.checks_moves) {
                     match fault.fault {
                         Fault::Hit(pair) => drop(collisions.entry(pair).or_default().insert(fault.point)),
@@ -157,8 +184,12 @@ impl Planner<'_> {
                         Fault::Unfollowed(_) => are_moves_bound = true,
                     }
                     is_free = false;
-                    self.forbid_fault(placement, plan, &fault, &mut workspace.forbidden);
+                    let times = if fault.is_between { faulty.entry(fault.point).or_default() } else { &mut 0 };
+                    let ends = self.forbid_fault(placement, plan, (&fault, *times), &mut workspace.forbidden);
+                    hit.extend(ends.filter(|_| !fault.is_between).map(|betas| (fault.point, betas)));
+                    *times += 1;
                 }
+                self.forbid_around(placement, plan, hit, &mut workspace.forbidden);
                 let lines = match is_free && self.checks_moves {
                     true => self.forbid_short_lines(placement, plan, &waived, &mut workspace.forbidden),
                     false => Vec::new(),
@@ -206,17 +237,17 @@ impl Planner<'_> {
         self.objective(placement, sense, None, &mut workspace)
     }
 
-    /// Takes beta of a plan off the grid. Where nothing hits on the grid, but something does off it, the states of the points where it
-    /// does are looked at one by one.
+    /// Takes beta of a plan off the grid, where nothing hits on it: lines into and out of the cut that are whole, and moves in which nothing
+    /// is wrong, stay so.
     pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
         let (problem, spacing) = (self.problem, self.spacing);
-        if problem.plan_faults(placement, plan, false).is_empty() {
-            let lines = match self.checks_moves {
-                true => whole_lines(problem, placement, plan),
-                false => [false; 2],
-            };
-            *plan = settled_among_free(problem, placement, sense, (spacing, lines), plan);
+        let faults = problem.plan_faults(placement, plan, self.checks_moves);
+        if faults.iter().any(|fault| matches!(fault.fault, Fault::Hit(_))) {
+            return;
         }
+        let lines = if self.checks_moves { whole_lines(problem, placement, plan) } else { [false; 2] };
+        let kept = Kept { lines, moves: self.checks_moves && faults.is_empty() };
+        *plan = settled_among_free(problem, placement, sense, (spacing, kept), plan);
     }
 
     /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others are left. Turns of
@@ -288,65 +319,116 @@ impl Planner<'_> {
                 let turned = |found: [f64; 6]| std::array::from_fn(|j| end.joints[j] + wrap(found[j] - end.joints[j]));
                 joints.is_ok_and(|found| is_short(AtPoint { beta, joints: turned(found), ..*end }))
             };
-            self.forbid_near((end.point, plan.posture.class()), end.beta, hits, forbidden);
+            self.forbid_near((end.point, plan.posture.class()), (end.beta, 1), hits, forbidden);
         }
         short.into_iter().map(|end| end.point).collect()
     }
 
-    /// Forbids the states of the grid next to one of a plan that hits, or that ends a move which may not be; once that is forbidden, the one
-    /// at its start.
-    fn forbid_fault(&self, placement: &Placement, plan: &SegmentPlan, fault: &PlanFault, forbidden: &mut StateSet) {
-        let PlanFault { point, is_between, .. } = *fault;
-        let is_hit = matches!(fault.fault, Fault::Hit(_));
-        for point in if is_between { vec![point, point - 1] } else { vec![point] } {
-            let (kinds, mut known) = (kinds_left(self.tool_hits.as_deref()), Proximity::default());
-            let place = point - plan.points.start;
+    /// Forbids the states of the grid next to one of a plan that hits; next to one that ends a move which may not be, or once that is forbidden,
+    /// next to the one at its start. Where a move to the same point was faulty so many `times` before, more and more states on either side go
+    /// with it. Returns the numbers of beta of [`Planner::forbid_near`].
+    fn forbid_fault(
+        &self,
+        placement: &Placement,
+        plan: &SegmentPlan,
+        (fault, times): (&PlanFault, u32),
+        forbidden: &mut StateSet,
+    ) -> Option<[usize; 3]> {
+        let (point, place, class) = (fault.point, fault.point - plan.points.start, plan.posture.class());
+        let (count, mut known) = (self.grid.beta_count, Proximity::default());
+        if !fault.is_between {
+            let kinds = kinds_left(self.tool_hits.as_deref());
             let hits = |k| {
-                let beta = self.grid.beta(k);
-                self.problem.next_hit((point, beta), placement, plan.posture, kinds, &mut known).is_some()
-                    || (!is_hit && self.is_unfollowed(placement, plan, (point, fault.point), beta))
+                let state = (point, self.grid.beta(k));
+                self.problem.next_hit(state, placement, plan.posture, kinds, &mut known).is_some()
             };
-            if self.forbid_near((point, plan.posture.class()), plan.betas[place], hits, forbidden) {
-                return;
+            return self.forbid_near((point, class), (plan.betas[place], 1), hits, forbidden);
+        }
+        // Moves take longer to look at than states.
+        let stride = (count / MOVES_LOOKED_AT).max(1);
+        [place, place - 1].into_iter().find_map(|at| {
+            let (point, beta) = (plan.points.start + at, plan.betas[at]);
+            let hits = |k| self.is_faulty_move(placement, plan, place, wrap(self.grid.beta(k) - beta), &mut known);
+            let [nearest, up, down] = self.forbid_near((point, class), (beta, stride), hits, forbidden)?;
+            for step in 1..((1 << (times / 2).min(8)).min(count)) {
+                forbidden.add(point, class, (up + step) % count);
+                forbidden.add(point, class, (down + count - step) % count);
+            }
+            Some([nearest, up, down])
+        })
+    }
+
+    /// Forbids what hits around states of a plan, given by their points and numbers of beta, whichever way the wrist is flipped: that costs no
+    /// plan that is free, and spares to find it state by state.
+    fn forbid_around(
+        &self,
+        placement: &Placement,
+        plan: &SegmentPlan,
+        mut open: Vec<(usize, [usize; 3])>,
+        forbidden: &mut StateSet,
+    ) {
+        let (count, class) = (self.grid.beta_count, plan.posture.class());
+        let (postures, kinds) = (self.equivalent_postures(plan.posture), kinds_left(self.tool_hits.as_deref()));
+        let mut known = Proximity::default();
+        let mut hits = |point: usize, k: usize| {
+            let state = (point, self.grid.beta(k));
+            postures
+                .iter()
+                .all(|posture| self.problem.next_hit(state, placement, *posture, kinds, &mut known).is_some())
+        };
+        while let Some((point, betas)) = open.pop() {
+            for next in [point.wrapping_sub(1), point + 1].into_iter().filter(|next| plan.points.contains(next)) {
+                for beta in betas {
+                    if !forbidden.contains(next, class, beta) && hits(next, beta) {
+                        let [up, down] = forbid((next, class), (beta, count, 1), |k| hits(next, k), forbidden);
+                        open.push((next, [beta, up, down]));
+                    }
+                }
             }
         }
     }
 
-    /// Whether the arm cannot follow the move of a plan to a path point (`end`) with another beta (rad) at one of its ends.
-    fn is_unfollowed(
+    /// Whether something is wrong with the move of a plan to one of its places with beta at both ends turned on by an angle. rad
+    fn is_faulty_move(
         &self,
         placement: &Placement,
         plan: &SegmentPlan,
-        (point, end): (usize, usize),
-        beta: f64,
+        place: usize,
+        turn: f64,
+        known: &mut Proximity,
     ) -> bool {
-        let place = end - plan.points.start;
-        let mut joints = [plan.joints[place - 1], plan.joints[place]];
-        let side = usize::from(point == end);
-        let flange = self.problem.base_from_flange(point, placement, beta);
-        let Ok(found) = self.problem.robot.inverse(&flange, plan.posture) else { return false };
-        joints[side] = std::array::from_fn(|j| joints[side][j] + wrap(found[j] - joints[side][j]));
-        let state = (end, plan.posture);
-        self.problem.move_fault(placement, state, joints, None, &mut Proximity::default()).is_some()
+        let (problem, end) = (self.problem, plan.points.start + place);
+        let turned = |k: usize| {
+            let (near, beta) = (plan.joints[place - 1 + k], plan.betas[place - 1 + k] + turn);
+            let flange = problem.base_from_flange(end - 1 + k, placement, beta);
+            let found = problem.robot.inverse(&flange, plan.posture).ok()?;
+            Some(std::array::from_fn(|j| near[j] + wrap(found[j] - near[j])))
+        };
+        let (Some(from), Some(to)) = (turned(0), turned(1)) else { return false };
+        let scene = problem.scene.as_deref();
+        let [start, stop] = [(end - 1, &from), (end, &to)]
+            .map(|(point, joints)| scene.map(|scene| problem.poses(scene, point, placement, joints)));
+        let ends = scene.zip(start.as_ref().zip(stop.as_ref())).map(|(scene, (start, stop))| (scene, [start, stop]));
+        let hits_first =
+            ends.is_some_and(|(scene, [start, _])| scene.next_hit(known, start, &PairKind::OF_STATES).is_some());
+        hits_first || problem.move_fault(placement, (end, plan.posture), [from, to], ends, known).is_some()
     }
 
     /// Forbids the state of the grid next to a beta (rad), or where that is forbidden the one on its other side, with its neighbours as far
-    /// as they hit too; whether one of the two was not forbidden.
+    /// as they hit too: that state and the last ones on either side. None where both of the two were forbidden.
     fn forbid_near(
         &self,
         (point, class): (usize, PostureClass),
-        beta: f64,
-        mut hits: impl FnMut(usize) -> bool,
+        (beta, stride): (f64, usize),
+        hits: impl FnMut(usize) -> bool,
         forbidden: &mut StateSet,
-    ) -> bool {
+    ) -> Option<[usize; 3]> {
         let count = self.grid.beta_count;
         let share = (beta - self.grid.beta(0)) / self.grid.beta_step();
         let nearest = (share.round() as i64).rem_euclid(count as i64) as usize;
         let other = if share > share.round() { nearest + 1 } else { nearest + count - 1 } % count;
-        let fresh = [nearest, other].into_iter().find(|beta| !forbidden.contains(point, class, *beta));
-        if let Some(beta) = fresh {
-            forbid((point, class), (beta, count, 1), &mut hits, forbidden);
-        }
-        fresh.is_some()
+        let beta = [nearest, other].into_iter().find(|beta| !forbidden.contains(point, class, *beta))?;
+        let [up, down] = forbid((point, class), (beta, count, stride), hits, forbidden);
+        Some([beta, up, down])
     }
 }

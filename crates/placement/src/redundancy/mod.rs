@@ -33,7 +33,7 @@ mod turns_dp;
 mod unchanging;
 
 pub use collision_free::Collisions;
-pub(crate) use collision_free::{forbid, settled_among_free};
+pub(crate) use collision_free::{Kept, forbid, settled_among_free};
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
 pub use state_set::StateSet;

@@ -80,6 +80,8 @@ pub struct Watch {
     pub collisions: bool,
     /// Whether the line along the tool axis, out of the cut or into it, has its whole length.
     pub line: bool,
+    /// Whether beta stays as it is.
+    pub held: bool,
 }
 
 /// Refines the plan of one segment for the workpiece at a placement. Returns whether it got better.
@@ -98,7 +100,10 @@ pub fn refine(
     let first = plan.points.start;
     let at: Vec<PointEvaluator<'_>> =
         plan.points.clone().map(|point| PointEvaluator::new(problem, point, placement)).collect();
-    let allowed = |place: usize, beta, plan: &SegmentPlan| {
+    let allowed = |place: usize, beta: f64, plan: &SegmentPlan| {
+        if watched[place].held && beta != plan.betas[place] {
+            return None;
+        }
         let state = allowed(&at[place], beta, plan)?;
         let (point, joints) = (first + place, state.joints);
         let is_free = || problem.state_hit(point, placement, &joints).is_none();
@@ -110,7 +115,7 @@ pub fn refine(
             Space::new(problem, placement)
                 .is_none_or(|space| space.line_end(at, problem.segment_moves.retract).is_none())
         };
-        let Watch { collisions, line } = watched[place];
+        let Watch { collisions, line, .. } = watched[place];
         ((!collisions || is_free()) && (!line || is_whole())).then_some(state)
     };
     let mut better = false;

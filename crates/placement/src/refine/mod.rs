@@ -34,7 +34,7 @@ use super::evaluator::{self, Evaluator};
 use super::lookup::Look;
 use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
 use super::problem::{Placement, Problem};
-use super::redundancy::{Planner, SegmentPlan, Workspace, off_grid, settled_among_free};
+use super::redundancy::{Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free};
 use super::sense::Sense;
 use super::way::whole_lines;
 use rayon::prelude::*;
@@ -257,8 +257,8 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
     for plan in &solution.plans {
         let betas = betas[plan.points.clone()].to_vec();
         let shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
-        let lines = whole_lines(problem, &solution.placement, plan);
-        let shifted = settled_among_free(problem, &placement, Sense::Min, (SETTLING, lines), &shifted);
+        let kept = Kept { lines: whole_lines(problem, &solution.placement, plan), moves: false };
+        let shifted = settled_among_free(problem, &placement, Sense::Min, (SETTLING, kept), &shifted);
         if !shifted.cost.is_finite() {
             return None;
         }
