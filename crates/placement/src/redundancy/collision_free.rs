@@ -19,6 +19,9 @@ use stead_model::robot::{Posture, PostureClass};
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 60;
 
+/// Plans made for one placement that may leave the grid without regard to their moves; later ones keep moves in which nothing is wrong.
+const FREE_ROUNDS: usize = 8;
+
 /// Plans made for one placement to get rid of moves that the arm cannot follow; then they are let pass, and told of.
 const FOLLOW_ROUNDS: usize = 20;
 
@@ -148,6 +151,7 @@ impl Planner<'_> {
         // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
         let (mut are_moves_bound, mut are_moves_waived) = (false, false);
         for round in 0..MAX_ROUNDS {
+            workspace.keeps_moves = round >= FREE_ROUNDS;
             let found = plan(workspace, &asked);
             let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_of(none, &bound));
             let waives_moves = are_moves_bound && !are_moves_waived && (found.is_err() || round >= FOLLOW_ROUNDS);
@@ -237,16 +241,22 @@ impl Planner<'_> {
         self.objective(placement, sense, None, &mut workspace)
     }
 
-    /// Takes beta of a plan off the grid, where nothing hits on it: lines into and out of the cut that are whole, and moves in which nothing
-    /// is wrong, stay so.
-    pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
+    /// Takes beta of a plan off the grid, where nothing hits on it: lines into and out of the cut that are whole stay so, and, if asked for,
+    /// moves in which nothing is wrong.
+    pub(super) fn refine_off_grid(
+        &self,
+        placement: &Placement,
+        sense: Sense,
+        keeps_moves: bool,
+        plan: &mut SegmentPlan,
+    ) {
         let (problem, spacing) = (self.problem, self.spacing);
         let faults = problem.plan_faults(placement, plan, self.checks_moves);
         if faults.iter().any(|fault| matches!(fault.fault, Fault::Hit(_))) {
             return;
         }
         let lines = if self.checks_moves { whole_lines(problem, placement, plan) } else { [false; 2] };
-        let kept = Kept { lines, moves: self.checks_moves && faults.is_empty() };
+        let kept = Kept { lines, moves: keeps_moves && self.checks_moves && faults.is_empty() };
         *plan = settled_among_free(problem, placement, sense, (spacing, kept), plan);
     }
 
@@ -346,9 +356,15 @@ impl Planner<'_> {
         }
         // Moves take longer to look at than states.
         let stride = (count / MOVES_LOOKED_AT).max(1);
+        let is_hit = matches!(fault.fault, Fault::Hit(_));
         [place, place - 1].into_iter().find_map(|at| {
             let (point, beta) = (plan.points.start + at, plan.betas[at]);
-            let hits = |k| self.is_faulty_move(placement, plan, place, wrap(self.grid.beta(k) - beta), &mut known);
+            // Past a shape both ends go together; what the arm can follow depends on how far beta turns.
+            let turned = |k: usize| {
+                let turn = wrap(self.grid.beta(k) - beta);
+                [0, 1].map(|end| if is_hit || place - 1 + end == at { turn } else { 0.0 })
+            };
+            let hits = |k| self.is_faulty_move(placement, plan, (place, turned(k)), &mut known);
             let [nearest, up, down] = self.forbid_near((point, class), (beta, stride), hits, forbidden)?;
             for step in 1..((1 << (times / 2).min(8)).min(count)) {
                 forbidden.add(point, class, (up + step) % count);
@@ -388,18 +404,17 @@ impl Planner<'_> {
         }
     }
 
-    /// Whether something is wrong with the move of a plan to one of its places with beta at both ends turned on by an angle. rad
+    /// Whether something is wrong with the move of a plan to one of its places with beta at both ends turned on by angles. rad
     fn is_faulty_move(
         &self,
         placement: &Placement,
         plan: &SegmentPlan,
-        place: usize,
-        turn: f64,
+        (place, turns): (usize, [f64; 2]),
         known: &mut Proximity,
     ) -> bool {
         let (problem, end) = (self.problem, plan.points.start + place);
         let turned = |k: usize| {
-            let (near, beta) = (plan.joints[place - 1 + k], plan.betas[place - 1 + k] + turn);
+            let (near, beta) = (plan.joints[place - 1 + k], plan.betas[place - 1 + k] + turns[k]);
             let flange = problem.base_from_flange(end - 1 + k, placement, beta);
             let found = problem.robot.inverse(&flange, plan.posture).ok()?;
             Some(std::array::from_fn(|j| near[j] + wrap(found[j] - near[j])))
