@@ -161,7 +161,7 @@ impl Problem {
     }
 
     /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other; moves from point to
-    /// point are looked at where a posture is given.
+    /// point are checked where a posture is given.
     pub(crate) fn path_faults(
         &self,
         placement: &Placement,
@@ -172,14 +172,14 @@ impl Problem {
     ) -> impl Iterator<Item = PlanFault> {
         let scene = self.scene.as_deref();
         let mut known = Proximity::default();
-        // Where all stands at the point before; whether nothing hits there.
+        // The poses at the point before; whether nothing hits there.
         let mut before: (Option<Poses>, bool) = (None, false);
         let fault = move |(place, point): (usize, usize)| {
             let poses = scene.map(|scene| (scene, self.poses(scene, point, placement, &joints[place])));
             let between = posture.filter(|_| before.1).and_then(|posture| {
                 let ends = [joints[place - 1], joints[place]];
-                let stands = poses.as_ref().zip(before.0.as_ref()).map(|((scene, end), start)| (*scene, [start, end]));
-                self.move_fault(placement, (point, posture), ends, stands, &mut known)
+                let at_ends = poses.as_ref().zip(before.0.as_ref()).map(|((scene, end), start)| (*scene, [start, end]));
+                self.move_fault(placement, (point, posture), ends, at_ends, &mut known)
             });
             let pair = poses.as_ref().and_then(|(scene, poses)| scene.next_hit(&mut known, poses, kinds));
             before = (poses.map(|(_, poses)| poses), pair.is_none());

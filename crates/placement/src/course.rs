@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use crate::settings::TransferSettings;
 use crate::transfer::part_durations;
 use crate::way::{STRAIGHT_STEP, Way};
-use stead_model::robot::angles::wrap;
+use stead_model::robot::angles::nearest_turns;
 use stead_model::robot::{Pose, Posture};
 
 /// A part of a move between segments that is driven from rest to rest, straight in joint space or along the tool axis.
@@ -74,7 +74,7 @@ fn along_axis(problem: &Problem, posture: Posture, from: [f64; 6], to: [f64; 6])
     for step in 1..steps {
         let translation = start.translation + line * (step as f64 / steps as f64);
         let Ok(found) = problem.robot.inverse(&Pose { translation, ..start }, posture) else { return vec![from, to] };
-        last = std::array::from_fn(|j| last[j] + wrap(found[j] - last[j]));
+        last = nearest_turns(&found, &last);
         all.push(last);
     }
     all.push(to);

@@ -35,7 +35,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
-use stead_model::robot::{Joint, Pose, Posture, Robot, angles::wrap};
+use stead_model::robot::{Joint, Pose, Posture, Robot, angles::nearest_turns};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 use stead_numerics::scalar::Dual;
 
@@ -391,10 +391,8 @@ impl<'a> LinearMotion<'a> {
         }
         let part = (from.part + to.part) / 2.0;
         let Some((wrapped, rates)) = self.at(part) else { return };
-        let joints = std::array::from_fn(|j| {
-            let middle = (from.joints[j] + to.joints[j]) / 2.0;
-            middle + wrap(wrapped[j] - middle)
-        });
+        let middle = std::array::from_fn(|j| (from.joints[j] + to.joints[j]) / 2.0);
+        let joints = nearest_turns(&wrapped, &middle);
         let node = Node { part, joints, rates: Some(rates) };
         self.halve(from, &node, max_part, halvings + 1, nodes);
         nodes.push(node);

@@ -8,7 +8,7 @@ use crate::segment_plan::SegmentPlan;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use stead_model::robot::angles::wrap;
+use stead_model::robot::angles::nearest_turns;
 use stead_model::robot::{Pose, Posture};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
@@ -41,18 +41,20 @@ impl std::fmt::Display for LineEnd {
     }
 }
 
-/// Steps of joints 1 to 3, and of joints 4 to 6, and turns of tool and workpiece, over which a straight move of the joints leaves that of the
-/// tool by about a tenth of a millimetre. rad
+/// Steps of joints 1 to 3, and of joints 4 to 6, over which a straight move of the joints leaves that of the tool by about a tenth of a
+/// millimetre. rad
 const STEPS: [f64; 2] = [0.03, 0.06];
+/// The same of the tool and the workpiece, which may turn. rad
 const TURN_STEP: f64 = 0.04;
 /// A step in which a joint turns by more than so many times these is halved.
 const MOST_STEPS: f64 = 1.25;
-/// A joint that turns farther in a step that is not halved any more swings round a singularity. rad
-const MAX_SWING: f64 = 0.5;
 /// How often a step is halved at the most, where a joint turns far, and where the arm may leave its reach: a joint that turns by
 /// [`MAX_SWING`] in a hundredth of a move keeps no feed.
 const HALVINGS: [i32; 2] = [3, 12];
-/// A joint that is by no more than this beyond its limit between two points, both inside, is not told of. rad
+/// A joint that turns farther in such a step of a move, or in one of a line along the tool axis, swings round a singularity, which no controller
+/// follows at a useful speed. rad
+pub(crate) const MAX_SWING: f64 = 0.5;
+/// A joint that is by no more than this beyond its limit between two points, both inside, is not reported. rad
 const BULGE: f64 = 2e-3;
 /// A way of the wrist centre is as long as the chord but for this factor, where the tool turns by little.
 const ARC: f64 = 1.05;
@@ -62,7 +64,7 @@ const REACH_ROUNDING: f64 = 1e-5;
 impl Problem {
     /// Follows a path of the flange in the base frame, given over a share from 0 to 1, from joint angles (rad) in a posture, in so many
     /// steps or, where a joint turns far or the arm is nearly stretched or folded, in finer ones; up to the first state of which `visit`
-    /// gives an answer. Returns where the joints are then. Limits of the joints are not looked at.
+    /// gives an answer. Returns where the joints are then. Limits of the joints are not checked.
     ///
     /// # Errors
     /// What ends the path before.
@@ -75,17 +77,19 @@ impl Problem {
     ) -> Result<([f64; 6], Option<H>), LineEnd> {
         let robot = &self.robot;
         let first = flange_at(0.0);
-        let mut last = (*from, first, robot.reach_margin(&first, posture));
+        // Joint angles, wrist centre, and how far that may move.
+        let mut last = (*from, robot.wrist_centre(&first), robot.reach_margin(&first, posture));
         for step in 0..steps {
             let (mut done, mut width) = (0.0, 1.0);
             while done < 1.0 {
                 let share = (step as f64 + done + width) / steps as f64;
                 let flange = flange_at(share);
                 let found = robot.inverse(&flange, posture).map_err(|_| LineEnd::OutOfReach)?;
-                let joints: [f64; 6] = std::array::from_fn(|j| last.0[j] + wrap(found[j] - last.0[j]));
+                let joints = nearest_turns(&found, &last.0);
                 let turned = |j: usize| (joints[j] - last.0[j]).abs();
                 let room = robot.reach_margin(&flange, posture);
-                let way = ARC * robot.wrist_centre(&flange).metric_distance(&robot.wrist_centre(&last.1));
+                let wrist = robot.wrist_centre(&flange);
+                let way = ARC * wrist.metric_distance(&last.1);
                 let is_far = (0..6).any(|j| turned(j) > MOST_STEPS * STEPS[j / 3]);
                 let may_leave = way > REACH_ROUNDING && last.2 + room < way;
                 let can_halve = |times: i32| width > 0.5_f64.powi(times);
@@ -96,7 +100,7 @@ impl Problem {
                 if let Some(joint) = (0..6).find(|j| turned(*j) > MAX_SWING) {
                     return Err(LineEnd::Swing(joint + 1));
                 }
-                last = (joints, flange, room);
+                last = (joints, wrist, room);
                 if let Some(found) = visit(share, &joints) {
                     return Ok((joints, Some(found)));
                 }
@@ -232,7 +236,7 @@ mod tests {
             let end =
                 Pose { rotation: rotation_from_vector(&turn) * start.rotation, translation: start.translation + way };
             let Ok(found) = robot.inverse(&end.then(&tool.inverse()), posture) else { continue };
-            moves.push((posture, [from, std::array::from_fn(|j| from[j] + wrap(found[j] - from[j]))]));
+            moves.push((posture, [from, nearest_turns(&found, &from)]));
         }
         moves
     }
@@ -243,7 +247,7 @@ mod tests {
         let states = (1..=20_000).map_while(|step| {
             let found =
                 straight.problem.robot.inverse(&straight.flange_at(f64::from(step) / 20_000.0), straight.posture);
-            last = found.ok().map(|found| std::array::from_fn(|j| last[j] + wrap(found[j] - last[j])))?;
+            last = nearest_turns(&found.ok()?, &last);
             Some(last)
         });
         states.collect()

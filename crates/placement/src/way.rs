@@ -6,6 +6,7 @@
 use crate::problem::{Placement, Problem};
 use crate::segment_plan::SegmentPlan;
 pub use crate::straight_move::LineEnd;
+use crate::straight_move::MAX_SWING;
 use crate::tool_scene::ToolScene;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -46,8 +47,6 @@ pub struct ShortLine {
 const LIFTS: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 /// A straight move along the tool axis is followed in steps of this length. m
 pub(crate) const STRAIGHT_STEP: f64 = 0.01;
-/// A joint that turns farther in one such step swings round a singularity, which no controller follows at a useful speed. rad
-const MAX_SWING: f64 = 0.5;
 /// Positions of external axes between which all is taken to turn about one axis. m or rad
 const AXIS_STEP: f64 = 0.1;
 /// States that both trees together have at the most.

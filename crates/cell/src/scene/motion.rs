@@ -251,19 +251,15 @@ impl Scene {
     fn travel(&self, number: usize, motion: &Motion<'_>) -> f64 {
         let pair = &self.pairs[number];
         let by_joints: f64 = pair.reach.iter().zip(motion.steps).map(|(reach, step)| reach * step).sum();
-        let of = |frame: usize, farthest: &dyn Fn() -> f64| {
-            motion.screws[frame].as_ref().map_or(0.0, |screw| screw.travel(farthest()))
-        };
+        let screw = |frame: usize| motion.screws[frame].as_ref();
+        let of_body = |body: &Body| screw(body.frame).map_or(0.0, |screw| screw.travel(body.cover.farthest()));
         by_joints
             + match pair.members {
-                Members::Bodies(a, b) => [&self.bodies[a], &self.bodies[b]]
-                    .iter()
-                    .map(|body| of(body.frame, &|| body.cover.farthest()))
-                    .sum(),
+                Members::Bodies(a, b) => of_body(&self.bodies[a]) + of_body(&self.bodies[b]),
                 // A zone turns with the cell about the origin of the base frame: no point of the arm is farther from that.
-                Members::Zone(..) => of(0, &|| {
+                Members::Zone(..) => screw(0).map_or(0.0, |screw| {
                     let rows: f64 = self.robot.mounted_rows().iter().map(|row| row.translation.norm()).sum();
-                    rows + self.flange_from_tool.translation.norm()
+                    screw.travel(rows + self.flange_from_tool.translation.norm())
                 }),
             }
     }

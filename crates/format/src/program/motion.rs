@@ -4,7 +4,7 @@
 use super::ProgramError;
 use super::ways::{Ends, Names, Ways};
 use stead_model::external_axis::AxisKind;
-use stead_model::robot::angles::{ANGLE_ROUNDING, wrap};
+use stead_model::robot::angles::{ANGLE_ROUNDING, nearest_turns};
 use stead_model::robot::{Pose, Posture};
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::way::Way;
@@ -360,7 +360,7 @@ impl Maker<'_> {
     fn joints(&self, base_from_tool: &Pose<f64>, posture: Posture, near: &[f64; 6]) -> Result<[f64; 6], String> {
         let base_from_flange = base_from_tool.then(&self.problem.spindle.flange_from_tool.inverse());
         let angles = self.problem.robot.inverse(&base_from_flange, posture).map_err(|error| error.to_string())?;
-        Ok(std::array::from_fn(|j| near[j] + wrap(angles[j] - near[j])))
+        Ok(nearest_turns(&angles, near))
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Ends {
     pub has_blending: bool,
 }
 
-/// The ways between segments, empty where nothing stands around, and the moves that are not free.
+/// The ways between segments, empty where there are no surroundings, and the moves that are not free.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ways {
     /// From each segment to the next.
@@ -28,6 +28,8 @@ pub(super) struct Ways {
     pub ends_hit: [Option<Names>; 2],
     /// Path points to which the arm cannot follow the straight move of the tool, and why.
     unfollowed: Vec<(usize, LineEnd)>,
+    /// Those on the way to which a joint is beyond its limit.
+    beyond_limits: Vec<(usize, LineEnd)>,
 }
 
 /// The names of two shapes.
@@ -38,8 +40,10 @@ impl Ways {
     pub fn new(problem: &Problem, plan: &PlacedPlan, approach: f64) -> Self {
         let segments = problem.task.segments();
         let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
-        let unfollowed = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment)).collect();
-        let Some(space) = Space::new(problem, &plan.placement) else { return Self { unfollowed, ..Self::default() } };
+        let faults = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment));
+        let (beyond_limits, unfollowed) = faults.partition(|(_, end)| matches!(end, LineEnd::JointLimit(_)));
+        let known = Self { unfollowed, beyond_limits, ..Self::default() };
+        let Some(space) = Space::new(problem, &plan.placement) else { return known };
         let at = |point: usize| {
             let row = &plan.points[point];
             AtPoint { point, beta: plan.betas[point], posture: row.posture, joints: row.joints }
@@ -54,7 +58,7 @@ impl Ways {
             };
             of_arm.or_else(|| space.tool_hit(point?, approach))
         });
-        Self { all, ends_hit, unfollowed }
+        Self { all, ends_hit, ..known }
     }
 
     /// The free way from a segment (from 0) to the next, if there is one.
@@ -90,8 +94,7 @@ impl Ways {
             let [a, b] = &**hit.as_ref()?;
             Some(format!("the move of {mm:.1} mm along the tool axis {when} hits ({a} and {b})"))
         });
-        let cannot_follow = self.unfollowed.iter().filter(|(_, end)| !matches!(end, LineEnd::JointLimit(_)));
-        let unfollowed = cannot_follow.map(|(point, end)| {
+        let unfollowed = self.unfollowed.iter().map(|(point, end)| {
             format!("the arm cannot follow the straight move of the tool to point {point} ({end})")
         });
         between.chain(at_ends).chain(unfollowed).collect()
@@ -114,8 +117,8 @@ impl Ways {
     pub fn warnings(&self, ends: Ends) -> Vec<Warning> {
         let hits = self.blocked(ends).into_iter().map(|text| Warning::new("blocked-move", format!("NOT FREE: {text}")));
         let short = (0..=self.all.len()).flat_map(|segment| self.short_lines(segment));
-        let beyond = self.unfollowed.iter().filter(|(_, end)| matches!(end, LineEnd::JointLimit(_)));
-        let beyond: Vec<String> = beyond.map(|(point, end)| format!("to point {point}: {end}")).collect();
+        let beyond: Vec<String> =
+            self.beyond_limits.iter().map(|(point, end)| format!("to point {point}: {end}")).collect();
         let short = short.map(|text| Warning::new("short-line", text));
         hits.chain(short).chain(unfollowed_warning(&beyond)).collect()
     }

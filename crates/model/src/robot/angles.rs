@@ -8,6 +8,11 @@ pub fn wrap(angle: f64) -> f64 {
     if turned <= -PI { turned + TAU } else { turned }
 }
 
+/// Joint angles known modulo a turn, in the turns nearest to given ones. rad
+pub fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|j| near[j] + wrap(wrapped[j] - near[j]))
+}
+
 /// Yaw gamma of a workpiece turned about the vertical, from Q4 = sin(gamma / 2), Q1 = cos(gamma / 2) >= 0
 /// (Caro 2013, eq. 1-6). `q4` in [-1, 1]; the yaw is in [-pi, pi].
 pub fn yaw_from_q4(q4: f64) -> f64 {

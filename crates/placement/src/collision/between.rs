@@ -10,8 +10,8 @@ use stead_model::robot::Posture;
 
 impl Problem {
     /// What is wrong with the move to a path point from the one before, in a posture, from joint angles to others (rad): the arm cannot follow
-    /// it, or a pair comes too near on the way. Where there is a scene, all stands at the ends as given, and nothing hits at the first, to
-    /// which `known` has gone; that the end itself hits is told of its point.
+    /// it, or a pair comes too near on the way. Where there is a scene, the poses at the ends are given, and nothing hits at the first, to
+    /// which `known` has gone; that the end itself hits counts at its point.
     pub(crate) fn move_fault(
         &self,
         placement: &Placement,
@@ -27,18 +27,18 @@ impl Problem {
         let mut last = (joints[0], *start);
         let followed = straight.follow(|share, joints| {
             let is_end = share >= 1.0;
-            let stands = match is_end {
+            let poses = match is_end {
                 true => *end,
                 false => self.poses_at(scene, &self.positions_between([point - 1, point], share), placement, joints),
             };
-            // Between points nine tenths of the distances are kept, as on any motion: what hits at the end is told of its point.
-            if scene.next_hit(known, &stands, &PairKind::OF_STATES).is_some() && is_end {
+            // Between points nine tenths of the distances are kept, as on any motion: what hits at the end counts at its point.
+            if scene.next_hit(known, &poses, &PairKind::OF_STATES).is_some() && is_end {
                 return Some(None);
             }
-            if let Some(hit) = scene.motion_to(known, (&last.0, &last.1), (joints, &stands)) {
+            if let Some(hit) = scene.motion_to(known, (&last.0, &last.1), (joints, &poses)) {
                 return Some(Some(Fault::Hit(hit.pair)));
             }
-            last = (*joints, stands);
+            last = (*joints, poses);
             None
         });
         match followed {
@@ -59,11 +59,5 @@ impl Problem {
         let joints: [f64; 6] = std::array::from_fn(|j| from.0[j] + (to.0[j] - from.0[j]) * share);
         let positions = self.positions_between([from.1, to.1], share);
         (joints, self.poses_at(scene, &positions, placement, &joints))
-    }
-
-    /// Positions of the external axes a share of the way from one path point to another. m or rad
-    pub(crate) fn positions_between(&self, points: [usize; 2], share: f64) -> Vec<f64> {
-        let [start, end] = points.map(|point| self.axis_positions(point));
-        start.iter().zip(end).map(|(start, end)| start + (end - start) * share).collect()
     }
 }

@@ -39,7 +39,7 @@ fn through(robot: &Robot, posture: Posture, poses: &[Pose<f64>]) -> SegmentPlan 
     for pose in poses {
         let found = robot.inverse(pose, posture).unwrap();
         let near = joints.last().copied().unwrap_or(found);
-        joints.push(std::array::from_fn(|j| near[j] + wrap(found[j] - near[j])));
+        joints.push(nearest_turns(&found, &near));
     }
     SegmentPlan { posture, ..plan(robot, joints) }
 }
@@ -134,7 +134,7 @@ fn largest_speeds(problem: &Problem, plan: &SegmentPlan) -> Option<[f64; 6]> {
                 translation: from.translation.lerp(&to.translation, part),
             };
             let found = problem.robot.inverse(&pose.then(&tool.inverse()), plan.posture).ok()?;
-            let now: [f64; 6] = std::array::from_fn(|j| before[j] + wrap(found[j] - before[j]));
+            let now = nearest_turns(&found, &before);
             for j in 0..6 {
                 largest[j] = largest[j].max((now[j] - before[j]).abs() * PARTS as f64 / length);
             }

@@ -60,8 +60,8 @@ pub(super) fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
-/// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into and out of the cut that are shorter than they should be, of plans with
-/// their names.
+/// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into and out of the cut
+/// that are shorter than they should be, of plans with their names.
 pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
     let ways = |plan: &(&str, &Cycle)| {
         let found =

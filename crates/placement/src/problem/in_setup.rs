@@ -35,6 +35,12 @@ impl Problem {
         }
     }
 
+    /// Positions of the external axes a share of the way from one path point to another. m or rad
+    pub(crate) fn positions_between(&self, points: [usize; 2], share: f64) -> Vec<f64> {
+        let [start, end] = points.map(|point| self.axis_positions(point));
+        start.iter().zip(end).map(|(start, end)| start + (end - start) * share).collect()
+    }
+
     /// The external axes with their positions along the path.
     pub fn axis_paths(&self) -> Vec<AxisPath> {
         let path = |(number, axis): (usize, &ExternalAxis)| AxisPath {

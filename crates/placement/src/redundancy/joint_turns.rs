@@ -262,11 +262,6 @@ fn unwrapped(angles: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The joint angles of a state nearest to given real ones. rad
-pub(super) fn nearest_turns(wrapped: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
-    std::array::from_fn(|j| near[j] + wrap(wrapped[j] - near[j]))
-}
-
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
     on_joints(problem, joints).iter().all(Measured::holds)

@@ -17,6 +17,7 @@ pub mod axis_path;
 mod between;
 mod collision_free;
 mod follow;
+mod forbid;
 mod forward_pass;
 mod grid;
 mod joint_turns;
@@ -33,7 +34,8 @@ mod turns_dp;
 mod unchanging;
 
 pub use collision_free::Collisions;
-pub(crate) use collision_free::{Kept, forbid, settled_among_free};
+pub(crate) use collision_free::{Kept, settled_among_free};
+pub(crate) use forbid::forbid;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
 pub use state_set::StateSet;
@@ -87,7 +89,7 @@ pub struct Planner<'a> {
     instructions: Instructions,
     /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
     tool_hits: Option<Arc<StateSet>>,
-    /// Whether the moves between the points of plans are looked at too.
+    /// Whether the moves between the points of plans are checked too.
     checks_moves: bool,
 }
 

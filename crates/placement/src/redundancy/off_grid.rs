@@ -7,11 +7,11 @@
 use super::super::evaluate::point_evaluator::PointEvaluator;
 use super::super::problem::{Placement, Problem, Redundancy};
 use super::super::way::{AtPoint, Space};
-use super::joint_turns::{inside_limits, is_allowed, nearest_turns};
+use super::joint_turns::{inside_limits, is_allowed};
 use super::{SegmentPlan, Sense};
 use crate::constraints::joint_steps_hold;
 use rayon::prelude::*;
-use stead_model::robot::angles::wrap;
+use stead_model::robot::angles::nearest_turns;
 
 /// Values of beta at each point of a level.
 const VALUES: usize = 5;
@@ -109,8 +109,7 @@ pub fn refine(
         let is_free = || problem.state_hit(point, placement, &joints).is_none();
         let is_whole = || {
             // In the turns of the plan.
-            let near = &plan.joints[place];
-            let joints = std::array::from_fn(|j| near[j] + wrap(joints[j] - near[j]));
+            let joints = nearest_turns(&joints, &plan.joints[place]);
             let at = AtPoint { point, beta, posture: plan.posture, joints };
             Space::new(problem, placement)
                 .is_none_or(|space| space.line_end(at, problem.segment_moves.retract).is_none())
